@@ -172,7 +172,7 @@ void open_first(App& app, const std::filesystem::path& scene) {
                data_folder() / "scenes" / "governor.json"); // not of the person's choice: not noted as recent
   else
     open_file(app, scene);
-  begin_files(app, !scene.empty());
+  begin_files(app, app.dialog, !scene.empty());
 }
 
 // What the window shows, for tests outside the program.
@@ -204,17 +204,18 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     // A film is drawn all the same.
     const bool hidden = !app.movie.progress && !window.visible();
     const bool waits = hidden || (settling == 0 && !in_motion(app));
-    const double longest =
-        waits ? std::min({idle, next_file_update(app), next_notice_change(app), app.tooltip.due}) : 0;
+    const double longest = waits ? std::min({idle, next_file_update(app),
+                                             next_notice_change(app, app.notice_age), app.tooltip.due})
+                                 : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
     const bool help = app.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
-    const bool fades = next_notice_change(app) <= elapsed;
+    const bool fades = next_notice_change(app, app.notice_age) <= elapsed;
     if (const auto found = colors.take()) take_system_theme(app, theme_of(*found));
     const bool news = update_files(app, elapsed) || help || fades;
-    age_notice(app, elapsed);
+    age_notice(app, app.notice_age, elapsed);
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
     // Otherwise it was only time to look at the disk.
     settling = something ? settling_frames : std::max(settling - 1, 0);

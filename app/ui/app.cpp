@@ -43,7 +43,7 @@ void fit_view(App& app, ViewSize size) {
     (app.view.glide ? app.view.glide->to : app.view.camera).fit(bounds, size);
   } else {
     app.view.glide.reset();
-    app.view.camera = initial_camera(*shown_mechanism(app), bounds, size);
+    app.view.camera = initial_camera(*shown_mechanism(app, app.tool), bounds, size);
   }
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(app)) app.view.fit = false;
@@ -84,7 +84,7 @@ void App::document_opened(bool same_file) {
     keyboard.ring = false;
     for (auto& behind : keyboard.behind)
       behind = {};
-    commands.focus = {};
+    keyboard.focus = {};
   }
   plots = {};
   view.hovered = {};
@@ -103,16 +103,16 @@ void set_tool(App& app, Tool tool) {
   app.tool.tool = tool;
 }
 
-void look_from(App& app, double azimuth, double elevation) {
-  ViewCamera& camera = glide_goal(app);
+void look_from(ViewState& view, double azimuth, double elevation) {
+  ViewCamera& camera = glide_goal(view);
   camera.azimuth = azimuth;
   camera.elevation = elevation;
-  app.view.fit = app.view.keep_direction = true;
+  view.fit = view.keep_direction = true;
 }
 
 void update(App& app, double seconds, ViewSize view) {
   update(app, seconds);
-  update_report(app);
+  update_report(app, app.report);
   // What is closed is looked at afresh when it is opened again.
   if (app.study.open != StudyKind::response) app.plots.response = {};
   if (app.study.open != StudyKind::map) app.plots.map = {};
@@ -129,18 +129,18 @@ void update(App& app, double seconds, ViewSize view) {
   }
   app.view.size = view;
   fit_view(app, view);
-  advance_glide(app, seconds);
+  advance_glide(app.view, seconds);
 }
 
-const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app) {
-  if (app.mode == Mode::build) return app.document.shared();
-  if (app.tool.pull) return app.tool.pull->mechanism; // the tool draws the hand's spring
-  return app.answer.ticket ? app.answer.mechanism : app.document.shared();
+const std::shared_ptr<const Mechanism>& shown_mechanism(const Session& session, const ToolState& tool) {
+  if (session.mode == Mode::build) return session.document.shared();
+  if (tool.pull) return tool.pull->mechanism; // the tool draws the hand's spring
+  return session.answer.ticket ? session.answer.mechanism : session.document.shared();
 }
 
 ViewFrame view_frame(const App& app) {
   ViewFrame frame;
-  frame.mechanism = shown_mechanism(app).get();
+  frame.mechanism = shown_mechanism(app, app.tool).get();
   const bool solved = converged(app) || (periodic_motion(app) && !app.poses.empty());
   if (app.mode == Mode::build) {
     // The answer may still be that to an earlier edit.
@@ -173,14 +173,14 @@ ViewFrame view_frame(const App& app) {
   frame.selected = find_parts(*frame.mechanism, app.selection());
   frame.hovered = app.view.hovered;
   frame.hidden = find_parts(*frame.mechanism, {app.view.hidden});
-  show_loads(app, frame);
+  show_loads(app, app.tool, app.view, frame);
   frame.cut_joints = app.answer.summary.cut_joints;
   frame.colouring = app.document.colouring();
   return frame;
 }
 
-ViewFrame motion_frame(const App& app, ViewFrame frame) {
-  frame.poses = app.motion.poses;
+ViewFrame motion_frame(const Session& session, ViewFrame frame) {
+  frame.poses = session.motion.poses;
   frame.ghost = {};
   frame.motion = {};
   frame.loads = nullptr;

@@ -72,7 +72,7 @@ struct App : Session, Ui {
 
 void set_tool(App& app, Tool tool);
 // The direction the view looks in, from azimuth and elevation (rad), with all in view.
-void look_from(App& app, double azimuth, double elevation);
+void look_from(ViewState& view, double azimuth, double elevation);
 
 // The session's update(), and the camera follows. `view` is the size of the 3-D view.
 void update(App& app, double seconds, ViewSize view);
@@ -80,11 +80,11 @@ void update(App& app, double seconds, ViewSize view);
 void build_gui(App& app);
 
 // The mechanism that the 3-D view shows.
-const std::shared_ptr<const Mechanism>& shown_mechanism(const App& app);
+const std::shared_ptr<const Mechanism>& shown_mechanism(const Session& session, const ToolState& tool);
 // What the 3-D view shows. Refers to the app: use before it changes. The stage makes one a frame; what is
 // drawn over the view reads app.view.scene, which was made of it.
 ViewFrame view_frame(const App& app);
 // What the view beside it shows: the motion alone.
-ViewFrame motion_frame(const App& app, ViewFrame frame);
+ViewFrame motion_frame(const Session& session, ViewFrame frame);
 
 } // namespace flyball

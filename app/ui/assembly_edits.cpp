@@ -2,6 +2,7 @@
 
 #include "app/document/redraw.hpp"
 #include "app/session/settled_pose.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/solve/assembly_drag.hpp"
 
@@ -49,14 +50,14 @@ bool can_draw_settled(const App& app) {
          app.answer.solution.poses.size() == app.document.stored().bodies.size();
 }
 
-void draw_settled(App& app) {
-  const Mechanism before = app.document.stored();
-  const MechanismPose pose = settled_pose(before, app.answer.solution);
+void draw_settled(Session& session) {
+  const Mechanism before = session.document.stored();
+  const MechanismPose pose = settled_pose(before, session.answer.solution);
   if (is_drawn_in(before, pose)) {
-    app.notice = "It is drawn as it settles already.";
+    session.notice = "It is drawn as it settles already.";
     return;
   }
-  redraw(app, "Draw as it settles", before, pose, app.selection());
+  redraw(session, "Draw as it settles", before, pose, session.selection());
 }
 
 } // namespace flyball

@@ -1,10 +1,13 @@
 // Edits that draw the mechanism in another of its configurations: the mechanism stays the same.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/document/part.hpp"
 #include "engine/mechanism/mechanism_pose.hpp"
 
 namespace flyball {
+
+struct App;
+struct Session;
 
 // The state of the history `before` in this pose, as a step of that name and gesture. Tells of springs that
 // could not come along.
@@ -14,6 +17,6 @@ void redraw(Session& session, const std::string& step, const Mechanism& before, 
 void move_coordinate(Session& session, const std::string& joint, int index, double value);
 // The drawn pose becomes that of the steady state.
 bool can_draw_settled(const App& app);
-void draw_settled(App& app);
+void draw_settled(Session& session);
 
 } // namespace flyball

@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/key_focus.hpp"
@@ -20,31 +21,31 @@ void show(App& app, Panel panel, const PanelRect& rect) {
 }
 
 // A new movement of the hand begins: what it changes is one step.
-void notice_gestures(App& app) {
-  bool pressed = !app.keys.empty() && !goes_on_nudging(app);
+void notice_gestures(Session& session, Ui& ui) {
+  bool pressed = !ui.keys.empty() && !goes_on_nudging(ui);
   for (int button = 0; button < 3; ++button)
     pressed = pressed || ImGui::IsMouseClicked(button);
-  if (pressed) ++app.gesture;
+  if (pressed) ++session.gesture;
   // A slider that is not drawn any more waits for no second click.
-  if (SliderPress& press = app.slider_press; press.place && ImGui::GetTime() - *press.since > 1) press = {};
+  if (SliderPress& press = ui.slider_press; press.place && ImGui::GetTime() - *press.since > 1) press = {};
 }
 
 } // namespace
 
 void build_gui(App& app) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  notice_gestures(app);
+  notice_gestures(app, app);
   take_keyboard(app);
   app.widgets.clear();
   notice_key_focus(app);
-  give_keys_to_popups(app);
+  give_keys_to_popups(app, app.commands, app.dialog);
   take_tool_keys(app);
   take_view_keys(app);
   handle_shortcuts(app);
   const Layout layout = layout_of(app, size.x, size.y);
   if (app.view.alone) return view_alone(app, layout.view);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
-  drag_splitters(app, layout);
+  drag_splitters(app, app, app.panels, layout);
   welcome(app, layout.view);
   viewport_panel(app, layout.view);
   show(app, beside_panel, layout.beside);
@@ -72,7 +73,7 @@ void build_gui(App& app) {
   unsaved_dialog(app);
   shortcut_sheet(app);
   command_palette(app);
-  settle_fields(app);
+  settle_fields(app, app);
   begin_picking(app);
   settle_keyboard(app);
 }

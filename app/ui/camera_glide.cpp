@@ -19,29 +19,29 @@ ViewCamera CameraGlide::now() const {
   return camera;
 }
 
-ViewCamera& glide_goal(App& app) {
-  if (!app.view.animated) return app.view.camera;
-  const ViewCamera goal = settled_camera(app);
-  app.view.glide = CameraGlide{app.view.camera, goal, 0};
-  return app.view.glide->to;
+ViewCamera& glide_goal(ViewState& view) {
+  if (!view.animated) return view.camera;
+  const ViewCamera goal = settled_camera(view);
+  view.glide = CameraGlide{view.camera, goal, 0};
+  return view.glide->to;
 }
 
-const ViewCamera& settled_camera(const App& app) {
-  return app.view.glide ? app.view.glide->to : app.view.camera;
+const ViewCamera& settled_camera(const ViewState& view) {
+  return view.glide ? view.glide->to : view.camera;
 }
 
-void advance_glide(App& app, double seconds) {
-  if (!app.view.glide) return;
+void advance_glide(ViewState& view, double seconds) {
+  if (!view.glide) return;
   constexpr double longest_step = 0.04; // s: a window that has been idle does not jump
-  CameraGlide& glide = *app.view.glide;
+  CameraGlide& glide = *view.glide;
   glide.elapsed += std::min(seconds, longest_step);
-  app.view.camera = glide.elapsed >= CameraGlide::duration ? glide.to : glide.now();
-  if (glide.elapsed >= CameraGlide::duration) app.view.glide.reset();
+  view.camera = glide.elapsed >= CameraGlide::duration ? glide.to : glide.now();
+  if (glide.elapsed >= CameraGlide::duration) view.glide.reset();
 }
 
-void stop_glide(App& app) {
-  app.view.glide.reset();
-  app.view.fit = false;
+void stop_glide(ViewState& view) {
+  view.glide.reset();
+  view.fit = false;
 }
 
 bool in_motion(const App& app) {
@@ -49,17 +49,17 @@ bool in_motion(const App& app) {
 }
 
 void fit_all(App& app) {
-  glide_goal(app);
+  glide_goal(app.view);
   app.view.fit = app.view.keep_direction = true;
 }
 
 void fit_selected(App& app) {
-  const std::vector<PartId> parts = find_parts(*shown_mechanism(app), app.selection());
+  const std::vector<PartId> parts = find_parts(*shown_mechanism(app, app.tool), app.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
     if (std::ranges::find(parts, instance.part) != parts.end()) bounds.add(instance_bounds(instance));
   if (bounds.empty) return fit_all(app);
-  glide_goal(app).fit(bounds, app.view.size, 1.6);
+  glide_goal(app.view).fit(bounds, app.view.size, 1.6);
   app.view.fit = false;
 }
 

@@ -6,6 +6,7 @@
 namespace flyball {
 
 struct App;
+struct ViewState;
 
 struct CameraGlide {
   static constexpr double duration = 0.18; // s
@@ -18,13 +19,13 @@ struct CameraGlide {
 
 // The camera to be put somewhere else by a command: it gets there by and by where the program is animated
 // (ViewState::animated), else at once.
-ViewCamera& glide_goal(App& app);
+ViewCamera& glide_goal(ViewState& view);
 // The camera where it is going to be.
-const ViewCamera& settled_camera(const App& app);
+const ViewCamera& settled_camera(const ViewState& view);
 // Moves the camera on by so many seconds.
-void advance_glide(App& app, double seconds);
+void advance_glide(ViewState& view, double seconds);
 // Whoever takes hold of the camera has it.
-void stop_glide(App& app);
+void stop_glide(ViewState& view);
 
 // Whether the session or the camera moves by itself.
 bool in_motion(const App& app);

@@ -1,5 +1,6 @@
 #include "app/ui/commands.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/assembly_edits.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/edit_commands.hpp"
@@ -37,14 +38,14 @@ constexpr KeyPress ctrl_shift(int key) {
   return {key, true, true};
 }
 
-bool any_selected(const App& app) {
-  return !app.selection().empty();
+bool any_selected(const Session& session) {
+  return !session.selection().empty();
 }
 bool can_delete(const App& app) {
-  return any_selected(app) || selected_point(app);
+  return any_selected(app) || selected_point(app, app.tool);
 }
-bool holds_parts(const App& app) {
-  return !app.mechanism().bodies.empty();
+bool holds_parts(const Session& session) {
+  return !session.mechanism().bodies.empty();
 }
 template <Tool tool>
 void choose_tool(App& app) {
@@ -81,6 +82,12 @@ void run_session(App& app) {
   command(app);
 }
 
+// What the session tells.
+template <auto told>
+auto of_session(const App& app) {
+  return told(app);
+}
+
 template <ThemeChoice choice>
 void choose_colours(App& app) {
   choose_theme(app, choice);
@@ -90,12 +97,12 @@ bool colours_chosen(const App& app) {
   return app.theme_choice == choice;
 }
 
-std::string undo_label(const App& app) {
-  const Document& document = app.document;
+std::string undo_label(const Session& session) {
+  const Document& document = session.document;
   return document.can_undo() ? "Undo " + document.steps()[document.position()].name : "Undo";
 }
-std::string redo_label(const App& app) {
-  const Document& document = app.document;
+std::string redo_label(const Session& session) {
+  const Document& document = session.document;
   return document.can_redo() ? "Redo " + document.steps()[document.position() + 1].name : "Redo";
 }
 
@@ -148,7 +155,7 @@ const std::array all_commands{
             .help =
                 "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
             .run = show_report_dialog,
-            .enabled = [](const App& app) { return app.mistakes.empty() && !writing_report(app); }},
+            .enabled = [](const App& app) { return app.mistakes.empty() && !writing_report(app.report); }},
     Command{.id = "file.model",
             .title = "Export linear model…",
             .help = "Write the linear model that Transfer shows for MATLAB, Python or NumPy, or as JSON.",
@@ -167,7 +174,7 @@ const std::array all_commands{
             .key = ctrl('Z'),
             .run = run_session<undo>,
             .enabled = [](const App& app) { return app.document.can_undo(); },
-            .label = undo_label},
+            .label = of_session<undo_label>},
     Command{.id = "edit.redo",
             .title = "Redo",
             .help = "Do again what was taken back.",
@@ -175,7 +182,7 @@ const std::array all_commands{
             .also = ctrl('Y'),
             .run = run_session<redo>,
             .enabled = [](const App& app) { return app.document.can_redo(); },
-            .label = redo_label},
+            .label = of_session<redo_label>},
     Command{.id = "edit.history",
             .title = "History",
             .help = "Every step, to go back to.",
@@ -186,15 +193,15 @@ const std::array all_commands{
             .title = "Cut",
             .help = "Copy the selected parts and delete them.",
             .key = ctrl('X'),
-            .run = cut_selected,
-            .enabled = any_selected,
+            .run = run_session<cut_selected>,
+            .enabled = of_session<any_selected>,
             .separated = true},
     Command{.id = "edit.copy",
             .title = "Copy",
             .help = "Copy the selected parts as text, for this or another document.",
             .key = ctrl('C'),
-            .run = copy_selected,
-            .enabled = any_selected},
+            .run = run_session<copy_selected>,
+            .enabled = of_session<any_selected>},
     Command{.id = "edit.paste",
             .title = "Paste",
             .help = "Add the parts that were copied.",
@@ -205,7 +212,7 @@ const std::array all_commands{
             .help = "Copy the selected parts beside themselves, with what holds them.",
             .key = ctrl('D'),
             .run = duplicate_selected,
-            .enabled = any_selected},
+            .enabled = of_session<any_selected>},
     Command{.id = "edit.delete",
             .title = "Delete",
             .help = "Remove the selected parts and what hangs on them.",
@@ -218,14 +225,14 @@ const std::array all_commands{
             .help = "Make the mirror image of the selected bodies, with what holds them.",
             .key = ctrl('M'),
             .run = show_mirror_dialog,
-            .enabled = any_selected,
+            .enabled = of_session<any_selected>,
             .separated = true},
     Command{.id = "edit.circular",
             .title = "Circular copy…",
             .help = "Repeat the selected bodies round an axis, with what holds them.",
             .key = ctrl_shift('M'),
             .run = show_circular_dialog,
-            .enabled = any_selected},
+            .enabled = of_session<any_selected>},
     Command{.id = "edit.gear",
             .title = "Join by a gear",
             .help = "Couple the selected joints: each turns as the one chosen before it does.",
@@ -253,12 +260,12 @@ const std::array all_commands{
             .help =
                 "Play between the teeth of the selected gear, belt, rack or screw: its wheel is hung in a "
                 "rim between two stops.",
-            .run = give_backlash_to_selected,
-            .enabled = can_give_backlash},
+            .run = run_session<give_backlash_to_selected>,
+            .enabled = of_session<can_give_backlash>},
     Command{.id = "edit.settle",
             .title = "Draw as it settles",
             .help = "The steady state becomes the drawn pose; the mechanism stays the same.",
-            .run = draw_settled,
+            .run = run_session<draw_settled>,
             .enabled = can_draw_settled},
     Command{.id = "edit.rename",
             .title = "Rename",
@@ -280,8 +287,8 @@ const std::array all_commands{
             .title = "Select all",
             .help = "Select every part.",
             .key = ctrl('A'),
-            .run = select_all,
-            .enabled = holds_parts,
+            .run = run_session<select_all>,
+            .enabled = of_session<holds_parts>,
             .separated = true},
     Command{.id = "edit.none",
             .title = "Select nothing",
@@ -388,7 +395,7 @@ const std::array all_commands{
                   else
                     play(app, !app.playback.playing);
                 },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.playback.playing; }},
     Command{.id = "view.select",
             .title = "Select and move",
@@ -410,7 +417,7 @@ const std::array all_commands{
                 "with Shift pinned sliders bring it where the hand is.",
             .key = plain('H'),
             .run = choose_tool<Tool::pull>,
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = tool_chosen<Tool::pull>},
     Command{.id = "view.box",
             .title = "Select a box",
@@ -434,41 +441,41 @@ const std::array all_commands{
             .title = "From the front",
             .help = "Look from the front.",
             .key = plain('1'),
-            .run = [](App& app) { look_from(app, 0, 0); }},
+            .run = [](App& app) { look_from(app.view, 0, 0); }},
     Command{.id = "view.side",
             .title = "From the side",
             .help = "Look from the right.",
             .key = plain('2'),
-            .run = [](App& app) { look_from(app, right_angle, 0); }},
+            .run = [](App& app) { look_from(app.view, right_angle, 0); }},
     Command{.id = "view.top",
             .title = "From above",
             .help = "Look from above.",
             .key = plain('3'),
-            .run = [](App& app) { look_from(app, 0, right_angle); }},
+            .run = [](App& app) { look_from(app.view, 0, right_angle); }},
     Command{.id = "view.iso",
             .title = "Isometric",
             .help = "Look from the front, right and above.",
             .key = plain('4'),
-            .run = [](App& app) { look_from(app, right_angle / 2, isometric_elevation); }},
+            .run = [](App& app) { look_from(app.view, right_angle / 2, isometric_elevation); }},
     Command{.id = "view.fit_selected",
             .title = "Selection in view",
             .help = "Move the camera to what is selected.",
             .key = plain('Z'),
             .run = fit_selected,
-            .enabled = any_selected},
+            .enabled = of_session<any_selected>},
     Command{.id = "view.hide",
             .title = "Hide",
             .help = "Leave the selected parts out of the view; they act as before.",
             .key = shift('H'),
             .run = hide_selected,
-            .enabled = any_selected,
+            .enabled = of_session<any_selected>,
             .separated = true},
     Command{.id = "view.isolate",
             .title = "Isolate",
             .help = "Hide everything but the selected parts and what joins them.",
             .key = plain('I'),
             .run = isolate_selected,
-            .enabled = any_selected},
+            .enabled = of_session<any_selected>},
     Command{.id = "view.show_all",
             .title = "Show all",
             .help = "Bring hidden parts back.",
@@ -590,21 +597,21 @@ const std::array all_commands{
             .help = "The damped motion beside the steady state, and plots of it.",
             .key = plain('M'),
             .run = [](App& app) { open_study(app, StudyKind::motion); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::motion; }},
     Command{.id = "study.response",
             .title = "Response",
             .help = "The steady states over one parameter: branches, folds and crossings, live.",
             .key = plain('C'),
             .run = [](App& app) { open_study(app, StudyKind::response); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::response; }},
     Command{.id = "study.states",
             .title = "All equilibria",
             .help = "Every equilibrium that a bounded search finds, stable or not.",
             .key = plain('E'),
             .run = [](App& app) { open_study(app, StudyKind::states); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::states; }},
     Command{.id = "study.modes",
             .title = "Modes",
@@ -612,14 +619,14 @@ const std::array all_commands{
                 "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
             .key = plain('O'),
             .run = [](App& app) { open_study(app, StudyKind::modes); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::modes; }},
     Command{.id = "study.map",
             .title = "Map of two parameters",
             .help = "A coordinate in colours over the plane of two parameters, with the curves of folds.",
             .key = plain('P'),
             .run = [](App& app) { open_study(app, StudyKind::map); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::map; }},
     Command{
         .id = "study.spread",
@@ -627,20 +634,20 @@ const std::array all_commands{
         .help =
             "How the steady state scatters with tolerances of numbers: a histogram, and whose share it is.",
         .run = [](App& app) { open_study(app, StudyKind::spread); },
-        .enabled = holds_parts,
+        .enabled = of_session<holds_parts>,
         .checked = [](const App& app) { return app.study.open == StudyKind::spread; }},
     Command{.id = "study.transfer",
             .title = "Transfer function",
             .help = "The linear model about the steady state: Bode's plots, poles and zeros, files for "
                     "MATLAB and Python.",
             .run = [](App& app) { open_study(app, StudyKind::transfer); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::transfer; }},
     Command{.id = "study.compare",
             .title = "Compare",
             .help = "Error against run time: the direct solution and the damped motion.",
             .run = [](App& app) { open_study(app, StudyKind::compare); },
-            .enabled = holds_parts,
+            .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.study.open == StudyKind::compare; }},
     Command{.id = "study.export",
             .title = "Export the run…",
@@ -724,9 +731,9 @@ std::string key_text(const KeyPress& key) {
 namespace {
 
 // Something has come up that has its own use for keys.
-bool keys_are_wanted(const App& app) {
-  return app.dialog.showing || app.dialog.wanted != Dialog::none || app.commands.palette_showing ||
-         app.commands.palette_wanted || app.commands.shortcuts;
+bool keys_are_wanted(const CommandState& commands, const DialogState& dialog) {
+  return dialog.showing || dialog.wanted != Dialog::none || commands.palette_showing ||
+         commands.palette_wanted || commands.shortcuts;
 }
 
 void act_on(App& app, const KeyPress& key) {
@@ -734,10 +741,10 @@ void act_on(App& app, const KeyPress& key) {
   if (key == plain(keys::escape) && std::exchange(app.keyboard.focus, {}).in_panel) return;
   for (const Command& command : all_commands)
     if (pressed(command, key) && is_enabled(app, command)) {
-      if (may_command(app, key)) command.run(app);
+      if (may_command(app, app, key)) command.run(app);
       return;
     }
-  may_command(app, key); // no command, but maybe the beginning of a number
+  may_command(app, app, key); // no command, but maybe the beginning of a number
 }
 
 } // namespace
@@ -748,7 +755,7 @@ void handle_shortcuts(App& app) {
   const std::vector<KeyPress> pressed_keys = std::exchange(app.keys, {});
   if (ImGui::GetIO().WantTextInput || !app.fields.typing.name.empty() || app.dialog.showing) return;
   for (const KeyPress& key : pressed_keys)
-    if (!keys_are_wanted(app)) act_on(app, key);
+    if (!keys_are_wanted(app.commands, app.dialog)) act_on(app, key);
 }
 
 } // namespace flyball

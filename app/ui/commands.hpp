@@ -2,11 +2,13 @@
 // shortcuts are made of.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/ui/ui.hpp"
 
 #include <span>
 
 namespace flyball {
+
+struct App;
 
 struct Command {
   const char* id;    // "edit.undo": its menu and a word; menus hold the commands in the table's order

@@ -8,6 +8,7 @@
 #include "app/document/gear_kinds.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -64,7 +65,7 @@ void remove_selected(Session& session, const std::string& step, const std::strin
 
 void delete_selected(App& app) {
   if (!app.selection().empty()) return remove_selected(app, "Delete", "Deleted");
-  if (const NamedPoint* point = selected_point(app))
+  if (const NamedPoint* point = selected_point(app, app.tool))
     edit(app, "Remove " + point->name,
          [name = point->name](Mechanism& mechanism, Selection&) { remove_point(mechanism, name); });
 }
@@ -72,8 +73,8 @@ void delete_selected(App& app) {
 namespace {
 
 // Far enough for a copy to be seen beside its original, a round number of metres.
-double copy_step(const App& app) {
-  return std::pow(10, std::round(std::log10(app.view.camera.distance / 8)));
+double copy_step(const ViewState& view) {
+  return std::pow(10, std::round(std::log10(view.camera.distance / 8)));
 }
 
 // Whether a body of the selection stands where another does.
@@ -95,25 +96,25 @@ bool lies_on_another(const Mechanism& mechanism, const Selection& selection) {
 
 void duplicate_selected(App& app) {
   if (app.selection().empty()) return;
-  const double step = copy_step(app);
+  const double step = copy_step(app.view);
   edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
     selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
   });
 }
 
-void copy_selected(App& app) {
-  if (app.selection().empty()) return;
+void copy_selected(Session& session) {
+  if (session.selection().empty()) return;
   try {
-    ImGui::SetClipboardText(copy_text(app.mechanism(), app.selection()).c_str());
-    app.notice = "Copied " + words_for(app.selection());
+    ImGui::SetClipboardText(copy_text(session.mechanism(), session.selection()).c_str());
+    session.notice = "Copied " + words_for(session.selection());
   } catch (const SceneError& error) {
-    show_error(app, error.what());
+    show_error(session, error.what());
   }
 }
 
-void cut_selected(App& app) {
-  copy_selected(app);
-  if (!app.selection().empty()) remove_selected(app, "Cut", "Cut");
+void cut_selected(Session& session) {
+  copy_selected(session);
+  if (!session.selection().empty()) remove_selected(session, "Cut", "Cut");
 }
 
 void paste_parts(App& app) {
@@ -130,35 +131,35 @@ void paste_parts(App& app) {
     }
     constexpr int most = 20; // copies side by side
     for (int i = 0; i < most && lies_on_another(mechanism, selection); ++i)
-      move_parts(mechanism, selection, copy_step(app) * Vec3(1, 0, 0));
+      move_parts(mechanism, selection, copy_step(app.view) * Vec3(1, 0, 0));
   });
 }
 
-void select_all(App& app) {
+void select_all(Session& session) {
   Selection all;
-  for (const Body& body : app.mechanism().bodies)
+  for (const Body& body : session.mechanism().bodies)
     all.parts.push_back({PartKind::body, body.name});
-  for (const Joint& joint : app.mechanism().joints)
+  for (const Joint& joint : session.mechanism().joints)
     all.parts.push_back({PartKind::joint, joint.name});
-  for (const Force& force : app.mechanism().forces)
+  for (const Force& force : session.mechanism().forces)
     all.parts.push_back({PartKind::force, force.name});
-  select(app, std::move(all));
+  select(session, std::move(all));
 }
 
 namespace {
 
 // The pairs of coordinates that a gear or belt ties when it goes from one joint to the next in the order of
 // their choice, a rack or screw one pair; none where it cannot.
-std::vector<std::array<std::string, 2>> pairs_to_gear(const App& app, GearKind kind) {
-  const std::vector<std::string> joints = app.selection().names(PartKind::joint);
+std::vector<std::array<std::string, 2>> pairs_to_gear(const Session& session, GearKind kind) {
+  const std::vector<std::string> joints = session.selection().names(PartKind::joint);
   const std::size_t count = joints.size();
   if (count <= 2 || turns_into_slide(kind)) {
-    const auto ends = gear_ends(app.mechanism(), joints, kind);
+    const auto ends = gear_ends(session.mechanism(), joints, kind);
     return ends ? std::vector{*ends} : std::vector<std::array<std::string, 2>>{};
   }
   std::vector<std::array<std::string, 2>> pairs;
   for (std::size_t i = 1; i < count; ++i) {
-    const auto ends = gear_ends(app.mechanism(), {joints[i - 1], joints[i]}, kind);
+    const auto ends = gear_ends(session.mechanism(), {joints[i - 1], joints[i]}, kind);
     if (!ends || (i > 1 && (*ends)[0] != pairs.back()[1])) return {};
     pairs.push_back(*ends);
   }
@@ -174,13 +175,13 @@ void share_radius(Mechanism& mechanism, const std::string& from, const std::stri
 
 } // namespace
 
-bool can_gear_selected(const App& app, GearKind kind) {
-  return !pairs_to_gear(app, kind).empty();
+bool can_gear_selected(const Session& session, GearKind kind) {
+  return !pairs_to_gear(session, kind).empty();
 }
 
-void gear_selected(App& app, GearKind kind) {
-  const std::vector<std::string> joints = app.selection().names(PartKind::joint);
-  const std::vector<std::array<std::string, 2>> pairs = pairs_to_gear(app, kind);
+void gear_selected(Session& session, GearKind kind) {
+  const std::vector<std::string> joints = session.selection().names(PartKind::joint);
+  const std::vector<std::array<std::string, 2>> pairs = pairs_to_gear(session, kind);
   if (pairs.empty()) return;
   const auto first_ratio = [kind] { // wheels that mesh, or of one size; 50 mm; 5 mm a turn
     switch (kind) {
@@ -194,7 +195,7 @@ void gear_selected(App& app, GearKind kind) {
   std::string word(type_name(kind));
   word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
   const std::vector<std::string_view> names(joints.begin(), joints.end());
-  edit(app, word + " of " + word_list(names, "and"), [&](Mechanism& mechanism, Selection& selection) {
+  edit(session, word + " of " + word_list(names, "and"), [&](Mechanism& mechanism, Selection& selection) {
     selection = {};
     std::string last;
     for (const auto& ends : pairs) {
@@ -209,30 +210,31 @@ void gear_selected(App& app, GearKind kind) {
 namespace {
 
 // The gear that alone is selected; empty: none is.
-std::string selected_gear(const App& app) {
-  if (app.selection().parts.size() != 1 || app.selection().parts[0].kind != PartKind::joint) return {};
-  const int j = joint_index(app.mechanism(), app.selection().parts[0].name);
-  if (j < 0 || app.mechanism().joints[static_cast<std::size_t>(j)].type != JointType::gear) return {};
-  return app.selection().parts[0].name;
+std::string selected_gear(const Session& session) {
+  if (session.selection().parts.size() != 1 || session.selection().parts[0].kind != PartKind::joint)
+    return {};
+  const int j = joint_index(session.mechanism(), session.selection().parts[0].name);
+  if (j < 0 || session.mechanism().joints[static_cast<std::size_t>(j)].type != JointType::gear) return {};
+  return session.selection().parts[0].name;
 }
 
 } // namespace
 
-bool can_give_backlash(const App& app) {
-  return !selected_gear(app).empty();
+bool can_give_backlash(const Session& session) {
+  return !selected_gear(session).empty();
 }
 
-void give_backlash_to_selected(App& app) {
-  const std::string gear = selected_gear(app);
+void give_backlash_to_selected(Session& session) {
+  const std::string gear = selected_gear(session);
   if (gear.empty()) return;
-  if (const std::string why = backlash_refused(app.document.stored(), gear); !why.empty()) {
-    app.notice = why;
+  if (const std::string why = backlash_refused(session.document.stored(), gear); !why.empty()) {
+    session.notice = why;
     return;
   }
-  edit(app, "Backlash of " + gear, [&](Mechanism& mechanism, Selection& selection) {
+  edit(session, "Backlash of " + gear, [&](Mechanism& mechanism, Selection& selection) {
     selection.set({PartKind::joint, give_backlash(mechanism, gear)});
   });
-  app.notice = "Half of the play is to either side; its stop is as stiff as the teeth.";
+  session.notice = "Half of the play is to either side; its stop is as stiff as the teeth.";
 }
 
 } // namespace flyball

@@ -1,5 +1,7 @@
 #include "app/ui/file_commands.hpp"
 
+#include "app/ui/app.hpp"
+
 #include <utility>
 
 namespace flyball {
@@ -10,13 +12,13 @@ namespace fs = std::filesystem;
 
 } // namespace
 
-void offer_leftovers(App& app) {
-  if (!app.files.leftovers.empty()) app.dialog.wanted = Dialog::recover;
+void offer_leftovers(const Session& session, DialogState& dialog) {
+  if (!session.files.leftovers.empty()) dialog.wanted = Dialog::recover;
 }
 
-void begin_files(App& app, bool chosen) {
-  read_kept_files(app, !chosen);
-  offer_leftovers(app);
+void begin_files(Session& session, DialogState& dialog, bool chosen) {
+  read_kept_files(session, !chosen);
+  offer_leftovers(session, dialog);
 }
 
 void leave_document(App& app, std::function<void(App&)> then) {
@@ -41,7 +43,7 @@ void open_file(App& app, const fs::path& file) {
     if (!left.problem.empty() || left.document.file().empty()) return;
     note_recent(left, left.document.file());
     find_own_leftovers(left);
-    offer_leftovers(left);
+    offer_leftovers(left, left.dialog);
   });
 }
 
@@ -62,12 +64,13 @@ void save_document(App& app) {
     return;
   }
   app.file_dialogs.then = {};
-  if (std::string why = save_to(app, file); !why.empty()) ask_where_to_save(app, std::move(why));
+  if (std::string why = save_to(app, file); !why.empty())
+    ask_where_to_save(app, app.dialog, app.file_dialogs, std::move(why));
 }
 
 void show_save_dialog(App& app) {
   app.file_dialogs.then = {};
-  ask_where_to_save(app, {});
+  ask_where_to_save(app, app.dialog, app.file_dialogs, {});
 }
 
 void quit(App& app) {

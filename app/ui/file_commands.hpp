@@ -2,9 +2,13 @@
 #pragma once
 
 #include "app/session/files.hpp"
-#include "app/ui/app.hpp"
 
 namespace flyball {
+
+struct App;
+struct DialogState;
+struct FileDialogState;
+struct Session;
 
 // Does `then` at once where nothing would be lost, otherwise after the person has saved or said not to; never
 // where he thinks better of it.
@@ -25,9 +29,9 @@ void show_mode_movie_dialog(App& app); // of the mode that is shown
 
 // When the program has started: reads what is kept in options.state, and offers what a crash has left; to
 // whoever has `chosen` a file to begin with, nothing of others.
-void begin_files(App& app, bool chosen = false);
+void begin_files(Session& session, DialogState& dialog, bool chosen = false);
 // Of files.leftovers, where there are any.
-void offer_leftovers(App& app);
+void offer_leftovers(const Session& session, DialogState& dialog);
 // See recover_now().
 void recover(App& app, const Leftover& leftover); // asks first
 
@@ -36,6 +40,7 @@ void recover(App& app, const Leftover& leftover); // asks first
 // Does what the document was to be left for.
 void leave_now(App& app);
 // Asks for a file to save to, keeping what the document is to be left for.
-void ask_where_to_save(App& app, std::string why);
+void ask_where_to_save(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
+                       std::string why);
 
 } // namespace flyball

@@ -8,9 +8,8 @@ namespace flyball {
 
 namespace {
 
-void hide_part(App& app, Part part) {
-  if (std::ranges::find(app.view.hidden, part) == app.view.hidden.end())
-    app.view.hidden.push_back(std::move(part));
+void hide_part(ViewState& view, Part part) {
+  if (std::ranges::find(view.hidden, part) == view.hidden.end()) view.hidden.push_back(std::move(part));
 }
 
 bool joins_selected(const Selection& selection, const std::array<std::string, 2>& bodies) {
@@ -23,7 +22,7 @@ bool joins_selected(const Selection& selection, const std::array<std::string, 2>
 
 void hide_selected(App& app) {
   for (const Part& part : app.selection().parts)
-    hide_part(app, part);
+    hide_part(app.view, part);
   select(app, {});
 }
 
@@ -32,7 +31,7 @@ void isolate_selected(App& app) {
   const Mechanism& mechanism = app.mechanism();
   app.view.hidden.clear();
   const auto consider = [&](PartKind kind, const std::string& name, bool belongs) {
-    if (Part part{kind, name}; !belongs && !selection.has(part)) hide_part(app, std::move(part));
+    if (Part part{kind, name}; !belongs && !selection.has(part)) hide_part(app.view, std::move(part));
   };
   for (const Body& body : mechanism.bodies)
     consider(PartKind::body, body.name, false);

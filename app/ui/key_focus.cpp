@@ -1,6 +1,9 @@
 #include "app/ui/key_focus.hpp"
 
+#include "app/session/session.hpp"
+#include "app/ui/command_state.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/dialog_state.hpp"
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -53,9 +56,9 @@ bool edits_text(const KeyPress& key) {
 
 } // namespace
 
-void notice_key_focus(App& app) {
-  KeyFocus& focus = app.keyboard.focus;
-  if (!app.fields.typing.name.empty()) focus = {.in_panel = true, .among_fields = true};
+void notice_key_focus(Ui& ui) {
+  KeyFocus& focus = ui.keyboard.focus;
+  if (!ui.fields.typing.name.empty()) focus = {.in_panel = true, .among_fields = true};
   bool clicked = false;
   for (int button = 0; button < 3; ++button)
     clicked = clicked || ImGui::IsMouseClicked(button);
@@ -70,10 +73,10 @@ void notice_key_focus(App& app) {
     focus = {.in_panel = window == "outline" || window == "History"};
 }
 
-bool may_command(App& app, const KeyPress& key) {
-  KeyFocus& focus = app.keyboard.focus;
+bool may_command(Session& session, Ui& ui, const KeyPress& key) {
+  KeyFocus& focus = ui.keyboard.focus;
   // With the keyboard at a widget its number begins with a digit, and letters stay commands.
-  if (!focus.in_panel || app.keyboard.ring) return true;
+  if (!focus.in_panel || ui.keyboard.ring) return true;
   bool typed = false;
   if (key.ctrl) {
     typed = focus.among_fields && edits_text(key);
@@ -88,28 +91,28 @@ bool may_command(App& app, const KeyPress& key) {
     typed = focus.among_fields && edits_text(key);
   }
   if (typed)
-    app.notice = "No field is being typed in, so " + key_text(key) +
-                 " did nothing. Keys are commands again once the view is clicked or Esc is pressed.";
+    session.notice = "No field is being typed in, so " + key_text(key) +
+                     " did nothing. Keys are commands again once the view is clicked or Esc is pressed.";
   return !typed;
 }
 
-void give_keys_to_popups(App& app) {
+void give_keys_to_popups(Ui& ui, CommandState& commands, DialogState& dialog) {
   const auto pressed = [&](int code) {
-    return std::ranges::any_of(app.keys, [&](const KeyPress& key) { return !key.ctrl && key.key == code; });
+    return std::ranges::any_of(ui.keys, [&](const KeyPress& key) { return !key.ctrl && key.key == code; });
   };
-  if (app.commands.shortcuts) {
+  if (commands.shortcuts) {
     if (pressed(keys::escape) || pressed(keys::enter) || pressed('?') || pressed(keys::f1))
-      app.commands.shortcuts = false;
-    app.keys.clear();
+      commands.shortcuts = false;
+    ui.keys.clear();
     return;
   }
   // Dialogs and the palette see to their keys themselves.
-  if (app.dialog.showing || app.commands.palette_showing) return;
+  if (dialog.showing || commands.palette_showing) return;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
   if (open == 0) return;
   // In a field Escape gives back what stood there before.
-  if (app.fields.typing.name.empty() && pressed(keys::escape)) ImGui::ClosePopupToLevel(0, true);
-  app.keys.clear();
+  if (ui.fields.typing.name.empty() && pressed(keys::escape)) ImGui::ClosePopupToLevel(0, true);
+  ui.keys.clear();
 }
 
 } // namespace flyball

@@ -7,18 +7,22 @@
 // tables of results letters stay commands, since only numbers are typed there.
 #pragma once
 
-#include "app/ui/app.hpp"
-
 namespace flyball {
 
+struct CommandState;
+struct DialogState;
+struct KeyPress;
+struct Session;
+struct Ui;
+
 // Where the hand has clicked or types; before the keys of a frame are looked at.
-void notice_key_focus(App& app);
+void notice_key_focus(Ui& ui);
 
 // Whether this key may be a command now. Where it may not, the notice says how to have it.
-bool may_command(App& app, const KeyPress& key);
+bool may_command(Session& session, Ui& ui, const KeyPress& key);
 
 // Menus, lists and the sheet of keys: while one is open no key reaches what lies behind it, and Escape closes
-// it. Takes the keys that are theirs out of app.keys.
-void give_keys_to_popups(App& app);
+// it. Takes the keys that are theirs out of ui.keys.
+void give_keys_to_popups(Ui& ui, CommandState& commands, DialogState& dialog);
 
 } // namespace flyball

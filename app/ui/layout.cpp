@@ -1,5 +1,6 @@
 #include "app/ui/layout.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
@@ -19,12 +20,13 @@ float panel_width(float wanted, float room) {
 }
 
 // Of the height of two panels, for the upper one.
-float upper_share(const App& app, const Layout& layout, float height) {
-  const PanelState& panels = app.panels;
-  if (layout.stacked && app.mode == Mode::explore) {
+float upper_share(const Session& session, const Ui& ui, const PanelState& panels, const Layout& layout,
+                  float height) {
+
+  if (layout.stacked && session.mode == Mode::explore) {
     if (panels.stacked_share > 0) return panels.stacked_share;
     if (panels.parameters_height == 0) return 0.4f;
-    return std::clamp(panels.parameters_height * app.scale / height, 0.15f, 0.5f);
+    return std::clamp(panels.parameters_height * ui.scale / height, 0.15f, 0.5f);
   }
   return panels.inspector_share;
 }
@@ -38,8 +40,8 @@ void divide(const PanelRect& whole, float share, PanelRect& upper, PanelRect& lo
 }
 
 // With the second view to the right of the first.
-void share_view(const App& app, Layout& layout) {
-  if (!motion_beside(app)) return;
+void share_view(const Session& session, Layout& layout) {
+  if (!motion_beside(session)) return;
   layout.beside = layout.view;
   layout.view.width = std::max(std::floor(layout.view.width / 2), 1.f);
   layout.beside.x += layout.view.width;
@@ -48,8 +50,8 @@ void share_view(const App& app, Layout& layout) {
 
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
 // panels.
-float splitter(App& app, const char* name, const PanelRect& line, bool upright) {
-  const float grip = 4 * app.scale, thick = std::max(1.f, std::round(app.scale));
+float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright) {
+  const float grip = 4 * ui.scale, thick = std::max(1.f, std::round(ui.scale));
   const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
   const ImVec2 size(upright ? 2 * grip : line.width, upright ? line.height : 2 * grip);
   ImGui::SetNextWindowPos(from);
@@ -62,17 +64,17 @@ float splitter(App& app, const char* name, const PanelRect& line, bool upright) 
                    ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(2);
   ImGui::InvisibleButton("line", size);
-  note_widget(app.widgets, name, KeyUse::slide);
+  note_widget(ui.widgets, name, KeyUse::slide);
   const bool active = ImGui::IsItemActive();
-  const bool lit = active || ImGui::IsItemHovered() || has_keyboard(app, name);
+  const bool lit = active || ImGui::IsItemHovered() || has_keyboard(ui, name);
   if (lit) ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
-  const UiColors& colors = ui_colors(app.theme);
+  const UiColors& colors = ui_colors(ui.theme);
   const ImVec2 to(line.x + (upright ? thick : line.width), line.y + (upright ? line.height : thick));
   ImGui::GetWindowDrawList()->AddRectFilled(
       {line.x, line.y}, to, ImGui::ColorConvertFloat4ToU32(lit ? colors.accent : colors.border));
   ImGui::End();
-  if (const KeyNudge* nudge = nudge_of(app, name)) // to the left and upwards, or to the right and downwards
-    return static_cast<float>(nudge->x * nudge->size) * key_step * app.scale;
+  if (const KeyNudge* nudge = nudge_of(ui, name)) // to the left and upwards, or to the right and downwards
+    return static_cast<float>(nudge->x * nudge->size) * key_step * ui.scale;
   if (!active) return 0;
   return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }
@@ -101,7 +103,7 @@ Layout layout_of(const App& app, float width, float height) {
     layout.view = {0, top, std::max(width - panel, 1.f), below};
     share_view(app, layout);
     layout.side = {layout.view.width, top, panel, below};
-    const float share = upper_share(app, layout, below);
+    const float share = upper_share(app, app, app.panels, layout, below);
     if (building)
       divide(layout.side, share, layout.outline, layout.inspector);
     else
@@ -115,7 +117,7 @@ Layout layout_of(const App& app, float width, float height) {
   (building ? layout.outline : layout.parameters) = {0, top, left, below};
   layout.side = {width - right, top, right, below};
   if (building || !app.selection().empty())
-    divide(layout.side, upper_share(app, layout, below), layout.inspector, layout.results);
+    divide(layout.side, upper_share(app, app, app.panels, layout, below), layout.inspector, layout.results);
   else
     layout.results = layout.side;
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
@@ -123,30 +125,31 @@ Layout layout_of(const App& app, float width, float height) {
   return layout;
 }
 
-void drag_splitters(App& app, const Layout& layout) {
-  const float s = app.scale;
-  PanelState& panels = app.panels;
+void drag_splitters(Session& session, Ui& ui, PanelState& panels, const Layout& layout) {
+  const float s = ui.scale;
+
   const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
   const PanelRect& side = layout.side;
   float& side_width = layout.stacked ? panels.stacked_width : panels.results_width;
   if (!layout.stacked) {
-    const float by = splitter(app, "splitter/left", {layout.view.x, layout.view.y, 1, side.height}, true);
+    const float by = splitter(ui, "splitter/left", {layout.view.x, layout.view.y, 1, side.height}, true);
     panels.parameters_width = clamped(panels.parameters_width + by / s);
   }
   side_width =
-      clamped(side_width - splitter(app, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
+      clamped(side_width - splitter(ui, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
   if (layout.study.height > 0) {
     const PanelRect& study = layout.study;
-    const float moved = splitter(app, "splitter/study", {study.x, study.y, study.width, 1}, false);
+    const float moved = splitter(ui, "splitter/study", {study.x, study.y, study.width, 1}, false);
     const float whole = study.height + side.height;
     panels.study_share = std::clamp(panels.study_share - moved / whole, 0.2f, 0.75f);
   }
   const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
   if (lower.height == side.height) return;
-  const float by = splitter(app, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
+  const float by = splitter(ui, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
   if (by == 0) return;
-  const float share = std::clamp(upper_share(app, layout, side.height) + by / side.height, 0.15f, 0.85f);
-  (layout.stacked && app.mode == Mode::explore ? panels.stacked_share : panels.inspector_share) = share;
+  const float share =
+      std::clamp(upper_share(session, ui, panels, layout, side.height) + by / side.height, 0.15f, 0.85f);
+  (layout.stacked && session.mode == Mode::explore ? panels.stacked_share : panels.inspector_share) = share;
 }
 
 void begin_panel(const char* name, const PanelRect& rect, int more_flags) {

@@ -3,9 +3,12 @@
 // inspector. Below all of them there may be a study.
 #pragma once
 
-#include "app/ui/app.hpp"
-
 namespace flyball {
+
+struct App;
+struct PanelState;
+struct Session;
+struct Ui;
 
 struct PanelRect {
   float x = 0, y = 0, width = 0, height = 0; // pixels
@@ -22,7 +25,7 @@ struct Layout {
 Layout layout_of(const App& app, float width, float height);
 
 // Draws the lines between panels and moves them; before the panels.
-void drag_splitters(App& app, const Layout& layout);
+void drag_splitters(Session& session, Ui& ui, PanelState& panels, const Layout& layout);
 // Begins the window of a panel without frame or title; ImGui::End ends it.
 void begin_panel(const char* name, const PanelRect& rect, int more_flags = 0);
 

@@ -15,31 +15,32 @@ std::optional<Quat> turn_of_loads(const Session& session) {
   return common_turn(*session.answer.mechanism, solution, session.poses);
 }
 
-bool may_show_loads(const App& app) {
-  return app.view.loads && !app.tool.pull && app.mode == Mode::explore && converged(app) &&
-         app.answer.mechanism->bodies.size() == app.poses.size();
+bool may_show_loads(const Session& session, const ToolState& tool, const ViewState& view) {
+  return view.loads && !tool.pull && session.mode == Mode::explore && converged(session) &&
+         session.answer.mechanism->bodies.size() == session.poses.size();
 }
 
 } // namespace
 
-void show_loads(const App& app, ViewFrame& frame) {
-  if (!may_show_loads(app)) return;
-  const std::optional<Quat> turn = turn_of_loads(app);
+void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
+  if (!may_show_loads(session, tool, view)) return;
+  const std::optional<Quat> turn = turn_of_loads(session);
   if (!turn) return;
-  frame.loads = &app.answer.solution;
-  frame.loads_turning = app.answer.turning;
+  frame.loads = &session.answer.solution;
+  frame.loads_turning = session.answer.turning;
   frame.loads_turn = *turn;
   const auto is_body = [](const PartId& part) { return part.kind == PartKind::body; };
   if (std::ranges::count_if(frame.selected, is_body) == 1)
     frame.loads_body = std::ranges::find_if(frame.selected, is_body)->index;
 }
 
-std::string loads_missing(const App& app) {
-  if (!app.view.loads || app.mechanism().bodies.empty()) return {};
-  if (app.mode == Mode::build) return "Forces: while exploring (Tab)";
-  if (app.tool.pull) return "Forces: when nothing is pulled";
-  if (!converged(app)) return "Forces: no steady state";
-  if (may_show_loads(app) && !turn_of_loads(app)) return "Forces change as it turns: at the drawn phase only";
+std::string loads_missing(const Session& session, const ToolState& tool, const ViewState& view) {
+  if (!view.loads || session.mechanism().bodies.empty()) return {};
+  if (session.mode == Mode::build) return "Forces: while exploring (Tab)";
+  if (tool.pull) return "Forces: when nothing is pulled";
+  if (!converged(session)) return "Forces: no steady state";
+  if (may_show_loads(session, tool, view) && !turn_of_loads(session))
+    return "Forces change as it turns: at the drawn phase only";
   return {};
 }
 

@@ -7,12 +7,14 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
+struct ToolState;
+struct ViewState;
 
 // Asks for the arrows in a frame of the steady state, where they are wanted and known: of the one body that
 // is selected its free-body diagram, else those of the whole mechanism.
-void show_loads(const App& app, ViewFrame& frame);
+void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame);
 // Why there are none though they are wanted, in words; empty where there are.
-std::string loads_missing(const App& app);
+std::string loads_missing(const Session& session, const ToolState& tool, const ViewState& view);
 
 } // namespace flyball

@@ -43,13 +43,14 @@ std::vector<RunawayCoordinate> holdable(const Session& session) {
   return found;
 }
 
-void show_how_it_moves(App& app) {
-  if (app.study.open == StudyKind::motion && app.motion.on) {
-    set_mode(app, Mode::explore);
-    restart_motion(app);
+void show_how_it_moves(Session& session) {
+  if (session.study.open == StudyKind::motion && session.motion.on) {
+    set_mode(session, Mode::explore);
+    restart_motion(session);
   } else {
-    if (app.study.open == StudyKind::motion) app.study.open = StudyKind::none; // open_study() would close it
-    open_study(app, StudyKind::motion);
+    if (session.study.open == StudyKind::motion)
+      session.study.open = StudyKind::none; // open_study() would close it
+    open_study(session, StudyKind::motion);
   }
 }
 
@@ -84,26 +85,26 @@ void holding_buttons(Buttons& buttons, Session& session) {
 
 } // namespace
 
-void remedies(App& app) {
-  const Solution& solution = app.answer.solution;
+void remedies(Session& session, Ui& ui) {
+  const Solution& solution = session.answer.solution;
   if (solution.status != Status::not_converged && solution.status != Status::no_steady_state) return;
-  ImGui::Dummy({0, 2 * app.scale});
-  Buttons buttons(app);
-  holding_buttons(buttons, app);
+  ImGui::Dummy({0, 2 * ui.scale});
+  Buttons buttons(ui);
+  holding_buttons(buttons, session);
   if (solution.weight_turns)
-    if (const auto along = gravity_along_drives(app.mechanism()))
+    if (const auto along = gravity_along_drives(session.mechanism()))
       buttons.add(
           "gravity along", "Turn gravity along the axis",
           "Gravity of the same size along the axis of the drive, so that the weight does not turn with it.",
-          [&app, along = *along] { set_gravity(app, "Turn gravity along the axis", along); }, true);
+          [&session, along = *along] { set_gravity(session, "Turn gravity along the axis", along); }, true);
   if (solution.weight_turns || (!solution.unheld.empty() && solution.unheld_by_weight))
     buttons.add("gravity off", "Turn gravity off", "No gravity; the scene's inspector has it back.",
-                [&app] { set_gravity(app, "Turn gravity off", Vec3::Zero()); });
+                [&session] { set_gravity(session, "Turn gravity off", Vec3::Zero()); });
   const bool alone = solution.unheld.empty() && !solution.weight_turns;
   buttons.add(
       "motion", "Show the motion", "How it moves from the drawn pose, which needs no steady state.",
-      [&app] { show_how_it_moves(app); }, alone);
-  ImGui::Dummy({0, 2 * app.scale});
+      [&session] { show_how_it_moves(session); }, alone);
+  ImGui::Dummy({0, 2 * ui.scale});
 }
 
 std::string unheld_words(const Solution& solution) {

@@ -1,6 +1,7 @@
 #include "app/ui/report_export.hpp"
 
 #include "app/report/page.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 
@@ -64,17 +65,17 @@ void begin_report(App& app, const ExportRequest& request) {
   });
 }
 
-bool writing_report(const App& app) {
-  return app.report.task && app.report.task->running();
+bool writing_report(const ReportExport& report) {
+  return report.task && report.task->running();
 }
 
-void update_report(App& app) {
-  const auto news = app.report.task ? app.report.task->take() : std::nullopt;
+void update_report(Session& session, ReportExport& report) {
+  const auto news = report.task ? report.task->take() : std::nullopt;
   if (!news) return;
   if (!news->problem.empty())
-    show_error(app, "Not saved: " + news->problem);
+    show_error(session, "Not saved: " + news->problem);
   else if (news->result && !news->result->empty())
-    app.notice = "Saved " + news->result->string();
+    session.notice = "Saved " + news->result->string();
 }
 
 } // namespace flyball

@@ -10,6 +10,7 @@ namespace flyball {
 
 struct App;
 struct ExportRequest;
+struct Session;
 
 struct ReportExport {
   std::unique_ptr<Background<std::filesystem::path>> task; // made when it is first asked for; its file
@@ -17,8 +18,8 @@ struct ReportExport {
 
 // Draws the picture for it, which needs OpenGL, and has the rest done in the background.
 void begin_report(App& app, const ExportRequest& request);
-bool writing_report(const App& app);
+bool writing_report(const ReportExport& report);
 // Once a frame: tells where it was written, or why not.
-void update_report(App& app);
+void update_report(Session& session, ReportExport& report);
 
 } // namespace flyball

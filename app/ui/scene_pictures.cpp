@@ -1,5 +1,7 @@
 #include "app/ui/scene_pictures.hpp"
 
+#include "app/ui/app.hpp"
+
 #include "engine/report/analysis.hpp"
 
 #include <cmath>
@@ -21,17 +23,17 @@ std::vector<Pose> equilibrium_of(const Mechanism& mechanism) {
   return {};
 }
 
-Framebuffer draw(const App& app, const Mechanism& mechanism, ViewRenderer& renderer) {
-  Framebuffer target(static_cast<int>(std::lround(scene_picture_width * app.scale)),
-                     static_cast<int>(std::lround(scene_picture_height * app.scale)), app.view.samples);
+Framebuffer draw(const Ui& ui, const ViewState& view, const Mechanism& mechanism, ViewRenderer& renderer) {
+  Framebuffer target(static_cast<int>(std::lround(scene_picture_width * ui.scale)),
+                     static_cast<int>(std::lround(scene_picture_height * ui.scale)), view.samples);
   const ViewSize size{static_cast<double>(target.width()), static_cast<double>(target.height())};
   const std::vector<Pose> poses = equilibrium_of(mechanism);
   ViewFrame frame;
   frame.mechanism = &mechanism;
   frame.poses = poses;
-  frame.theme = app.theme;
+  frame.theme = ui.theme;
   frame.options.triad = false;
-  frame.options.scale = app.scale;
+  frame.options.scale = ui.scale;
   frame.camera = initial_camera(mechanism, scene_of(frame).bounds, size);
   renderer.draw(frame, target);
   return target;
@@ -39,9 +41,9 @@ Framebuffer draw(const App& app, const Mechanism& mechanism, ViewRenderer& rende
 
 } // namespace
 
-const ScenePictures::Picture* ScenePictures::find(const App& app, const SceneCard& card) const {
+const ScenePictures::Picture* ScenePictures::find(const Ui& ui, const SceneCard& card) const {
   for (const Picture& picture : pictures_)
-    if (picture.theme == app.theme && picture.scale == app.scale && picture.mechanism == card.mechanism)
+    if (picture.theme == ui.theme && picture.scale == ui.scale && picture.mechanism == card.mechanism)
       return &picture;
   return nullptr;
 }
@@ -57,7 +59,8 @@ void ScenePictures::update(App& app, ViewRenderer& renderer) {
   for (SceneCard& card : gallery.cards) {
     const Picture* picture = find(app, card);
     if (!picture && may_draw) {
-      pictures_.push_back({card.mechanism, app.theme, app.scale, draw(app, card.mechanism, renderer)});
+      pictures_.push_back(
+          {card.mechanism, app.theme, app.scale, draw(app, app.view, card.mechanism, renderer)});
       picture = &pictures_.back();
       may_draw = app.options.mode == LiveSolver::Mode::immediate;
     }

@@ -22,7 +22,7 @@ class ScenePictures {
     float scale;
     Framebuffer drawn;
   };
-  const Picture* find(const App& app, const SceneCard& card) const;
+  const Picture* find(const Ui& ui, const SceneCard& card) const;
 
   std::vector<Picture> pictures_;
 };

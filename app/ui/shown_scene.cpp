@@ -14,18 +14,19 @@ bool same(const std::vector<Pose>& kept, std::span<const Pose> now) {
   });
 }
 
-const ShownScene& keep(const App& app, ShownScene& shown, const ViewFrame& frame) {
+const ShownScene& keep(const Session& session, const ToolState& tool, ShownScene& shown,
+                       const ViewFrame& frame) {
   SceneSource& source = shown.source;
   // While exploring, the picture waits for the answer.
-  const bool waits = app.mode == Mode::explore && app.answer.ticket != 0;
-  const std::uint64_t revision = waits ? 0 : app.document.revision();
-  if (shown.scene && source.revision == revision && source.ticket == app.answer.ticket &&
+  const bool waits = session.mode == Mode::explore && session.answer.ticket != 0;
+  const std::uint64_t revision = waits ? 0 : session.document.revision();
+  if (shown.scene && source.revision == revision && source.ticket == session.answer.ticket &&
       source.theme == frame.theme && source.loads == (frame.loads != nullptr) &&
       source.loads_body == frame.loads_body && source.hidden == frame.hidden &&
       same(source.poses, frame.poses) && same(source.ghost, frame.ghost) && same(source.motion, frame.motion))
     return shown;
   source.revision = revision;
-  source.ticket = app.answer.ticket;
+  source.ticket = session.answer.ticket;
   source.theme = frame.theme;
   source.loads = frame.loads != nullptr;
   source.loads_body = frame.loads_body;
@@ -33,7 +34,7 @@ const ShownScene& keep(const App& app, ShownScene& shown, const ViewFrame& frame
   source.poses.assign(frame.poses.begin(), frame.poses.end());
   source.ghost.assign(frame.ghost.begin(), frame.ghost.end());
   source.motion.assign(frame.motion.begin(), frame.motion.end());
-  shown.mechanism = shown_mechanism(app);
+  shown.mechanism = shown_mechanism(session, tool);
   shown.scene = std::make_shared<const ViewScene>(view_scene(frame));
   ++shown.made;
   return shown;
@@ -41,16 +42,18 @@ const ShownScene& keep(const App& app, ShownScene& shown, const ViewFrame& frame
 
 } // namespace
 
-const ShownScene& show_scene(App& app, const ViewFrame& frame) {
-  return keep(app, app.view.scene, frame);
+const ShownScene& show_scene(const Session& session, ToolState& tool, ViewState& view,
+                             const ViewFrame& frame) {
+  return keep(session, tool, view.scene, frame);
 }
 
-const ShownScene& show_motion_scene(App& app, const ViewFrame& frame) {
-  return keep(app, app.view.scene_beside, frame);
+const ShownScene& show_motion_scene(const Session& session, ToolState& tool, ViewState& view,
+                                    const ViewFrame& frame) {
+  return keep(session, tool, view.scene_beside, frame);
 }
 
 const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
-  return show_scene(app, view_frame(app)).scene;
+  return show_scene(app, app.tool, app.view, view_frame(app)).scene;
 }
 
 } // namespace flyball

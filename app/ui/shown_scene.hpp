@@ -11,6 +11,9 @@
 namespace flyball {
 
 struct App;
+struct Session;
+struct ToolState;
+struct ViewState;
 
 // All that the lists depend on.
 struct SceneSource {
@@ -31,8 +34,10 @@ struct ShownScene {
 };
 
 // Of what the view shows in this frame, and of the view beside it.
-const ShownScene& show_scene(App& app, const ViewFrame& frame);
-const ShownScene& show_motion_scene(App& app, const ViewFrame& frame);
+const ShownScene& show_scene(const Session& session, ToolState& tool, ViewState& view,
+                             const ViewFrame& frame);
+const ShownScene& show_motion_scene(const Session& session, ToolState& tool, ViewState& view,
+                                    const ViewFrame& frame);
 // As the app is now, which commands may have changed since the frame began.
 const std::shared_ptr<const ViewScene>& shown_scene(App& app);
 

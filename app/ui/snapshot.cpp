@@ -1,5 +1,6 @@
 #include "app/ui/snapshot.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_picture.hpp"
 #include "engine/mechanism/file.hpp"
 

@@ -1,5 +1,6 @@
 #include "app/ui/stage.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/layout.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
@@ -15,11 +16,11 @@ constexpr float interface_text_size = 16; // points
 constexpr int many_solids = 3000;
 constexpr std::chrono::milliseconds rest{250}; // without movement, until a draft is drawn in full
 
-ViewKey key_of(const App& app, const ViewFrame& frame, const std::shared_ptr<const ViewScene>& scene,
+ViewKey key_of(const ViewState& view, const ViewFrame& frame, const std::shared_ptr<const ViewScene>& scene,
                PixelSize size) {
   ViewKey key;
   key.size = size;
-  key.samples = app.view.samples;
+  key.samples = view.samples;
   key.grid = frame.options.grid;
   key.shadow = frame.options.shadow;
   key.scene = scene;
@@ -47,31 +48,31 @@ ImGuiContext* new_context(ImFontAtlas* fonts) {
 
 } // namespace
 
-Stage::Stage(App& app, float scale, KeptFonts* kept)
+Stage::Stage(Ui& ui, float scale, KeptFonts* kept)
     : former_(ImGui::GetCurrentContext()), kept_(kept),
       context_(new_context(kept ? &kept->atlas : nullptr), ImGui::DestroyContext) {
-  set_scale(app, scale);
+  set_scale(ui, scale);
 }
 
 Stage::~Stage() {
   ImGui::SetCurrentContext(former_);
 }
 
-void Stage::set_scale(App& app, float scale) {
+void Stage::set_scale(Ui& ui, float scale) {
   ImGui::SetCurrentContext(context_.get());
-  app.scale = scale;
+  ui.scale = scale;
   if (kept_ && kept_->scale == scale) {
-    app.fonts = kept_->fonts;
+    ui.fonts = kept_->fonts;
   } else {
-    app.fonts = load_fonts(*ImGui::GetIO().Fonts, interface_text_size, scale);
+    ui.fonts = load_fonts(*ImGui::GetIO().Fonts, interface_text_size, scale);
     if (kept_) {
-      kept_->fonts = app.fonts;
+      kept_->fonts = ui.fonts;
       kept_->scale = scale;
     }
   }
-  ImGui::GetIO().FontDefault = app.fonts.text;
+  ImGui::GetIO().FontDefault = ui.fonts.text;
   renderer_.upload_fonts();
-  apply_style(app.theme, scale);
+  apply_style(ui.theme, scale);
 }
 
 void Stage::frame(App& app, PixelSize size, double seconds) {
@@ -81,13 +82,13 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   ViewFrame shown = view_frame(app);
-  shown.options.triad = !has_view_cube(app, view); // the cube shows the axes
-  app.view.texture = prepare(app, view_, shown, show_scene(app, shown), pixels_of(view));
+  shown.options.triad = !has_view_cube(app, app.view, view); // the cube shows the axes
+  app.view.texture = prepare(app, view_, shown, show_scene(app, app.tool, app.view, shown), pixels_of(view));
   if (layout.beside.width > 0) {
     ViewFrame motion = motion_frame(app, shown);
     motion.options.triad = true; // there is no cube
-    app.view.texture_beside =
-        prepare(app, beside_, motion, show_motion_scene(app, motion), pixels_of(layout.beside));
+    app.view.texture_beside = prepare(
+        app, beside_, motion, show_motion_scene(app, app.tool, app.view, motion), pixels_of(layout.beside));
   } else {
     beside_ = {};
   }
@@ -109,23 +110,23 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGui::Render();
 }
 
-void Stage::render(const App& app, const Framebuffer& target) {
+void Stage::render(const Ui& ui, const Framebuffer& target) {
   draw_due(view_);
   draw_due(beside_);
   target.bind();
-  draw_interface(app, {target.width(), target.height()});
+  draw_interface(ui, {target.width(), target.height()});
 }
 
-void Stage::render(const App& app, PixelSize window) {
+void Stage::render(const Ui& ui, PixelSize window) {
   draw_due(view_);
   draw_due(beside_);
   bind_window_framebuffer(window.width, window.height);
-  draw_interface(app, window);
+  draw_interface(ui, window);
 }
 
-void Stage::draw_interface(const App& app, PixelSize size) {
+void Stage::draw_interface(const Ui& ui, PixelSize size) {
   ImGui::SetCurrentContext(context_.get());
-  const ImVec4 background = ui_colors(app.theme).panel;
+  const ImVec4 background = ui_colors(ui.theme).panel;
   glViewport(0, 0, size.width, size.height);
   glClearColor(background.x, background.y, background.z, 1);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -134,7 +135,7 @@ void Stage::draw_interface(const App& app, PixelSize size) {
 
 unsigned Stage::prepare(const App& app, View& view, const ViewFrame& shown, const ShownScene& scene,
                         PixelSize size) {
-  ViewKey key = key_of(app, shown, scene.scene, size);
+  ViewKey key = key_of(app.view, shown, scene.scene, size);
   const auto now = std::chrono::steady_clock::now();
   if (key.samples != view.key.samples) {
     view.target.reset();

@@ -36,19 +36,19 @@ class Stage {
  public:
   // Makes its own ImGui context current, with fonts and colours for app.theme at `scale`. The fonts are drawn
   // anew, or taken from `kept`, which no other stage may use at the same time.
-  Stage(App& app, float scale, KeptFonts* kept = nullptr);
+  Stage(Ui& ui, float scale, KeptFonts* kept = nullptr);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  void set_scale(App& app, float scale);
+  void set_scale(Ui& ui, float scale);
   // One frame: update(), which views have changed, then the interface. ImGui's input must be in place;
   // `seconds` have passed since the last frame.
   void frame(App& app, PixelSize size, double seconds);
   // Draws the frame into `target`: the views that have changed since they were drawn, then the interface.
-  void render(const App& app, const Framebuffer& target);
+  void render(const Ui& ui, const Framebuffer& target);
   // The same into the window's own picture.
-  void render(const App& app, PixelSize window);
+  void render(const Ui& ui, PixelSize window);
   // In how many frames so far the 3-D view was to be drawn anew.
   int views_changed() const { return views_changed_; }
   // Where a view of thousands of bodies is drawn in software, it is drawn without anti-aliasing while it
@@ -81,7 +81,7 @@ class Stage {
   unsigned prepare(const App& app, View& view, const ViewFrame& frame, const ShownScene& scene,
                    PixelSize size);
   void draw_due(View& view);
-  void draw_interface(const App& app, PixelSize size);
+  void draw_interface(const Ui& ui, PixelSize size);
 
   ImGuiContext* former_; // that was current before
   KeptFonts* kept_;      // or none

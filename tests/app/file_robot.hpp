@@ -29,7 +29,7 @@ class FileRobot : public Robot {
     imgui_compat::map_key(ImGuiKey_RightArrow, key_right);
     app.options.state = folder / "state";
     if (owner) app.files.owner = owner;
-    begin_files(app);
+    begin_files(app, app.dialog);
     frames(3);
   }
   void pass(double seconds) {

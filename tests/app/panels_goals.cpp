@@ -18,7 +18,7 @@ struct GoalRobot : Robot {
   GoalRobot() : Robot({1280, 900}) {
     open_scene(app, shipped_file("governor_parametric"));
     set_mode(app, ::flyball::Mode::explore);
-    look_from(app, 0, 0);
+    look_from(app.view, 0, 0);
     frames(4);
   }
   double number(const std::string& address) const { return get_parameter(app.mechanism(), address); }

@@ -20,7 +20,7 @@ struct Hand : Robot {
   explicit Hand(::flyball::Mode mode) : Robot({1280, 800}) { start(mode); }
   void start(::flyball::Mode mode) {
     set_mode(app, mode);
-    look_from(app, 0, 0);
+    look_from(app.view, 0, 0);
     frames(3);
   }
   // A bar with two stable states: a spring that is pressed together pushes it to either side.
@@ -163,7 +163,7 @@ TEST_CASE("without a body under it the hand turns the view, and a click selects"
   hand.drag({view.to.x - 60, view.from.y + 120}, {view.to.x - 160, view.from.y + 120});
   CHECK(hand.app.view.camera.azimuth != azimuth);
   CHECK(hand.app.document.position() == 0);
-  look_from(hand.app, 0, 0);
+  look_from(hand.app.view, 0, 0);
   hand.frames(3);
   hand.click_at(hand.drawn("ball1"));
   CHECK(hand.app.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
@@ -248,7 +248,7 @@ TEST_CASE("a pull while exploring is a spring that turns with the spindle") {
   for (std::size_t i = 0; i < expected.coordinates.size(); ++i)
     CHECK(std::abs(expected.coordinates[i].value - hand.app.answer.solution.coordinates[i].value) < 1e-12);
   // Its force is told.
-  const auto force = hand_force(hand.app);
+  const auto force = hand_force(hand.app, hand.app.tool);
   REQUIRE(force);
   const Vec3 stretched = carried_point(with, expected.poses, body_index(with, "spindle"), pull.hand) -
                          carried_point(with, expected.poses, body_index(with, "ball1"), pull.at);
@@ -356,7 +356,7 @@ TEST_CASE("whatever is pulled in whatever way, the mechanism stays whole") {
     INFO(i);
     if (below(4) == 0) {
       hand.start(below(2) == 0 ? ::flyball::Mode::build : ::flyball::Mode::explore);
-      look_from(hand.app, 0.3 * below(20), 0.2 * below(7));
+      look_from(hand.app.view, 0.3 * below(20), 0.2 * below(7));
       hand.frames(2);
     }
     const bool build = hand.app.mode == ::flyball::Mode::build;

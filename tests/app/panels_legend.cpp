@@ -79,7 +79,7 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
   Robot robot({1280, 800});
   App& app = robot.app;
   set_mode(app, Mode::build);
-  look_from(app, 0, 0);
+  look_from(app.view, 0, 0);
   robot.frames(3);
   set_tool(app, Tool::pull);
   robot.frames(1);

@@ -96,7 +96,7 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
   const WidgetRect view = app.widgets.at("view");
   robot.point({view.from.x + 20, view.from.y + 120});
   robot.press();
-  look_from(app, 0, 1.57);
+  look_from(app.view, 0, 1.57);
   robot.frames(2);
   CHECK(middle("legend") > middle("view"));
   robot.release();
@@ -179,7 +179,7 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   CHECK(app.playback.time > 0.1);
   CHECK(reaction().norm() == Approx(at_first.norm()));
   CHECK((reaction() - at_first).norm() > 0.2 * at_first.norm());
-  CHECK(loads_missing(app).empty());
+  CHECK(loads_missing(app, app.tool, app.view).empty());
   robot.key(' ');
   open_scene(app, shipped_file("rate_gyro"));
   robot.frames(3);

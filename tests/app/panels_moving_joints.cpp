@@ -13,7 +13,7 @@ namespace {
 struct Hand : Robot {
   Hand() : Robot({1280, 800}) {
     set_mode(app, Mode::build);
-    look_from(app, 0, 0);
+    look_from(app.view, 0, 0);
     frames(3);
   }
   const Joint& joint(const char* name) const {

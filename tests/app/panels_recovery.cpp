@@ -123,7 +123,7 @@ TEST_CASE("whoever starts with a file is not asked about another one") {
   FileRobot robot(folder);
   robot.click("recover/later");
   robot.open(file);
-  begin_files(robot.app, true);
+  begin_files(robot.app, robot.app.dialog, true);
   robot.frames(3);
   CHECK_FALSE(robot.app.dialog.showing);
   robot.open(other);

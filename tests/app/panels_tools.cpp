@@ -577,7 +577,7 @@ TEST_CASE("clicks select, toggle and drop") {
   d.drag(d.pixel({0, 0.3, 0}), d.pixel({0.1, 0.3, 0}));
   CHECK(d.app.selection().parts == std::vector{body("ball1")}); // that was steering
   CHECK(d.app.view.camera.azimuth != 0);
-  look_from(d.app, 0, 0);
+  look_from(d.app.view, 0, 0);
   d.frames(2);
   d.click(ImVec2(d.widget("view").to.x - 30, d.widget("view").to.y - 200));
   CHECK(d.app.selection().empty());
@@ -722,7 +722,7 @@ TEST_CASE("what is under a cursor that rests is looked for when the picture move
   }
   SECTION("because the mechanism does") {
     Robot robot;
-    look_from(robot.app, 0, 0);
+    look_from(robot.app.view, 0, 0);
     robot.frames(3);
     const int ball = body_index(robot.app.mechanism(), "ball1");
     robot.point_at(robot.app.poses.at(static_cast<std::size_t>(ball)).position);

@@ -102,11 +102,11 @@ TEST_CASE("what is typed can be mended, and what is no length is told") {
   }
   SECTION("Escape takes the number back, then the end, then the tool") {
     d.strike("0.25");
-    CHECK_THAT(tool_hint(d.app), ContainsSubstring("Esc drops the number"));
+    CHECK_THAT(tool_hint(d.app, d.app.inspector, d.app.tool), ContainsSubstring("Esc drops the number"));
     d.key(key_escape);
     CHECK(d.app.tool.typed.empty());
     CHECK(d.app.tool.first);
-    CHECK_THAT(tool_hint(d.app), ContainsSubstring("Esc drops the first"));
+    CHECK_THAT(tool_hint(d.app, d.app.inspector, d.app.tool), ContainsSubstring("Esc drops the first"));
     d.key(key_escape);
     CHECK_FALSE(d.app.tool.first);
     CHECK(d.app.tool.tool == Tool::rod);

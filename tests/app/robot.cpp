@@ -162,7 +162,7 @@ void Robot::click_at(const Vec3& world) {
 
 void Robot::begin_empty(double height) {
   open_document(app, Document());
-  look_from(app, 0, 0);
+  look_from(app.view, 0, 0);
   frames(3);
   app.view.fit = false;
   app.view.camera.target = Vec3::Zero();

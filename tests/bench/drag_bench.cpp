@@ -82,7 +82,7 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
   const auto b = static_cast<std::size_t>(body_index(m, body));
   open_document(app, Document(m));
   set_mode(app, mode);
-  look_from(app, 0, 0);
+  look_from(app.view, 0, 0);
   const auto settle = [&] {
     frame(1 / wanted);
     while (solving(app)) {

@@ -1,6 +1,7 @@
 // What Mirror and Circular copy ask for.
 #include "app/document/copies.hpp"
 #include "app/document/transform.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -37,19 +38,19 @@ int main_axis(const Vec3& direction) {
 }
 
 // Buttons x, y, z of which one is on.
-void axis_choice(App& app, const std::string& name, const std::array<const char*, 3>& labels, int& axis) {
+void axis_choice(Ui& ui, const std::string& name, const std::array<const char*, 3>& labels, int& axis) {
   for (int i = 0; i < 3; ++i) {
     if (i > 0) ImGui::SameLine();
     const auto at = static_cast<std::size_t>(i);
-    if (text_button(app, name + "/" + axis_names[at], labels[at], axis == i)) axis = i;
+    if (text_button(ui, name + "/" + axis_names[at], labels[at], axis == i)) axis = i;
   }
 }
 
-void point_fields(App& app, const std::string& name, Vec3& point) {
+void point_fields(Session& session, Ui& ui, const std::string& name, Vec3& point) {
   for (int i = 0; i < 3; ++i) {
     double value = point[i];
     const auto at = static_cast<std::size_t>(i);
-    if (plain_quantity_field(app, name + "/" + axis_names[at], axis_names[at], "m",
+    if (plain_quantity_field(session, ui, name + "/" + axis_names[at], axis_names[at], "m",
                              "A point on it, in metres, as drawn.", value))
       point[i] = value;
   }
@@ -89,11 +90,11 @@ void show_circular_dialog(App& app) {
 }
 
 void mirror_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::mirror, "Mirror the selected parts", 420)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::mirror, "Mirror the selected parts", 420)) return;
   CopyChoice& choice = app.commands.copy;
   paragraph("At the plane through this point, at right angles to", colors_of(app).dim);
   axis_choice(app, "mirror/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, "mirror/point", choice.point);
+  point_fields(app, app, "mirror/point", choice.point);
   if (accepted(app, "mirror", "Mirror"))
     edit(app, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
       selection = mirror_parts(mechanism, selection, choice.point, unit(choice.axis));
@@ -102,11 +103,11 @@ void mirror_dialog(App& app) {
 }
 
 void circular_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
   CopyChoice& choice = app.commands.copy;
   paragraph("Evenly round the axis through this point along", colors_of(app).dim);
   axis_choice(app, "circular/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, "circular/point", choice.point);
+  point_fields(app, app, "circular/point", choice.point);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("In all");
   ImGui::SameLine(90 * app.scale);

@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -20,8 +21,8 @@ constexpr std::array picture_sizes{PictureSize{"720p", "1280 × 720", 1280, 720}
 
 void save_picture(App& app) {
   DialogState& dialog = app.dialog;
-  const std::filesystem::path file = typed_file(app, ".png");
-  if (!may_replace(app, file)) return;
+  const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
+  if (!may_replace(app, app.file_dialogs, file)) return;
   app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest_picture, largest_picture),
                                      std::clamp(dialog.height, smallest_picture, largest_picture),
                                      dialog.panels, dialog.loads};
@@ -33,7 +34,7 @@ void save_picture(App& app) {
 void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
   app.dialog.loads = app.view.loads;
-  show_folder(app, usual_folder(app));
+  show_folder(app.file_dialogs, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
@@ -41,9 +42,9 @@ void show_export_dialog(App& app) {
 }
 
 void export_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::export_picture, "Save a picture", 480)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::export_picture, "Save a picture", 480)) return;
   DialogState& dialog = app.dialog;
-  bool accepted = path_field(app, "export", "Name");
+  bool accepted = path_field(app, app.file_dialogs, "export", "Name");
 
   size_fields(app, "export", picture_sizes, 80, dialog.width, dialog.height);
   ImGui::SetCursorPosX(80 * app.scale);
@@ -57,8 +58,8 @@ void export_dialog(App& app) {
   const bool fits = std::min(dialog.width, dialog.height) >= smallest_picture &&
                     std::max(dialog.width, dialog.height) <= largest_picture;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
-  const std::filesystem::path file = typed_file(app, ".png");
-  const bool replaces = asks_to_replace(app, file);
+  const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
+  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!fits || app.file_dialogs.path.empty());
   accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;

@@ -1,5 +1,6 @@
 // The shipped scenes with pictures.
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/scene_pictures.hpp"
@@ -44,19 +45,19 @@ std::vector<SceneCard> read_cards(const fs::path& folder) {
   return cards;
 }
 
-float about_height(const App& app) {
-  return about_lines * std::round(about_size * app.fonts.text->FontSize);
+float about_height(const Ui& ui) {
+  return about_lines * std::round(about_size * ui.fonts.text->FontSize);
 }
 
-float card_height(const App& app) {
-  return (scene_picture_height + 2 * card_pad) * app.scale + ImGui::GetTextLineHeight() + about_height(app);
+float card_height(const Ui& ui) {
+  return (scene_picture_height + 2 * card_pad) * ui.scale + ImGui::GetTextLineHeight() + about_height(ui);
 }
 
 // As many words as there is room for.
-std::string fitting(const App& app, const std::string& text, float size, float width) {
-  const ImFont* font = app.fonts.text;
+std::string fitting(const Ui& ui, const std::string& text, float size, float width) {
+  const ImFont* font = ui.fonts.text;
   const auto fits = [&](const std::string& part) {
-    return font->CalcTextSizeA(size, FLT_MAX, width, part.c_str()).y <= about_height(app) + 1;
+    return font->CalcTextSizeA(size, FLT_MAX, width, part.c_str()).y <= about_height(ui) + 1;
   };
   std::string part = text;
   while (!fits(part)) {
@@ -68,16 +69,16 @@ std::string fitting(const App& app, const std::string& text, float size, float w
 }
 
 // Returns whether it was clicked.
-bool show_card(App& app, int i, float width) {
-  GalleryState& gallery = app.file_dialogs.gallery;
+bool show_card(Ui& ui, FileDialogState& file_dialogs, int i, float width) {
+  GalleryState& gallery = file_dialogs.gallery;
   const SceneCard& card = gallery.cards[static_cast<std::size_t>(i)];
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale;
   const ImVec2 from = ImGui::GetCursorScreenPos();
-  const ImVec2 to(from.x + width, from.y + card_height(app));
+  const ImVec2 to(from.x + width, from.y + card_height(ui));
   const std::string name = "gallery/" + card.file.filename().string();
   const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, to.y - from.y});
-  note_widget(app.widgets, name, KeyUse::none); // has its own arrows and Enter, see below
+  note_widget(ui.widgets, name, KeyUse::none); // has its own arrows and Enter, see below
   const bool hovered = ImGui::IsItemHovered();
   if (hovered && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0)) gallery.chosen = i;
   const bool chosen = i == gallery.chosen;
@@ -92,13 +93,13 @@ bool show_card(App& app, int i, float width) {
                std::max(1.f, std::round((chosen ? 2.f : 1.f) * s)));
   const ImVec2 text(from.x + card_pad * s, bottom + 5 * s);
   const float room = width - 2 * card_pad * s;
-  ImFont* font = app.fonts.text;
+  ImFont* font = ui.fonts.text;
   const float size = std::round(about_size * font->FontSize);
   list.PushClipRect(from, {to.x - card_pad * s, to.y}, true);
-  list.AddText(app.fonts.strong, app.fonts.strong->FontSize, text, packed(colors.text),
+  list.AddText(ui.fonts.strong, ui.fonts.strong->FontSize, text, packed(colors.text),
                card.mechanism.name.c_str());
   const ImVec2 about(text.x, text.y + ImGui::GetTextLineHeight() + 2 * s);
-  const std::string shown = fitting(app, card.about, size, room);
+  const std::string shown = fitting(ui, card.about, size, room);
   list.AddText(font, size, about, packed(colors.dim), shown.c_str(), nullptr, room);
   list.PopClipRect();
   if (hovered && shown != card.about) help_on_hover(card.about.c_str());
@@ -106,14 +107,14 @@ bool show_card(App& app, int i, float width) {
 }
 
 // The arrow keys move from card to card; returns whether they did.
-bool move_by_keys(App& app, int columns) {
-  const int count = static_cast<int>(app.file_dialogs.gallery.cards.size());
+bool move_by_keys(FileDialogState& file_dialogs, int columns) {
+  const int count = static_cast<int>(file_dialogs.gallery.cards.size());
   const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
   const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
                    columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
-  const int wanted = app.file_dialogs.gallery.chosen + step;
+  const int wanted = file_dialogs.gallery.chosen + step;
   if (step == 0 || wanted < 0 || wanted >= count) return false;
-  app.file_dialogs.gallery.chosen = wanted;
+  file_dialogs.gallery.chosen = wanted;
   return true;
 }
 
@@ -129,7 +130,9 @@ void gallery_dialog(App& app) {
   GalleryState& gallery = app.file_dialogs.gallery;
   const float s = app.scale;
   gallery.showing = false;
-  if (!begin_dialog(app, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * card_gap + 47)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::gallery, "Examples",
+                    3 * scene_picture_width + 2 * card_gap + 47))
+    return;
   gallery.showing = true;
   const int count = static_cast<int>(gallery.cards.size());
   const float between = card_gap * s;
@@ -141,14 +144,14 @@ void gallery_dialog(App& app) {
   const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
   const float height =
       std::min(rows * (card_height(app) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
-  const bool moved = move_by_keys(app, columns);
+  const bool moved = move_by_keys(app.file_dialogs, columns);
   fs::path opened;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
   ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
   if (count == 0) paragraph("There are no examples beside this program.", colors_of(app).dim);
   for (int i = 0; i < count; ++i) {
     if (i % columns != 0) ImGui::SameLine();
-    if (show_card(app, i, width)) opened = gallery.cards[static_cast<std::size_t>(i)].file;
+    if (show_card(app, app.file_dialogs, i, width)) opened = gallery.cards[static_cast<std::size_t>(i)].file;
     if (moved && i == gallery.chosen) ImGui::SetScrollHereY();
   }
   ImGui::EndChild();

@@ -1,4 +1,5 @@
 #include "app/report/linear_model_file.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -10,7 +11,7 @@ namespace flyball {
 
 void show_model_dialog(App& app) {
   app.dialog.wanted = Dialog::export_model;
-  show_folder(app, usual_folder(app));
+  show_folder(app.file_dialogs, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   app.file_dialogs.path =
@@ -18,17 +19,18 @@ void show_model_dialog(App& app) {
 }
 
 void model_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::export_model, "Export the linear model", 520)) return;
-  bool accepted = path_field(app, "model", "Name");
-  folder_line(app, "model");
+  if (!begin_dialog(app, app.dialog, Dialog::export_model, "Export the linear model", 520)) return;
+  bool accepted = path_field(app, app.file_dialogs, "model", "Name");
+  folder_line(app, app.file_dialogs, "model");
   const auto& found = app.study.transfer.found.found;
-  const std::string ending = typed_path(app).extension().string();
-  const std::filesystem::path file = typed_file(app, linear_model_format(ending) ? ending : ".m");
+  const std::string ending = typed_path(app.file_dialogs).extension().string();
+  const std::filesystem::path file =
+      typed_file(app.file_dialogs, linear_model_format(ending) ? ending : ".m");
   const auto format = linear_model_format(file.extension().string());
   paragraph(
       "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
       format ? colors_of(app).dim : colors_of(app).bad);
-  const bool replaces = asks_to_replace(app, file);
+  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
   if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = has_transfer(app) && format && !app.file_dialogs.path.empty();
@@ -39,9 +41,9 @@ void model_dialog(App& app) {
   std::error_code ignored;
   if (text_button(app, "model/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app), ignored)) {
-    entered_file(app, false); // goes there
-  } else if (accepted && usable && may_replace(app, file)) {
+  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored)) {
+    entered_file(app.file_dialogs, false); // goes there
+  } else if (accepted && usable && may_replace(app, app.file_dialogs, file)) {
     try {
       replace_file(file, linear_model_file(*found->of.mechanism, found->result.model, *format));
       app.notice = "Saved " + file.string();

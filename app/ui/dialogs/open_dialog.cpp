@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -27,17 +28,17 @@ void choose(App& app, const fs::path& file) {
 }
 
 // Returns the one that was clicked.
-fs::path recent_list(App& app) {
+fs::path recent_list(const Session& session, Ui& ui) {
   fs::path clicked;
-  ImGui::BeginChild("recent", {recent_width * app.scale, list_height * app.scale});
+  ImGui::BeginChild("recent", {recent_width * ui.scale, list_height * ui.scale});
   ImGui::TextDisabled("Recent");
-  for (std::size_t i = 0; i < app.files.recent.size(); ++i) {
-    const fs::path& file = app.files.recent[i];
+  for (std::size_t i = 0; i < session.files.recent.size(); ++i) {
+    const fs::path& file = session.files.recent[i];
     ImGui::PushID(file.c_str());
     const std::string text = std::string(icon::file) + "  " + file.filename().string();
     if (ImGui::Selectable(text.c_str(), false, ImGuiSelectableFlags_DontClosePopups)) clicked = file;
     ImGui::PopID();
-    note_widget(app.widgets, "open/recent/" + std::to_string(i), KeyUse::row);
+    note_widget(ui.widgets, "open/recent/" + std::to_string(i), KeyUse::row);
     help_on_hover(file.c_str());
   }
   ImGui::EndChild();
@@ -48,30 +49,31 @@ fs::path recent_list(App& app) {
 
 void show_open_dialog(App& app) {
   const fs::path& file = app.document.file();
-  show_folder(app, !file.empty() ? file.parent_path() : usual_folder(app));
+  show_folder(app.file_dialogs, !file.empty() ? file.parent_path() : usual_folder(app));
   app.dialog.wanted = Dialog::open;
   app.file_dialogs.path.clear();
 }
 
 void open_dialog(App& app) {
   const bool with_recent = !app.files.recent.empty();
-  if (!begin_dialog(app, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
-  const bool entered = path_field(app, "open", "Name, or part of it, or a path");
+  if (!begin_dialog(app, app.dialog, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
+  const bool entered = path_field(app, app.file_dialogs, "open", "Name, or part of it, or a path");
   std::optional<fs::path> file;
   if (with_recent) {
-    if (const fs::path recent = recent_list(app); !recent.empty()) file = recent;
+    if (const fs::path recent = recent_list(app, app); !recent.empty()) file = recent;
     ImGui::SameLine(0, 16 * app.scale);
     ImGui::BeginGroup();
   }
-  folder_line(app, "open");
+  folder_line(app, app.file_dialogs, "open");
   const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
-  if (auto clicked = file_list(app, "open", ".json", true, list_height * app.scale - line)) file = clicked;
+  if (auto clicked = file_list(app, app.file_dialogs, "open", ".json", true, list_height * app.scale - line))
+    file = clicked;
   if (with_recent) ImGui::EndGroup();
   if (!app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool pressed = text_button(app, "open/open", "Open", true);
   if (entered || pressed)
-    if (auto typed = entered_file(app, true)) file = typed;
+    if (auto typed = entered_file(app.file_dialogs, true)) file = typed;
   ImGui::SameLine();
   if (text_button(app, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
   if (!app.options.scenes.empty()) {

@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -30,20 +31,20 @@ std::string title(const Leftover& leftover) {
   return file.empty() ? leftover.autosave.name + " (no file yet)" : file.filename().string();
 }
 
-void row(App& app, int i) {
-  const Leftover& leftover = app.files.leftovers[static_cast<std::size_t>(i)];
-  const UiColors& colors = colors_of(app);
+void row(Session& session, Ui& ui, FileDialogState& file_dialogs, int i) {
+  const Leftover& leftover = session.files.leftovers[static_cast<std::size_t>(i)];
+  const UiColors& colors = colors_of(ui);
   ImGui::PushID(i);
   const float left = ImGui::GetCursorPosX();
-  if (ImGui::Selectable("##leftover", app.file_dialogs.chosen_leftover == i,
-                        ImGuiSelectableFlags_DontClosePopups, {0, ImGui::GetTextLineHeight()}))
-    app.file_dialogs.chosen_leftover = i;
-  note_widget(app.widgets, "recover/" + std::to_string(i), KeyUse::row);
-  if (app.file_dialogs.chosen_leftover == i) mark_chosen(app.widgets);
+  if (ImGui::Selectable("##leftover", file_dialogs.chosen_leftover == i, ImGuiSelectableFlags_DontClosePopups,
+                        {0, ImGui::GetTextLineHeight()}))
+    file_dialogs.chosen_leftover = i;
+  note_widget(ui.widgets, "recover/" + std::to_string(i), KeyUse::row);
+  if (file_dialogs.chosen_leftover == i) mark_chosen(ui.widgets);
   help_on_hover(leftover.autosave.file.c_str());
-  ImGui::SameLine(left + 4 * app.scale);
-  clipped_text(title(leftover), 260 * app.scale);
-  ImGui::SameLine(290 * app.scale);
+  ImGui::SameLine(left + 4 * ui.scale);
+  clipped_text(title(leftover), 260 * ui.scale);
+  ImGui::SameLine(290 * ui.scale);
   ImGui::TextColored(colors.dim, "%s", time_text(leftover.autosave.made).c_str());
   ImGui::PopID();
 }
@@ -51,7 +52,7 @@ void row(App& app, int i) {
 } // namespace
 
 void recovery_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::recover, "Unsaved work was found", 500)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::recover, "Unsaved work was found", 500)) return;
   FileState& files = app.files;
   const UiColors& colors = colors_of(app);
   const int count = static_cast<int>(files.leftovers.size());
@@ -59,7 +60,7 @@ void recovery_dialog(App& app) {
   paragraph("The program ended before this was saved:", colors.dim);
   ImGui::PushStyleColor(ImGuiCol_Header, colors.raised);
   for (int i = 0; i < count; ++i)
-    row(app, i);
+    row(app, app, app.file_dialogs, i);
   ImGui::PopStyleColor();
   const auto chosen = static_cast<std::size_t>(app.file_dialogs.chosen_leftover);
   if (chosen < files.leftovers.size() && files.leftovers[chosen].outdated)

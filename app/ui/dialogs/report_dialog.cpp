@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -8,7 +9,7 @@ namespace flyball {
 
 void show_report_dialog(App& app) {
   app.dialog.wanted = Dialog::export_report;
-  show_folder(app, usual_folder(app));
+  show_folder(app.file_dialogs, usual_folder(app));
   app.file_dialogs.replacing.clear();
   const std::filesystem::path& file = app.document.file();
   app.file_dialogs.path =
@@ -16,17 +17,17 @@ void show_report_dialog(App& app) {
 }
 
 void report_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::export_report, "Export a report", 520)) return;
-  bool accepted = path_field(app, "report", "Name");
-  folder_line(app, "report");
+  if (!begin_dialog(app, app.dialog, Dialog::export_report, "Export a report", 520)) return;
+  bool accepted = path_field(app, app.file_dialogs, "report", "Name");
+  folder_line(app, app.file_dialogs, "report");
   paragraph("One page for a browser or printer: picture, steady state, stability and modes, loads, response "
             "curves, "
             "parameters and assumptions.",
             colors_of(app).dim);
-  const std::filesystem::path file = typed_file(app, ".html");
-  const bool replaces = asks_to_replace(app, file);
+  const std::filesystem::path file = typed_file(app.file_dialogs, ".html");
+  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
   ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = !app.file_dialogs.path.empty() && !writing_report(app);
+  const bool usable = !app.file_dialogs.path.empty() && !writing_report(app.report);
   ImGui::BeginDisabled(!usable);
   accepted = text_button(app, "report/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
@@ -34,9 +35,9 @@ void report_dialog(App& app) {
   std::error_code ignored;
   if (text_button(app, "report/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app), ignored)) {
-    entered_file(app, false); // goes there
-  } else if (accepted && usable && may_replace(app, file)) {
+  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored)) {
+    entered_file(app.file_dialogs, false); // goes there
+  } else if (accepted && usable && may_replace(app, app.file_dialogs, file)) {
     app.export_request = ExportRequest{.file = file, .width = 1440, .height = 900, .report = true};
     close_dialog();
   }

@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -19,8 +20,8 @@ std::string words_of(std::string stem) {
 }
 
 void save(App& app) {
-  const fs::path file = typed_file(app, ".json");
-  if (!may_replace(app, file)) return;
+  const fs::path file = typed_file(app.file_dialogs, ".json");
+  if (!may_replace(app, app.file_dialogs, file)) return;
   // A mechanism that nobody has named is called as its file is.
   if (app.document.file().empty() && app.mechanism().name == Document::empty_mechanism().name)
     edit(app, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
@@ -33,24 +34,25 @@ void save(App& app) {
 
 } // namespace
 
-void ask_where_to_save(App& app, std::string why) {
-  const fs::path& file = app.document.file();
+void ask_where_to_save(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
+                       std::string why) {
+  const fs::path& file = session.document.file();
   std::error_code ignored;
-  show_folder(app, is_example(app) ? fs::current_path(ignored) : usual_folder(app));
-  app.file_dialogs.message = std::move(why);
-  app.file_dialogs.replacing.clear();
-  app.dialog.wanted = Dialog::save;
-  app.file_dialogs.path = file.empty() ? file_stem(app.mechanism().name) + ".json" : file.filename().string();
+  show_folder(file_dialogs, is_example(session) ? fs::current_path(ignored) : usual_folder(session));
+  file_dialogs.message = std::move(why);
+  file_dialogs.replacing.clear();
+  dialog.wanted = Dialog::save;
+  file_dialogs.path = file.empty() ? file_stem(session.mechanism().name) + ".json" : file.filename().string();
 }
 
 void save_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::save, "Save as", 560)) return;
-  const bool entered = path_field(app, "save", "Name");
-  folder_line(app, "save");
-  if (const auto clicked = file_list(app, "save", ".json", false, 220 * app.scale))
+  if (!begin_dialog(app, app.dialog, Dialog::save, "Save as", 560)) return;
+  const bool entered = path_field(app, app.file_dialogs, "save", "Name");
+  folder_line(app, app.file_dialogs, "save");
+  if (const auto clicked = file_list(app, app.file_dialogs, "save", ".json", false, 220 * app.scale))
     app.file_dialogs.path = clicked->filename().string();
-  const fs::path file = typed_file(app, ".json");
-  const bool replaces = asks_to_replace(app, file);
+  const fs::path file = typed_file(app.file_dialogs, ".json");
+  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
   if (!replaces && !app.file_dialogs.message.empty())
     paragraph(app.file_dialogs.message, colors_of(app).bad);
   else if (!replaces && is_example(app))
@@ -66,8 +68,8 @@ void save_dialog(App& app) {
     app.file_dialogs.then = {};
   } else if (usable && (entered || pressed)) {
     std::error_code ignored;
-    if (fs::is_directory(typed_path(app), ignored))
-      entered_file(app, false); // goes there
+    if (fs::is_directory(typed_path(app.file_dialogs), ignored))
+      entered_file(app.file_dialogs, false); // goes there
     else
       save(app);
   }

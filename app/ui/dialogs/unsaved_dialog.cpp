@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -19,16 +20,17 @@ std::string question(const Session& session) {
 }
 
 void save_first(App& app) {
-  if (app.document.file().empty() || is_example(app)) return ask_where_to_save(app, {});
+  if (app.document.file().empty() || is_example(app))
+    return ask_where_to_save(app, app.dialog, app.file_dialogs, {});
   if (std::string why = save_to(app, app.document.file()); !why.empty())
-    return ask_where_to_save(app, std::move(why));
+    return ask_where_to_save(app, app.dialog, app.file_dialogs, std::move(why));
   leave_now(app);
 }
 
 } // namespace
 
 void unsaved_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::unsaved, "Save the changes?", 440)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::unsaved, "Save the changes?", 440)) return;
   const UiColors& colors = colors_of(app);
   if (ImGui::IsWindowAppearing() && app.files.watch.differs()) app.files.conflict = true;
   paragraph(question(app), colors.text);

@@ -69,7 +69,7 @@ std::vector<ImVec2> on_screen(const ViewInput& input, const std::vector<Vec3>& p
 
 } // namespace
 
-void draw_body_outline(const App& app, const ViewInput& input, const NewBody& body) {
+void draw_body_outline(const Ui& ui, const ViewInput& input, const NewBody& body) {
   std::vector<Vec3> points;
   std::vector<std::vector<Vec3>> edges;
   const Vec3 axis = (body.to - body.from).stableNormalized();
@@ -90,7 +90,7 @@ void draw_body_outline(const App& app, const ViewInput& input, const NewBody& bo
         if (!(i & bit)) edges.push_back({points[i], points[i | bit]});
     break;
   }
-  const Color& accent = palette(app.theme).accent;
+  const Color& accent = palette(ui.theme).accent;
   const std::vector<ImVec2> hull = convex_hull(on_screen(input, points));
   if (hull.size() < 3) return;
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -98,9 +98,9 @@ void draw_body_outline(const App& app, const ViewInput& input, const NewBody& bo
   for (const std::vector<Vec3>& edge : edges) {
     const std::vector<ImVec2> line = on_screen(input, edge);
     list.AddPolyline(line.data(), static_cast<int>(line.size()), packed(accent, 0.45f),
-                     edge.size() > 2 ? ImDrawFlags_Closed : ImDrawFlags_None, app.scale);
+                     edge.size() > 2 ? ImDrawFlags_Closed : ImDrawFlags_None, ui.scale);
   }
-  draw_lines(app, hull, accent, 1.6f, true);
+  draw_lines(ui, hull, accent, 1.6f, true);
 }
 
 } // namespace flyball

@@ -6,6 +6,6 @@
 
 namespace flyball {
 
-void draw_body_outline(const App& app, const ViewInput& input, const NewBody& body);
+void draw_body_outline(const Ui& ui, const ViewInput& input, const NewBody& body);
 
 } // namespace flyball

@@ -14,9 +14,9 @@ const char* drive_refused(const Joint& joint, int coordinate) {
   return nullptr;
 }
 
-void set_driven(App& app, const std::string& joint, int coordinate, bool driven) {
+void set_driven(Session& session, Ui& ui, const std::string& joint, int coordinate, bool driven) {
   constexpr double rad_per_s = 10, m_per_s = 0.1; // of a new drive
-  edit_joint(app, (driven ? "Add drive to " : "Remove drive of ") + joint, joint, [=](Joint& same) {
+  edit_joint(session, ui, (driven ? "Add drive to " : "Remove drive of ") + joint, joint, [=](Joint& same) {
     const auto i = static_cast<std::size_t>(coordinate);
     if (i >= same.coordinates.size()) return;
     Coordinate& c = same.coordinates[i];

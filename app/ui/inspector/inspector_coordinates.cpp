@@ -23,7 +23,8 @@ constexpr double usual_mu = 0.1, usual_radius = 0.01; // m
 
 // One coordinate and how it is called in addresses and widgets.
 struct CoordinateRows {
-  App& app;
+  Session& session;
+  Ui& ui;
   const Joint& joint;
   int i;
 
@@ -46,34 +47,34 @@ struct CoordinateRows {
   }
 
   const CoordinateSolution* solution() const {
-    if (!converged(app)) return nullptr;
-    for (const CoordinateSolution& found : app.answer.solution.coordinates)
+    if (!converged(session)) return nullptr;
+    for (const CoordinateSolution& found : session.answer.solution.coordinates)
       if (found.joint == joint.name && found.index == i) return &found;
     return nullptr;
   }
 
   void change(const std::string& step, const std::function<void(Coordinate&)>& edit) const {
-    edit_joint(app, step, joint.name, [edit, i = static_cast<std::size_t>(i)](Joint& same) {
+    edit_joint(session, ui, step, joint.name, [edit, i = static_cast<std::size_t>(i)](Joint& same) {
       if (i < same.coordinates.size()) edit(same.coordinates[i]);
     });
   }
 
   // Beside the one before, where there is room for it; else closer below than another row would be.
   void beside_last(const char* label) const {
-    const float width = ImGui::GetFrameHeight() + ImGui::CalcTextSize(label).x + 10 * app.scale;
+    const float width = ImGui::GetFrameHeight() + ImGui::CalcTextSize(label).x + 10 * ui.scale;
     const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    const float gap = 6 * app.scale;
+    const float gap = 6 * ui.scale;
     if (ImGui::GetItemRectMax().x + gap + width <= right)
       ImGui::SameLine(0, gap);
     else
-      ImGui::SetCursorPosY(ImGui::GetCursorPosY() - std::round(3 * app.scale));
+      ImGui::SetCursorPosY(ImGui::GetCursorPosY() - std::round(3 * ui.scale));
   }
 
   // A tick; `removed` and `added` edit the coordinate.
   void tick(const std::string& word, const char* label, const char* what, bool on, const char* help,
             const char* refused, const std::function<void(Coordinate&)>& removed,
             const std::function<void(Coordinate&)>& added) const {
-    if (!check_row(app, widget(key(word)), label, on, help, on ? nullptr : refused)) return;
+    if (!check_row(ui, widget(key(word)), label, on, help, on ? nullptr : refused)) return;
     const std::string step =
         (on ? "Remove " : "Add ") + std::string(what) + (on ? " of " : " to ") + joint.name;
     change(step, on ? removed : added);
@@ -81,7 +82,7 @@ struct CoordinateRows {
 
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
               const char* help, Least least = Least::any, const std::function<void()>& reset = {}) const {
-    quantity_row(app, label,
+    quantity_row(session, ui, label,
                  {.name = widget(address),
                   .value = value,
                   .unit = unit,
@@ -95,11 +96,11 @@ struct CoordinateRows {
   void settled() const {
     const CoordinateSolution* found = solution();
     // Words and digits are of different heights.
-    const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(app.scale);
+    const float next = ImGui::GetCursorPosY() + ImGui::GetTextLineHeightWithSpacing() + std::round(ui.scale);
     if (found && found->speed) {
-      const NumberStyle& numbers = app.options.numbers;
-      const ShownUnit unit = rate_unit(angle(), app.units);
-      row(app, angle() ? "Turns at" : "Moves at",
+      const NumberStyle& numbers = session.options.numbers;
+      const ShownUnit unit = rate_unit(angle(), session.units);
+      row(ui, angle() ? "Turns at" : "Moves at",
           value_text(unit.shown(*found->speed), found->speed_error * unit.factor, numbers), unit.text.c_str(),
           !coordinate().drive ? "The rate at which loops and gears make it turn in the steady state."
           : coordinate().drive->torque
@@ -110,44 +111,44 @@ struct CoordinateRows {
     } else if (!found) {
       no_value("not known", "There is no steady state of which this could be told.");
     } else {
-      const NumberStyle& numbers = app.options.numbers;
-      const ShownUnit unit = coordinate_unit(angle(), app.units);
+      const NumberStyle& numbers = session.options.numbers;
+      const ShownUnit unit = coordinate_unit(angle(), session.units);
       std::string help = value_text(found->value, found->error, numbers) + " " + value_unit();
       if (found->error > 0)
         help += " ± " + magnitude_text(std::max(found->error, numbers.noise), numbers) + " " + value_unit();
-      row(app, "Settles at", value_text(unit.shown(found->value), found->error * unit.factor, numbers),
+      row(ui, "Settles at", value_text(unit.shown(found->value), found->error * unit.factor, numbers),
           unit.text.c_str(), ("In the steady state: " + help + ".").c_str());
     }
-    note_widget(app.widgets, widget(key("settles")));
+    note_widget(ui.widgets, widget(key("settles")));
     ImGui::SetCursorPosY(next);
   }
 
   // The row of a value that there is not.
   void no_value(const char* word, const char* help) const {
     ImGui::BeginDisabled();
-    row(app, "Settles at", word, "", help);
+    row(ui, "Settles at", word, "", help);
     ImGui::EndDisabled();
   }
 
   // The drawn pose in which the coordinate has another value; the mechanism stays the same.
   void move_to() const {
-    quantity_row(app, "Move to",
+    quantity_row(session, ui, "Move to",
                  {.name = widget(key("move")),
                   .value = coordinate().drawn,
                   .unit = value_unit(),
                   .help =
                       "Moves the mechanism along its joints until the coordinate has this value, as far as "
                       "loops and stops let it.",
-                  .set = [&app = app, name = joint.name, i = i](double value) {
-                    move_coordinate(app, name, i, value);
+                  .set = [&session = session, name = joint.name, i = i](double value) {
+                    move_coordinate(session, name, i, value);
                   }});
   }
 
   void drive() const {
     const bool on = coordinate().drive.has_value();
-    if (check_row(app, widget(key("drive")), "Drive", on, "Moves the coordinate at a constant speed.",
+    if (check_row(ui, widget(key("drive")), "Drive", on, "Moves the coordinate at a constant speed.",
                   on ? nullptr : drive_refused(joint, i)))
-      set_driven(app, joint.name, i, !on);
+      set_driven(session, ui, joint.name, i, !on);
   }
 
   void drive_numbers() const {
@@ -171,7 +172,7 @@ struct CoordinateRows {
 
   // Whether the drive gives a torque rather than a speed.
   void by_torque(bool on) const {
-    if (!check_row(app, widget(key("drive") + ".by_torque"), angle() ? "By torque" : "By force", on,
+    if (!check_row(ui, widget(key("drive") + ".by_torque"), angle() ? "By torque" : "By force", on,
                    angle() ? "The drive gives a torque, and the speed is found."
                            : "The drive gives a force, and the speed is found.",
                    nullptr))
@@ -187,7 +188,7 @@ struct CoordinateRows {
   // Whether the drive keeps its momentum rather than its speed.
   void left_to_itself(bool on) const {
     if (!check_row(
-            app, widget(key("drive") + ".keeps"), "Keeps momentum", on,
+            ui, widget(key("drive") + ".keeps"), "Keeps momentum", on,
             "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
             "and the steady speed is found.",
             !on && is_damped(coordinate()) ? "Not beside a damper, which would take the momentum." : nullptr))
@@ -273,8 +274,9 @@ struct CoordinateRows {
       const bool last = !coordinate().stop->lower || !coordinate().stop->upper;
       std::function<void()> reset;
       if (!last)
-        reset = [&app = app, rows = joint.name, at = static_cast<std::size_t>(i), which, word] {
-          edit_joint(app, std::string("Remove ") + word + " stop of " + rows, rows, [=](Joint& same) {
+        reset = [&session = session, &ui = ui, rows = joint.name, at = static_cast<std::size_t>(i), which,
+                 word] {
+          edit_joint(session, ui, std::string("Remove ") + word + " stop of " + rows, rows, [=](Joint& same) {
             if (at < same.coordinates.size() && same.coordinates[at].stop)
               ((*same.coordinates[at].stop).*which).reset();
           });
@@ -282,8 +284,8 @@ struct CoordinateRows {
       return number(label, address, *value, value_unit(), "Beyond this value the stop pushes back.",
                     Least::any, reset);
     }
-    row_label(app, label, "No limit on this side.");
-    if (text_button(app, widget(address) + "/add", "Add a limit"))
+    row_label(ui, label, "No limit on this side.");
+    if (text_button(ui, widget(address) + "/add", "Add a limit"))
       change(std::string("Add ") + word + " stop to " + joint.name, [which, usual](Coordinate& c) {
         if (c.stop) (*c.stop).*which = c.drawn + usual;
       });
@@ -332,7 +334,7 @@ struct CoordinateRows {
 
   // Whether the limit is that of a preload.
   void by_preload(bool on) const {
-    if (!check_row(app, widget(key("friction") + ".by_preload"), "By preload", on,
+    if (!check_row(ui, widget(key("friction") + ".by_preload"), "By preload", on,
                    "The limit is a coefficient of friction times what presses the parts together.", nullptr))
       return;
     change((on ? "Give the friction of " : "Find the friction by preload of ") + joint.name,
@@ -403,13 +405,14 @@ struct CoordinateRows {
 
 } // namespace
 
-void coordinate_sections(App& app, const Joint& joint) {
+void coordinate_sections(Session& session, Ui& ui, const Joint& joint) {
   const auto count = static_cast<int>(joint.coordinates.size());
   if (count != coordinate_count(joint.type)) return; // a mistake, told elsewhere
   for (int i = 0; i < count; ++i) {
-    const CoordinateRows rows{app, joint, i};
+    const CoordinateRows rows{session, ui, joint, i};
     const std::string section = "inspector/coordinate " + std::to_string(i);
-    if (inspector_section(app, section, coordinate_title(joint.type, i), count <= 2 || rows.acted_on()))
+    if (inspector_section(session, ui, section, coordinate_title(joint.type, i),
+                          count <= 2 || rows.acted_on()))
       rows.all();
   }
 }

@@ -18,14 +18,14 @@ std::string address_of(const Force& force, const std::string& key) {
   return "forces." + force.name + "." + key;
 }
 
-void spring_rows(App& app, const Force& force) {
+void spring_rows(Session& session, Ui& ui, const Force& force) {
   const Part part{PartKind::force, force.name};
   for (std::size_t end = 0; end < 2; ++end) {
-    body_end_row(app, part, force.bodies, end, end == 0 ? "From" : "To");
-    end_point_rows(app, part, force.points, end);
+    body_end_row(session, ui, part, force.bodies, end, end == 0 ? "From" : "To");
+    end_point_rows(session, ui, part, force.points, end);
   }
   if (force.force)
-    quantity_row(app, "Force",
+    quantity_row(session, ui, "Force",
                  {.name = "inspector/force",
                   .value = *force.force,
                   .unit = "N",
@@ -34,14 +34,14 @@ void spring_rows(App& app, const Force& force) {
                       "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
                       "[5 mm, 40 N]).",
                   .address = address_of(force, "force")},
-                 [&app, name = force.name] {
-                   edit_force(app, "Stiffness of " + name, name, [](Force& same) {
+                 [&session, &ui, name = force.name] {
+                   edit_force(session, ui, "Stiffness of " + name, name, [](Force& same) {
                      same.force.reset();
                      same.stiffness = usual_stiffness;
                    });
                  });
   else
-    quantity_row(app, "Stiffness",
+    quantity_row(session, ui, "Stiffness",
                  {.name = "inspector/stiffness",
                   .value = force.stiffness,
                   .unit = "N/m",
@@ -50,10 +50,11 @@ void spring_rows(App& app, const Force& force) {
                   .address = address_of(force, "stiffness")});
   std::function<void()> reset;
   if (force.free_length)
-    reset = [&app, name = force.name] {
-      edit_force(app, "Length of " + name + " as drawn", name, [](Force& same) { same.free_length.reset(); });
+    reset = [&session, &ui, name = force.name] {
+      edit_force(session, ui, "Length of " + name + " as drawn", name,
+                 [](Force& same) { same.free_length.reset(); });
     };
-  quantity_row(app, "Free length",
+  quantity_row(session, ui, "Free length",
                {.name = "inspector/free_length",
                 .value = force.free_length.value_or(drawn_distance(force.points)),
                 .unit = "m",
@@ -63,7 +64,7 @@ void spring_rows(App& app, const Force& force) {
                 .standard = !force.free_length},
                reset);
   if (force.damping_force)
-    return quantity_row(app, "Damping force",
+    return quantity_row(session, ui, "Damping force",
                         {.name = "inspector/damping_force",
                          .value = *force.damping_force,
                          .unit = "N",
@@ -71,13 +72,13 @@ void spring_rows(App& app, const Force& force) {
                                  "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
                                  "m/s, 90 N]).",
                          .address = address_of(force, "damping_force")},
-                        [&app, name = force.name] {
-                          edit_force(app, "Damping of " + name, name, [](Force& same) {
+                        [&session, &ui, name = force.name] {
+                          edit_force(session, ui, "Damping of " + name, name, [](Force& same) {
                             same.damping_force.reset();
                             same.damping = usual_damping;
                           });
                         });
-  quantity_row(app, "Damping",
+  quantity_row(session, ui, "Damping",
                {.name = "inspector/damping",
                 .value = force.damping,
                 .unit = "N s/m",
@@ -89,11 +90,12 @@ void spring_rows(App& app, const Force& force) {
 }
 
 // One number each, by what moves and what feels it.
-void matrix_rows(App& app, const Force& force, const std::string& key, const BearingMatrix& matrix,
-                 std::string_view unit, double usual, BearingMatrix Force::*member) {
+void matrix_rows(Session& session, Ui& ui, const Force& force, const std::string& key,
+                 const BearingMatrix& matrix, std::string_view unit, double usual,
+                 BearingMatrix Force::*member) {
   const std::string title = key == "stiffness" ? "Stiffness" : "Damping";
-  if (check_row(app, "inspector/" + key, title, !matrix.empty(), "A matrix by rows, in the bearing's axes."))
-    edit_force(app, title + " of " + force.name, force.name, [member, usual](Force& same) {
+  if (check_row(ui, "inspector/" + key, title, !matrix.empty(), "A matrix by rows, in the bearing's axes."))
+    edit_force(session, ui, title + " of " + force.name, force.name, [member, usual](Force& same) {
       const std::size_t size = bearing_size(same) == 6 ? 6 : 2;
       BearingMatrix& entries = same.*member;
       const bool had = !entries.empty();
@@ -106,7 +108,7 @@ void matrix_rows(App& app, const Force& force, const std::string& key, const Bea
   for (std::size_t i = 0; i < matrix.size(); ++i) {
     const std::string entry = std::to_string(i / size) + "." + std::to_string(i % size);
     quantity_row(
-        app, std::string(names[i / size]) + " by " + names[i % size],
+        session, ui, std::string(names[i / size]) + " by " + names[i % size],
         {.name = "inspector/" + key + "/" + std::to_string(i / size) + "/" + std::to_string(i % size),
          .value = matrix[i],
          .unit = std::string(fields::bearing_unit(unit, size, i / size, i % size)),
@@ -115,28 +117,29 @@ void matrix_rows(App& app, const Force& force, const std::string& key, const Bea
   }
 }
 
-void bearing_rows(App& app, const Force& force) {
+void bearing_rows(Session& session, Ui& ui, const Force& force) {
   const Part part{PartKind::force, force.name};
   for (std::size_t end = 0; end < 2; ++end)
-    body_end_row(app, part, force.bodies, end, end == 0 ? "In" : "Holds",
+    body_end_row(session, ui, part, force.bodies, end, end == 0 ? "In" : "Holds",
                  end == 0 ? bearing_in_help : bearing_holds_help);
-  vector_rows(app, "Point",
+  vector_rows(session, ui, "Point",
               {.name = "inspector/at",
                .value = force.at.value_or(Vec3::Zero()),
                .unit = "m",
                .help = "Where it is, in the world, as drawn.",
                .address = address_of(force, "at")});
-  vector_rows(app, "Axis",
+  vector_rows(session, ui, "Axis",
               {.name = "inspector/axis",
                .value = force.axis,
                .help = "Of what turns in it; x and y are across.",
                .address = address_of(force, "axis")});
   std::function<void()> reset;
   if (force.x_axis)
-    reset = [&app, name = force.name] {
-      edit_force(app, "x axis of " + name + " as usual", name, [](Force& same) { same.x_axis.reset(); });
+    reset = [&session, &ui, name = force.name] {
+      edit_force(session, ui, "x axis of " + name + " as usual", name,
+                 [](Force& same) { same.x_axis.reset(); });
     };
-  vector_rows(app, "x axis",
+  vector_rows(session, ui, "x axis",
               {.name = "inspector/x_axis",
                .value = bearing_x_towards(force),
                .help = force.x_axis ? "Where x is, in the plane across the axis; of any length."
@@ -147,10 +150,10 @@ void bearing_rows(App& app, const Force& force) {
               reset);
   constexpr std::array<std::string_view, 2> sizes{"2 rows", "6 rows"};
   const bool full = bearing_size(force) == 6;
-  if (const auto chosen = choice_row(app, "inspector/rows", "Matrices", sizes, full ? 1 : 0,
+  if (const auto chosen = choice_row(ui, "inspector/rows", "Matrices", sizes, full ? 1 : 0,
                                      "Of the shifts along x and y; or of three shifts and three turns.");
       chosen && (*chosen == 1) != full)
-    edit_force(app, "Rows of " + force.name, force.name, [](Force& same) {
+    edit_force(session, ui, "Rows of " + force.name, force.name, [](Force& same) {
       for (BearingMatrix* matrix : {&same.bearing_stiffness, &same.bearing_damping}) {
         if (matrix->empty()) continue;
         const std::size_t from = matrix->size() > 4 ? 6 : 2, to = 8 - from;
@@ -160,22 +163,23 @@ void bearing_rows(App& app, const Force& force) {
         *matrix = std::move(resized);
       }
     });
-  matrix_rows(app, force, "stiffness", force.bearing_stiffness, "N/m", usual_bearing_stiffness,
+  matrix_rows(session, ui, force, "stiffness", force.bearing_stiffness, "N/m", usual_bearing_stiffness,
               &Force::bearing_stiffness);
-  matrix_rows(app, force, "damping", force.bearing_damping, "N s/m", usual_bearing_damping,
+  matrix_rows(session, ui, force, "damping", force.bearing_damping, "N s/m", usual_bearing_damping,
               &Force::bearing_damping);
 }
 
-void point_rows(App& app, const Force& force) {
-  const int body = body_index(app.mechanism(), force.body);
+void point_rows(Session& session, Ui& ui, const Force& force) {
+  const int body = body_index(session.mechanism(), force.body);
   const Vec3 centre =
-      body < 0 ? Vec3(Vec3::Zero()) : app.mechanism().bodies[static_cast<std::size_t>(body)].position;
+      body < 0 ? Vec3(Vec3::Zero()) : session.mechanism().bodies[static_cast<std::size_t>(body)].position;
   std::function<void()> reset;
   if (force.at)
-    reset = [&app, name = force.name] {
-      edit_force(app, "Point of " + name + " at the mass centre", name, [](Force& same) { same.at.reset(); });
+    reset = [&session, &ui, name = force.name] {
+      edit_force(session, ui, "Point of " + name + " at the mass centre", name,
+                 [](Force& same) { same.at.reset(); });
     };
-  vector_rows(app, "Point",
+  vector_rows(session, ui, "Point",
               {.name = "inspector/at",
                .value = force.at.value_or(centre),
                .unit = "m",
@@ -186,9 +190,9 @@ void point_rows(App& app, const Force& force) {
               reset);
 }
 
-void vector_field(App& app, const Force& force) {
+void vector_field(Session& session, Ui& ui, const Force& force) {
   const bool torque = force.type == ForceType::torque;
-  vector_rows(app, torque ? "Torque" : "Force",
+  vector_rows(session, ui, torque ? "Torque" : "Force",
               {.name = "inspector/vector",
                .value = force.vector,
                .unit = torque ? "N m" : "N",
@@ -196,23 +200,22 @@ void vector_field(App& app, const Force& force) {
                                                         : "Components along the body's axes.",
                .address = address_of(force, "vector")});
   constexpr std::array<std::string_view, 2> frames{"world", "body"};
-  const auto chosen =
-      choice_row(app, "inspector/frame", "Axes", frames, static_cast<std::size_t>(force.frame),
-                 "World: it keeps its direction; body: it turns with the body.");
+  const auto chosen = choice_row(ui, "inspector/frame", "Axes", frames, static_cast<std::size_t>(force.frame),
+                                 "World: it keeps its direction; body: it turns with the body.");
   if (chosen)
-    edit_force(app, "Axes of " + force.name, force.name,
+    edit_force(session, ui, "Axes of " + force.name, force.name,
                [frame = static_cast<ForceFrame>(*chosen)](Force& same) { same.frame = frame; });
 }
 
-void drag_rows(App& app, const Force& force) {
-  quantity_row(app, "Linear",
+void drag_rows(Session& session, Ui& ui, const Force& force) {
+  quantity_row(session, ui, "Linear",
                {.name = "inspector/linear",
                 .value = force.linear,
                 .unit = "N s/m",
                 .help = "Force by the speed through the air.",
                 .least = Least::zero,
                 .address = address_of(force, "linear")});
-  quantity_row(app, "Quadratic",
+  quantity_row(session, ui, "Quadratic",
                {.name = "inspector/quadratic",
                 .value = force.quadratic,
                 .unit = "N s^2/m^2",
@@ -247,10 +250,10 @@ void set_form(Force& vane, VaneForm form) {
 }
 
 // Of lift and drag.
-void coefficient_row(App& app, const Force& vane, const std::string& label, const std::string& key,
-                     const std::optional<double>& coefficient, const char* help) {
+void coefficient_row(Session& session, Ui& ui, const Force& vane, const std::string& label,
+                     const std::string& key, const std::optional<double>& coefficient, const char* help) {
   if (!coefficient) return; // zero, as the file leaves it out
-  quantity_row(app, label,
+  quantity_row(session, ui, label,
                {.name = "inspector/" + key,
                 .value = *coefficient,
                 .unit = "",
@@ -258,44 +261,44 @@ void coefficient_row(App& app, const Force& vane, const std::string& label, cons
                 .address = address_of(vane, key)});
 }
 
-void vane_rows(App& app, const Force& vane) {
-  quantity_row(app, "Area",
+void vane_rows(Session& session, Ui& ui, const Force& vane) {
+  quantity_row(session, ui, "Area",
                {.name = "inspector/area",
                 .value = vane.area,
                 .unit = "m^2",
                 .help = "Of one side.",
                 .least = Least::zero,
                 .address = address_of(vane, "area")});
-  vector_rows(app, "Normal",
+  vector_rows(session, ui, "Normal",
               {.name = "inspector/normal",
                .value = vane.normal,
                .help = "Square to the plate, as drawn; of any length, either way.",
                .address = address_of(vane, "normal")});
   constexpr std::array<std::string_view, 3> forms{"plate", "blade", "airfoil"};
   const auto chosen =
-      choice_row(app, "inspector/form", "Form", forms, static_cast<std::size_t>(form_of(vane)),
+      choice_row(ui, "inspector/form", "Form", forms, static_cast<std::size_t>(form_of(vane)),
                  "On a blade flow along its span does nothing; a plate is alike all round. An airfoil is a "
                  "blade with lift and drag by the direction of the flow.");
   if (chosen)
-    edit_force(app, "Form of " + vane.name, vane.name,
+    edit_force(session, ui, "Form of " + vane.name, vane.name,
                [form = static_cast<VaneForm>(*chosen)](Force& same) { set_form(same, form); });
   if (vane.chord)
-    vector_rows(app, "Chord",
+    vector_rows(session, ui, "Chord",
                 {.name = "inspector/chord",
                  .value = *vane.chord,
                  .help = "Along the flow over the blade, from its leading edge on, as drawn; of any length.",
                  .address = address_of(vane, "chord")});
   if (has_polar(vane)) {
     coefficient_row(
-        app, vane, "Lift coefficient", "lift", vane.lift,
+        session, ui, vane, "Lift coefficient", "lift", vane.lift,
         "Of the force square to the flow: an expression of the incidence, the angle from the chord "
         "to the flow towards the normal, such as =table(incidence, [-180 deg, 0], [-90 deg, 0], "
         "[-12 deg, -1.1], [12 deg, 1.1], [90 deg, 0], [180 deg, 0]).");
-    coefficient_row(app, vane, "Drag coefficient", "drag", vane.drag,
+    coefficient_row(session, ui, vane, "Drag coefficient", "drag", vane.drag,
                     "Of the force along the flow, such as =0.01 + 1.2*sin(incidence)^2; zero or more.");
     return;
   }
-  quantity_row(app, "cn (normal)",
+  quantity_row(session, ui, "cn (normal)",
                {.name = "inspector/cn",
                 .value = vane.cn,
                 .unit = "",
@@ -304,7 +307,7 @@ void vane_rows(App& app, const Force& vane) {
                         "stream 1.2, a thin blade up to 2 pi.",
                 .least = Least::zero,
                 .address = address_of(vane, "cn")});
-  quantity_row(app, "cd (drag)",
+  quantity_row(session, ui, "cd (drag)",
                {.name = "inspector/cd",
                 .value = vane.cd,
                 .unit = "",
@@ -315,26 +318,27 @@ void vane_rows(App& app, const Force& vane) {
 
 } // namespace
 
-void force_inspector(App& app, const Force& force) {
-  name_row(app, {PartKind::force, force.name});
-  text_row(app, "inspector/description", "Note", force.description, "A note for whoever reads the scene.",
-           [&app, name = force.name](const std::string& text) {
-             edit_force(app, "Describe " + name, name, [text](Force& same) { same.description = text; });
-           });
-  if (force.type == ForceType::spring) return spring_rows(app, force);
-  if (force.type == ForceType::bearing) return bearing_rows(app, force);
-  const std::vector<std::string> choices = body_choices(app.mechanism(), false);
+void force_inspector(Session& session, Ui& ui, const Force& force) {
+  name_row(session, ui, {PartKind::force, force.name});
+  text_row(
+      session, ui, "inspector/description", "Note", force.description, "A note for whoever reads the scene.",
+      [&session, &ui, name = force.name](const std::string& text) {
+        edit_force(session, ui, "Describe " + name, name, [text](Force& same) { same.description = text; });
+      });
+  if (force.type == ForceType::spring) return spring_rows(session, ui, force);
+  if (force.type == ForceType::bearing) return bearing_rows(session, ui, force);
+  const std::vector<std::string> choices = body_choices(session.mechanism(), false);
   if (const auto chosen =
-          name_choice_row(app, "inspector/body", "Body", choices, force.body, "The body it acts on."))
-    edit_force(app, "Body of " + force.name, force.name,
+          name_choice_row(ui, "inspector/body", "Body", choices, force.body, "The body it acts on."))
+    edit_force(session, ui, "Body of " + force.name, force.name,
                [chosen = *chosen](Force& same) { same.body = chosen; });
-  point_rows(app, force);
+  point_rows(session, ui, force);
   if (force.type == ForceType::drag)
-    drag_rows(app, force);
+    drag_rows(session, ui, force);
   else if (force.type == ForceType::vane)
-    vane_rows(app, force);
+    vane_rows(session, ui, force);
   else
-    vector_field(app, force);
+    vector_field(session, ui, force);
 }
 
 } // namespace flyball

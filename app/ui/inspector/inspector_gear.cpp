@@ -19,26 +19,26 @@ std::string gear_address(const Joint& gear, const char* key) {
   return "joints." + gear.name + "." + key;
 }
 
-void end_rows(App& app, const Joint& gear) {
+void end_rows(Session& session, Ui& ui, const Joint& gear) {
   std::vector<std::string> choices;
-  for (const Joint& other : app.mechanism().joints)
+  for (const Joint& other : session.mechanism().joints)
     for (int i = 0; i < coordinate_count(other.type); ++i)
       if (!is_rotation_vector(other.type, i)) choices.push_back(coordinate_name(other, i));
   constexpr std::array<const char*, 2> labels{"Joint a", "Joint b"};
   for (std::size_t end = 0; end < 2; ++end) {
     const std::string name = "inspector/joints/" + std::to_string(end);
-    const auto chosen = name_choice_row(app, name, labels[end], choices, gear.joints[end],
+    const auto chosen = name_choice_row(ui, name, labels[end], choices, gear.joints[end],
                                         "A coordinate the gear couples: b = ratio a + offset.");
     if (chosen)
-      edit_joint(app, "Joints of " + gear.name, gear.name, [end, chosen = *chosen](Joint& same) {
+      edit_joint(session, ui, "Joints of " + gear.name, gear.name, [end, chosen = *chosen](Joint& same) {
         if (same.joints[1 - end] == chosen) same.joints[1 - end] = same.joints[end];
         same.joints[end] = chosen;
       });
   }
 }
 
-void kind_row(App& app, const Joint& gear) {
-  std::vector<GearKind> kinds = gear_kinds(app.mechanism(), gear.joints);
+void kind_row(Session& session, Ui& ui, const Joint& gear) {
+  std::vector<GearKind> kinds = gear_kinds(session.mechanism(), gear.joints);
   if (std::ranges::count(kinds, gear.kind) == 0) kinds.push_back(gear.kind); // which does not suit them
   if (kinds.size() < 2) return;
   std::vector<std::string_view> words;
@@ -46,37 +46,38 @@ void kind_row(App& app, const Joint& gear) {
     words.push_back(type_name(kind));
   const auto present = static_cast<std::size_t>(std::ranges::find(kinds, gear.kind) - kinds.begin());
   const auto chosen =
-      choice_row(app, "inspector/kind", "Kind", words, present,
+      choice_row(ui, "inspector/kind", "Kind", words, present,
                  "What ties the two coordinates; another kind has the same ratio, by numbers of its own.");
   if (chosen)
-    edit_later(app, "Kind of " + gear.name,
+    edit_later(session, ui, "Kind of " + gear.name,
                [name = gear.name, kind = kinds[*chosen]](Mechanism& m, Selection&) {
                  const int j = joint_index(m, name);
                  if (j >= 0) change_gear_kind(m, m.joints[static_cast<std::size_t>(j)], kind);
                });
 }
 
-void belt_rows(App& app, const Joint& belt) {
+void belt_rows(Session& session, Ui& ui, const Joint& belt) {
   constexpr std::array<const char*, 2> labels{"Radius a", "Radius b"}, keys{"radii.0", "radii.1"},
       helps{"Of the wheel on joint a.", "Of the wheel on joint b."};
   for (std::size_t end = 0; end < 2; ++end)
-    quantity_row(app, labels[end],
+    quantity_row(session, ui, labels[end],
                  {.name = "inspector/radii/" + std::to_string(end),
                   .value = belt.radii[end],
                   .unit = "m",
                   .help = helps[end],
                   .least = Least::above_zero,
                   .address = gear_address(belt, keys[end])});
-  if (check_row(app, "inspector/crossed", "Crossed", belt.crossed,
+  if (check_row(ui, "inspector/crossed", "Crossed", belt.crossed,
                 "Whether the belt is crossed, so that the wheels turn against each other."))
-    edit_joint(app, "Cross " + belt.name, belt.name, [](Joint& same) { same.crossed = !same.crossed; });
+    edit_joint(session, ui, "Cross " + belt.name, belt.name,
+               [](Joint& same) { same.crossed = !same.crossed; });
 }
 
-void ratio_rows(App& app, const Joint& gear, const std::string& unit) {
+void ratio_rows(Session& session, Ui& ui, const Joint& gear, const std::string& unit) {
   switch (gear.kind) {
-  case GearKind::belt: return belt_rows(app, gear);
+  case GearKind::belt: return belt_rows(session, ui, gear);
   case GearKind::rack:
-    return quantity_row(app, "Radius",
+    return quantity_row(session, ui, "Radius",
                         {.name = "inspector/radius",
                          .value = gear.radii[0],
                          .unit = "m",
@@ -86,7 +87,7 @@ void ratio_rows(App& app, const Joint& gear, const std::string& unit) {
                          .address = gear_address(gear, "radius")});
   case GearKind::screw:
     return quantity_row(
-        app, "Lead",
+        session, ui, "Lead",
         {.name = "inspector/lead",
          .value = gear.lead,
          .unit = "m",
@@ -94,7 +95,7 @@ void ratio_rows(App& app, const Joint& gear, const std::string& unit) {
          .address = gear_address(gear, "lead")});
   case GearKind::gear: break;
   }
-  quantity_row(app, "Ratio",
+  quantity_row(session, ui, "Ratio",
                {.name = "inspector/ratio",
                 .value = gear.ratio,
                 .unit = unit,
@@ -104,32 +105,33 @@ void ratio_rows(App& app, const Joint& gear, const std::string& unit) {
 
 } // namespace
 
-void gear_rows(App& app, const Joint& gear) {
-  kind_row(app, gear);
-  end_rows(app, gear);
+void gear_rows(Session& session, Ui& ui, const Joint& gear) {
+  kind_row(session, ui, gear);
+  end_rows(session, ui, gear);
   const auto unit_of = [&](std::size_t end) -> std::string {
-    const auto [other, i] = find_coordinate(app.mechanism(), gear.joints[end]);
+    const auto [other, i] = find_coordinate(session.mechanism(), gear.joints[end]);
     if (other < 0) return "";
-    return is_angle(app.mechanism().joints[static_cast<std::size_t>(other)].type, i) ? "rad" : "m";
+    return is_angle(session.mechanism().joints[static_cast<std::size_t>(other)].type, i) ? "rad" : "m";
   };
   const std::string a = unit_of(0), b = unit_of(1);
-  ratio_rows(app, gear, a == b ? "" : b + "/" + a);
+  ratio_rows(session, ui, gear, a == b ? "" : b + "/" + a);
   std::function<void()> reset;
   if (gear.offset)
-    reset = [&app, name = gear.name] {
-      edit_joint(app, "Offset of " + name + " as drawn", name, [](Joint& same) { same.offset.reset(); });
+    reset = [&session, &ui, name = gear.name] {
+      edit_joint(session, ui, "Offset of " + name + " as drawn", name,
+                 [](Joint& same) { same.offset.reset(); });
     };
-  quantity_row(app, "Offset",
+  quantity_row(session, ui, "Offset",
                {.name = "inspector/offset",
-                .value = gear.offset.value_or(drawn_offset(app.mechanism(), gear)),
+                .value = gear.offset.value_or(drawn_offset(session.mechanism(), gear)),
                 .unit = b,
                 .help = "Where b stands while a is zero.",
                 .address = gear_address(gear, "offset"),
                 .standard = !gear.offset},
                reset);
   const Command& backlash = command("edit.backlash");
-  if (text_button(app, "inspector/edit.backlash", backlash.title))
-    later(app, [&app] { give_backlash_to_selected(app); });
+  if (text_button(ui, "inspector/edit.backlash", backlash.title))
+    later(ui, [&session] { give_backlash_to_selected(session); });
   help_on_hover(backlash.help);
 }
 

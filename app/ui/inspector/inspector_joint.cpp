@@ -18,7 +18,7 @@ std::string address_of(const Joint& joint, const std::string& key) {
   return "joints." + joint.name + "." + key;
 }
 
-void type_row(App& app, const Joint& joint) {
+void type_row(Session& session, Ui& ui, const Joint& joint) {
   constexpr std::array types{JointType::revolute,  JointType::prismatic, JointType::cylindrical,
                              JointType::universal, JointType::spherical, JointType::planar,
                              JointType::free,      JointType::fixed,     JointType::distance};
@@ -26,53 +26,54 @@ void type_row(App& app, const Joint& joint) {
   std::ranges::transform(types, words.begin(), [](JointType type) { return type_name(type); });
   const auto present = static_cast<std::size_t>(std::ranges::find(types, joint.type) - types.begin());
   const auto chosen =
-      choice_row(app, "inspector/type", "Type", words, present,
+      choice_row(ui, "inspector/type", "Type", words, present,
                  "What the joint leaves free; drives, springs and stops stay where they fit.");
   if (!chosen) return;
-  edit_later(app, "Make " + joint.name + " " + std::string(words[*chosen]),
+  edit_later(session, ui, "Make " + joint.name + " " + std::string(words[*chosen]),
              [name = joint.name, type = types[*chosen]](Mechanism& mechanism, Selection&) {
                change_joint_type(mechanism, name, type);
              });
 }
 
 // Buttons that lay the axis along one of the world's.
-void direction_buttons(App& app, const Joint& joint, Vec3 Joint::*axis, const std::string& widget) {
-  row_label(app, "");
-  const float gap = 3 * app.scale;
+void direction_buttons(Session& session, Ui& ui, const Joint& joint, Vec3 Joint::*axis,
+                       const std::string& widget) {
+  row_label(ui, "");
+  const float gap = 3 * ui.scale;
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (i > 0) ImGui::SameLine(0, gap);
     const bool along = (joint.*axis) == Vec3(Vec3::Unit(i));
-    if (text_button(app, widget + "/along/" + axis_letters[at], axis_letters[at], along))
-      edit_joint(app, "Turn axis of " + joint.name, joint.name,
+    if (text_button(ui, widget + "/along/" + axis_letters[at], axis_letters[at], along))
+      edit_joint(session, ui, "Turn axis of " + joint.name, joint.name,
                  [axis, i](Joint& same) { same.*axis = Vec3::Unit(i); });
     help_on_hover((std::string("Along the world's ") + axis_letters[at] + " axis.").c_str());
   }
   ImGui::SameLine(0, gap);
-  if (text_button(app, widget + "/flip", icon::swap))
-    edit_joint(app, "Flip axis of " + joint.name, joint.name,
+  if (text_button(ui, widget + "/flip", icon::swap))
+    edit_joint(session, ui, "Flip axis of " + joint.name, joint.name,
                [axis](Joint& same) { same.*axis = Vec3(-(same.*axis)) + Vec3::Zero(); });
   help_on_hover("The other way round: positive becomes negative.");
 }
 
-void axis_rows(App& app, const Joint& joint) {
+void axis_rows(Session& session, Ui& ui, const Joint& joint) {
   const bool universal = joint.type == JointType::universal;
-  vector_rows(app, "Axis",
+  vector_rows(session, ui, "Axis",
               {.name = "inspector/axis",
                .value = joint.axis,
                .help = joint.type == JointType::planar ? "Normal of the plane, as drawn; of any length."
                        : universal ? "First axis, fixed in the parent, as drawn; of any length."
                                    : "Direction of the axis, as drawn; of any length.",
                .address = address_of(joint, universal ? "axes.0" : "axis")});
-  direction_buttons(app, joint, &Joint::axis, "inspector/axis");
+  direction_buttons(session, ui, joint, &Joint::axis, "inspector/axis");
   if (!has_axis2(joint.type)) return;
-  vector_rows(app, universal ? "Axis 2" : "x axis",
+  vector_rows(session, ui, universal ? "Axis 2" : "x axis",
               {.name = "inspector/axis2",
                .value = joint.axis2,
                .help = universal ? "Second axis, fixed in the child, as drawn; of any length."
                                  : "Direction in the plane in which x is counted; of any length.",
                .address = address_of(joint, universal ? "axes.1" : "x_axis")});
-  direction_buttons(app, joint, &Joint::axis2, "inspector/axis2");
+  direction_buttons(session, ui, joint, &Joint::axis2, "inspector/axis2");
 }
 
 // Whether some joint leads back to where others lead already. Of the drawing alone, so that the row below
@@ -99,19 +100,19 @@ bool has_loops(const Mechanism& mechanism) {
 }
 
 // Only where there are loops is there anything to cut.
-void cut_row(App& app, const Joint& joint) {
-  const SystemSummary& summary = app.answer.summary;
+void cut_row(Session& session, Ui& ui, const Joint& joint) {
+  const SystemSummary& summary = session.answer.summary;
   const bool can = joint.type != JointType::free && joint.type != JointType::distance;
-  if (!can || (!joint.cut && !has_loops(app.mechanism()))) return;
+  if (!can || (!joint.cut && !has_loops(session.mechanism()))) return;
   constexpr std::array<std::string_view, 3> options{"automatic", "cut here", "not cut here"};
   const std::size_t present = !joint.cut ? 0 : *joint.cut ? 1 : 2;
   const bool cut_now = std::ranges::find(summary.cut_joints, joint.name) != summary.cut_joints.end();
   const auto chosen =
-      choice_row(app, "inspector/cut", "Loop", options, present,
+      choice_row(ui, "inspector/cut", "Loop", options, present,
                  cut_now ? "Where a loop is cut open for solving; the program cuts this joint."
                          : "Where a loop is cut open for solving; the program does not cut this joint.");
   if (!chosen) return;
-  edit_joint(app, "Cut of " + joint.name, joint.name, [choice = *chosen](Joint& same) {
+  edit_joint(session, ui, "Cut of " + joint.name, joint.name, [choice = *chosen](Joint& same) {
     same.cut = choice == 0 ? std::nullopt : std::optional(choice == 1);
   });
 }
@@ -120,55 +121,57 @@ void cut_row(App& app, const Joint& joint) {
 
 namespace {
 
-void note_row(App& app, const Joint& joint) {
-  text_row(app, "inspector/description", "Note", joint.description, "A note for whoever reads the scene.",
-           [&app, name = joint.name](const std::string& text) {
-             edit_joint(app, "Describe " + name, name, [text](Joint& same) { same.description = text; });
-           });
+void note_row(Session& session, Ui& ui, const Joint& joint) {
+  text_row(
+      session, ui, "inspector/description", "Note", joint.description, "A note for whoever reads the scene.",
+      [&session, &ui, name = joint.name](const std::string& text) {
+        edit_joint(session, ui, "Describe " + name, name, [text](Joint& same) { same.description = text; });
+      });
 }
 
 } // namespace
 
-void joint_inspector(App& app, const Joint& joint) {
+void joint_inspector(Session& session, Ui& ui, const Joint& joint) {
   const Part part{PartKind::joint, joint.name};
-  name_row(app, part);
+  name_row(session, ui, part);
   if (joint.type == JointType::gear) {
-    note_row(app, joint);
-    return gear_rows(app, joint);
+    note_row(session, ui, joint);
+    return gear_rows(session, ui, joint);
   }
-  type_row(app, joint);
+  type_row(session, ui, joint);
   if (joint.type == JointType::distance) {
-    note_row(app, joint);
-    return distance_rows(app, joint);
+    note_row(session, ui, joint);
+    return distance_rows(session, ui, joint);
   }
   // What acts comes first: that is what one needs of every joint, in sight in a low window, too.
-  coordinate_sections(app, joint);
-  if (!inspector_section(app, "inspector/place section", "Place", true)) return;
-  body_end_row(app, part, joint.bodies, 0, "Parent");
-  body_end_row(app, part, joint.bodies, 1, "Child");
-  vector_rows(app, "Point",
+  coordinate_sections(session, ui, joint);
+  if (!inspector_section(session, ui, "inspector/place section", "Place", true)) return;
+  body_end_row(session, ui, part, joint.bodies, 0, "Parent");
+  body_end_row(session, ui, part, joint.bodies, 1, "Child");
+  vector_rows(session, ui, "Point",
               {.name = "inspector/at",
                .value = joint.at,
                .unit = "m",
                .help = "Where the joint is in the world, as drawn; fixed in both bodies.",
                .address = address_of(joint, "at")});
-  if (has_axis(joint.type)) axis_rows(app, joint);
-  cut_row(app, joint);
-  note_row(app, joint);
+  if (has_axis(joint.type)) axis_rows(session, ui, joint);
+  cut_row(session, ui, joint);
+  note_row(session, ui, joint);
 }
 
-void distance_rows(App& app, const Joint& joint) {
+void distance_rows(Session& session, Ui& ui, const Joint& joint) {
   const Part part{PartKind::joint, joint.name};
   for (std::size_t end = 0; end < 2; ++end) {
-    body_end_row(app, part, joint.bodies, end, end == 0 ? "From" : "To");
-    end_point_rows(app, part, joint.points, end);
+    body_end_row(session, ui, part, joint.bodies, end, end == 0 ? "From" : "To");
+    end_point_rows(session, ui, part, joint.points, end);
   }
   std::function<void()> reset;
   if (joint.length)
-    reset = [&app, name = joint.name] {
-      edit_joint(app, "Length of " + name + " as drawn", name, [](Joint& same) { same.length.reset(); });
+    reset = [&session, &ui, name = joint.name] {
+      edit_joint(session, ui, "Length of " + name + " as drawn", name,
+                 [](Joint& same) { same.length.reset(); });
     };
-  quantity_row(app, "Length",
+  quantity_row(session, ui, "Length",
                {.name = "inspector/length",
                 .value = joint.length.value_or(drawn_distance(joint.points)),
                 .unit = "m",

@@ -15,19 +15,19 @@ namespace flyball {
 namespace {
 
 // A text of a measure, which is checked in the place of the one there is.
-void measure_field(App& app, const NamedMeasure& measure, const std::string& widget, const std::string& step,
-                   const std::string& shown, float width, const char* hint,
+void measure_field(Session& session, Ui& ui, const NamedMeasure& measure, const std::string& widget,
+                   const std::string& step, const std::string& shown, float width, const char* hint,
                    const std::function<NamedMeasure(const std::string& typed)>& with) {
-  text_field(app,
+  text_field(session, ui,
              {.name = widget,
               .text = shown,
               .check =
-                  [&app, name = measure.name, with](const std::string& typed) {
-                    return measure_mistake(app.document.stored(), name, with(typed));
+                  [&session, name = measure.name, with](const std::string& typed) {
+                    return measure_mistake(session.document.stored(), name, with(typed));
                   },
               .take =
-                  [&app, name = measure.name, step, with](const std::string& typed) {
-                    edit(app, step, [&](Mechanism& mechanism, Selection&) {
+                  [&session, name = measure.name, step, with](const std::string& typed) {
+                    edit(session, step, [&](Mechanism& mechanism, Selection&) {
                       set_measure(mechanism, name, with(typed));
                     });
                   },
@@ -36,30 +36,30 @@ void measure_field(App& app, const NamedMeasure& measure, const std::string& wid
 }
 
 // Unit, note and the way out.
-void measure_popup(App& app, const NamedMeasure& measure, const std::string& widget) {
+void measure_popup(Session& session, Ui& ui, const NamedMeasure& measure, const std::string& widget) {
   if (!ImGui::BeginPopup("measure")) return;
-  const float labels = 52 * app.scale, width = 150 * app.scale;
+  const float labels = 52 * ui.scale, width = 150 * ui.scale;
   const auto label = [&](const char* text) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text);
     ImGui::SameLine(labels);
   };
   label("Unit");
-  measure_field(app, measure, widget + "/unit", "Unit of " + measure.name, measure.unit, width,
+  measure_field(session, ui, measure, widget + "/unit", "Unit of " + measure.name, measure.unit, width,
                 "a plain number", [measure](const std::string& typed) {
                   NamedMeasure changed = measure;
                   changed.unit = typed;
                   return changed;
                 });
   label("Note");
-  measure_field(app, measure, widget + "/note", "Describe " + measure.name, measure.description, width, "",
-                [measure](const std::string& typed) {
+  measure_field(session, ui, measure, widget + "/note", "Describe " + measure.name, measure.description,
+                width, "", [measure](const std::string& typed) {
                   NamedMeasure changed = measure;
                   changed.description = typed;
                   return changed;
                 });
-  if (text_button(app, widget + "/remove", "Remove")) {
-    edit_later(app, "Remove " + measure.name,
+  if (text_button(ui, widget + "/remove", "Remove")) {
+    edit_later(session, ui, "Remove " + measure.name,
                [name = measure.name](Mechanism& mechanism, Selection&) { remove_measure(mechanism, name); });
     ImGui::CloseCurrentPopup();
   }
@@ -68,12 +68,12 @@ void measure_popup(App& app, const NamedMeasure& measure, const std::string& wid
 }
 
 // What it comes to now: "0.134 m".
-std::string present_text(const App& app, const std::string& name) {
-  const std::vector<MeasureSolution>& all = app.answer.solution.measures;
+std::string present_text(const Session& session, const std::string& name) {
+  const std::vector<MeasureSolution>& all = session.answer.solution.measures;
   const auto found = std::ranges::find(all, name, &MeasureSolution::name);
   if (found == all.end()) return "No value: there is no steady state.";
   if (!found->value) return found->reason;
-  const ShownUnit unit = shown_unit(found->unit, app.units);
+  const ShownUnit unit = shown_unit(found->unit, session.units);
   return short_text(unit.shown(*found->value), 6) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
@@ -82,31 +82,31 @@ std::string without_sign(const std::string& typed) {
   return typed.starts_with("=") ? typed.substr(1) : typed;
 }
 
-void measure_row(App& app, const NamedMeasure& measure) {
+void measure_row(Session& session, Ui& ui, const NamedMeasure& measure) {
   const std::string widget = "inspector/measure/" + measure.name;
-  const float labels = label_width(app), margin = margin_width(app), start = ImGui::GetCursorPosX();
+  const float labels = label_width(ui), margin = margin_width(ui), start = ImGui::GetCursorPosX();
   const float width = ImGui::GetContentRegionAvail().x;
-  measure_field(app, measure, widget + "/name", "Rename " + measure.name, measure.name,
-                labels - 4 * app.scale, "", [measure](const std::string& typed) {
+  measure_field(session, ui, measure, widget + "/name", "Rename " + measure.name, measure.name,
+                labels - 4 * ui.scale, "", [measure](const std::string& typed) {
                   NamedMeasure changed = measure;
                   changed.name = typed;
                   return changed;
                 });
-  help_on_hover(present_text(app, measure.name).c_str());
+  help_on_hover(present_text(session, measure.name).c_str());
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + labels);
-  measure_field(app, measure, widget, "Change " + measure.name, "=" + measure.text,
-                std::max(width - labels - margin, 20 * app.scale), "=y(ball)",
+  measure_field(session, ui, measure, widget, "Change " + measure.name, "=" + measure.text,
+                std::max(width - labels - margin, 20 * ui.scale), "=y(ball)",
                 [measure](const std::string& typed) {
                   NamedMeasure changed = measure;
                   changed.text = without_sign(typed);
                   return changed;
                 });
-  help_on_hover(present_text(app, measure.name).c_str());
+  help_on_hover(present_text(session, measure.name).c_str());
   ImGui::SameLine(0, 0);
   ImGui::PushID(widget.c_str());
-  if (margin_button(app, widget + "/more", icon::gear, "Unit, note; remove it.")) ImGui::OpenPopup("measure");
-  measure_popup(app, measure, widget);
+  if (margin_button(ui, widget + "/more", icon::gear, "Unit, note; remove it.")) ImGui::OpenPopup("measure");
+  measure_popup(session, ui, measure, widget);
   ImGui::PopID();
 }
 
@@ -120,13 +120,14 @@ std::string all_functions() {
 
 } // namespace
 
-void measures_section(App& app) {
-  const Mechanism& mechanism = app.mechanism();
-  if (!inspector_section(app, "inspector/measures section", "Measures", !mechanism.measures.empty())) return;
+void measures_section(Session& session, Ui& ui) {
+  const Mechanism& mechanism = session.mechanism();
+  if (!inspector_section(session, ui, "inspector/measures section", "Measures", !mechanism.measures.empty()))
+    return;
   for (const NamedMeasure& measure : mechanism.measures)
-    measure_row(app, measure);
-  if (text_button(app, "inspector/measures/add", "Add a measure"))
-    edit_later(app, "Add a measure",
+    measure_row(session, ui, measure);
+  if (text_button(ui, "inspector/measures/add", "Add a measure"))
+    edit_later(session, ui, "Add a measure",
                [](Mechanism& changed, Selection&) { changed.measures.push_back(new_measure(changed)); });
   static const std::string help =
       "A number made of results, shown with them, in curves and over time, and wanted in design. It may ask "

@@ -1,6 +1,7 @@
 // What is known of the selected part, to be read and edited.
 #include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/panels.hpp"
@@ -13,15 +14,15 @@ namespace flyball {
 
 namespace {
 
-std::string title_of(const App& app) {
-  const Selection& selection = app.selection();
+std::string title_of(const Session& session) {
+  const Selection& selection = session.selection();
   if (selection.empty()) return "Scene";
   if (selection.parts.size() > 1) return std::to_string(selection.parts.size()) + " parts";
-  const PartId id = find_part(app.mechanism(), selection.parts.front());
+  const PartId id = find_part(session.mechanism(), selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
   std::string word = "body";
-  if (id.kind == PartKind::joint) word = joint_noun(app.mechanism().joints[i]);
-  if (id.kind == PartKind::force) word = type_name(app.mechanism().forces[i].type);
+  if (id.kind == PartKind::joint) word = joint_noun(session.mechanism().joints[i]);
+  if (id.kind == PartKind::force) word = type_name(session.mechanism().forces[i].type);
   word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
   return word;
 }
@@ -44,13 +45,13 @@ void panel_title(App& app) {
 
 void contents(App& app) {
   const Selection& selection = app.selection();
-  if (selection.empty()) return scene_inspector(app);
+  if (selection.empty()) return scene_inspector(app, app, app.tool);
   if (selection.parts.size() > 1) return several_inspector(app);
   const PartId id = find_part(app.mechanism(), selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
-  if (id.kind == PartKind::body) body_inspector(app, app.mechanism().bodies[i]);
-  if (id.kind == PartKind::joint) joint_inspector(app, app.mechanism().joints[i]);
-  if (id.kind == PartKind::force) force_inspector(app, app.mechanism().forces[i]);
+  if (id.kind == PartKind::body) body_inspector(app, app, app.inspector, app.mechanism().bodies[i]);
+  if (id.kind == PartKind::joint) joint_inspector(app, app, app.mechanism().joints[i]);
+  if (id.kind == PartKind::force) force_inspector(app, app, app.mechanism().forces[i]);
 }
 
 } // namespace

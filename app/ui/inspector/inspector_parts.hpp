@@ -1,30 +1,35 @@
 // The inspector's contents, one function a kind of thing.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/inspector_state.hpp"
+#include "app/ui/tool_state.hpp"
+#include "app/ui/ui.hpp"
 
 namespace flyball {
 
-void scene_inspector(App& app);
-void body_inspector(App& app, const Body& body);
-void joint_inspector(App& app, const Joint& joint);
-void force_inspector(App& app, const Force& force);
+struct App;
+
+void scene_inspector(Session& session, Ui& ui, ToolState& tool);
+void body_inspector(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void joint_inspector(Session& session, Ui& ui, const Joint& joint);
+void force_inspector(Session& session, Ui& ui, const Force& force);
 void several_inspector(App& app);
 
 // Parts of them.
-void named_sections(App& app);
-void measures_section(App& app);
-void mass_section(App& app, const Body& body);
-void rotation_section(App& app, const Body& body);
-void shapes_section(App& app, const Body& body);
-void coordinate_sections(App& app, const Joint& joint);
-void distance_rows(App& app, const Joint& joint);
-void gear_rows(App& app, const Joint& joint);
+void named_sections(Session& session, Ui& ui, ToolState& tool);
+void measures_section(Session& session, Ui& ui);
+void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void shapes_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void coordinate_sections(Session& session, Ui& ui, const Joint& joint);
+void distance_rows(Session& session, Ui& ui, const Joint& joint);
+void gear_rows(Session& session, Ui& ui, const Joint& joint);
 
 // Whether mass, mass centre and inertia are those of the body's shapes as a solid of one density.
 bool is_uniform_solid(const Body& body);
 // Whether they are to stay so when the mass or a size changes.
-bool follows_shapes(const App& app, const Body& body);
+bool follows_shapes(const InspectorState& inspector, const Body& body);
 // A shape of another type of about the same place and size.
 Shape shape_as(const Shape& shape, ShapeType type, const Body& body);
 

@@ -33,39 +33,39 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 // Begins the list of a choice beside the label.
-bool begin_choice(App& app, const std::string& name, const std::string& label, const std::string& chosen,
+bool begin_choice(Ui& ui, const std::string& name, const std::string& label, const std::string& chosen,
                   const char* help) {
-  ImGui::SetNextItemWidth(row_label(app, label, help));
-  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  ImGui::SetNextItemWidth(row_label(ui, label, help));
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   const bool open = ImGui::BeginCombo(("##" + name).c_str(), chosen.c_str(), ImGuiComboFlags_HeightLarge);
   ImGui::PopStyleColor();
   if (!open) {
-    note_widget(app.widgets, name);
+    note_widget(ui.widgets, name);
     help_on_hover(help);
   }
   return open;
 }
 
 // A body's point keeps being told of.
-void rename_told_point(App& app, const Part& part, const std::string& name) {
+void rename_told_point(Session& session, const Part& part, const std::string& name) {
   if (part.kind != PartKind::body) return;
-  if (auto told = app.points.extract(part.name)) {
+  if (auto told = session.points.extract(part.name)) {
     told.key() = name;
-    app.points.insert(std::move(told));
+    session.points.insert(std::move(told));
   }
 }
 
 // Of a joint or force, whose fields are called the same.
 template <class Change>
-void change_bodies(App& app, const Part& part, const Change& change) {
+void change_bodies(Session& session, Ui& ui, const Part& part, const Change& change) {
   if (part.kind == PartKind::joint)
-    edit_joint(app, "Bodies of " + part.name, part.name, change);
+    edit_joint(session, ui, "Bodies of " + part.name, part.name, change);
   else
-    edit_force(app, "Bodies of " + part.name, part.name, change);
+    edit_force(session, ui, "Bodies of " + part.name, part.name, change);
 }
 
-void swap_bodies(App& app, const Part& part) {
-  change_bodies(app, part, [](auto& held) {
+void swap_bodies(Session& session, Ui& ui, const Part& part) {
+  change_bodies(session, ui, part, [](auto& held) {
     std::swap(held.bodies[0], held.bodies[1]);
     std::swap(held.points[0], held.points[1]);
   });
@@ -73,32 +73,33 @@ void swap_bodies(App& app, const Part& part) {
 
 } // namespace
 
-void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change) {
-  later(app, [&app, step, change = std::move(change)] {
-    edit(app, step, [&](Mechanism& mechanism, Selection& selection) {
+void edit_later(Session& session, Ui& ui, const std::string& step,
+                std::function<void(Mechanism&, Selection&)> change) {
+  later(ui, [&session, step, change = std::move(change)] {
+    edit(session, step, [&](Mechanism& mechanism, Selection& selection) {
       change(mechanism, selection);
-      drop_lost_sliders(app.mechanism(), mechanism);
+      drop_lost_sliders(session.mechanism(), mechanism);
     });
   });
 }
 
-void edit_body(App& app, const std::string& step, const std::string& name,
+void edit_body(Session& session, Ui& ui, const std::string& step, const std::string& name,
                std::function<void(Body&)> change) {
-  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
     change_named(mechanism.bodies, name, change);
   });
 }
 
-void edit_joint(App& app, const std::string& step, const std::string& name,
+void edit_joint(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Joint&)> change) {
-  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
     change_named(mechanism.joints, name, change);
   });
 }
 
-void edit_force(App& app, const std::string& step, const std::string& name,
+void edit_force(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Force&)> change) {
-  edit_later(app, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
+  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
     change_named(mechanism.forces, name, change);
   });
 }
@@ -117,49 +118,49 @@ void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
   });
 }
 
-bool inspector_section(App& app, const std::string& name, const char* title, bool open) {
-  const auto found = app.sections.open.find(name);
+bool inspector_section(Session& session, Ui& ui, const std::string& name, const char* title, bool open) {
+  const auto found = ui.sections.open.find(name);
   bool now = open;
-  if (found != app.sections.open.end()) {
+  if (found != ui.sections.open.end()) {
     now = found->second;
   } else {
     // What is open stays open while one works in it, even if the last number that opened it goes.
-    if (app.sections.seen_of.parts != app.selection().parts) {
-      app.sections.seen.clear();
-      app.sections.seen_of = app.selection();
+    if (ui.sections.seen_of.parts != session.selection().parts) {
+      ui.sections.seen.clear();
+      ui.sections.seen_of = session.selection();
     }
-    bool& seen = app.sections.seen[name];
+    bool& seen = ui.sections.seen[name];
     now = seen = seen || open;
   }
   const bool before = now;
-  ImGui::Dummy({0, 2 * app.scale});
-  section(app, name, title, now);
-  if (now != before) app.sections.open[name] = now;
+  ImGui::Dummy({0, 2 * ui.scale});
+  section(ui, name, title, now);
+  if (now != before) ui.sections.open[name] = now;
   // A number is looked for that may be in it.
-  app.keyboard.section = name;
-  return now || !app.keyboard.sought.empty();
+  ui.keyboard.section = name;
+  return now || !ui.keyboard.sought.empty();
 }
 
-float row_label(App& app, const std::string& label, const char* help) {
-  const float labels = label_width(app), width = ImGui::GetContentRegionAvail().x;
+float row_label(const Ui& ui, const std::string& label, const char* help) {
+  const float labels = label_width(ui), width = ImGui::GetContentRegionAvail().x;
   const float start = ImGui::GetCursorPosX();
   ImGui::AlignTextToFramePadding();
-  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
-  clipped_text(label, labels - 3 * app.scale);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
+  clipped_text(label, labels - 3 * ui.scale);
   ImGui::PopStyleColor();
   help_on_hover(help);
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + labels);
-  return std::max(width - labels - margin_width(app), 20 * app.scale);
+  return std::max(width - labels - margin_width(ui), 20 * ui.scale);
 }
 
-bool name_field(App& app, const std::string& widget, const Part& part, float width) {
+bool name_field(Session& session, Ui& ui, const std::string& widget, const Part& part, float width) {
   TextField field{.name = widget,
                   .text = part.name,
                   .check =
-                      [&app, part](const std::string& typed) {
+                      [&session, part](const std::string& typed) {
                         try {
-                          Mechanism copy = app.mechanism();
+                          Mechanism copy = session.mechanism();
                           rename_part(copy, part, typed);
                           return std::string();
                         } catch (const SceneError& error) {
@@ -167,57 +168,59 @@ bool name_field(App& app, const std::string& widget, const Part& part, float wid
                         }
                       },
                   .take =
-                      [&app, part](const std::string& typed) {
-                        rename_told_point(app, part, typed);
-                        edit(app, "Rename " + part.name + " to " + typed,
+                      [&session, part](const std::string& typed) {
+                        rename_told_point(session, part, typed);
+                        edit(session, "Rename " + part.name + " to " + typed,
                              [&](Mechanism& mechanism, Selection& selection) {
                                rename_part(mechanism, part, typed);
                                std::ranges::replace(selection.parts, part, Part{part.kind, typed});
                              });
                       }};
-  return text_field(app, field, width);
+  return text_field(session, ui, field, width);
 }
 
-void name_row(App& app, const Part& part) {
+void name_row(Session& session, Ui& ui, const Part& part) {
   const char* help = "What the part is called in the scene, in results and in addresses.";
-  const float width = row_label(app, "Name", help);
-  if (!name_field(app, "inspector/name", part, width)) help_on_hover(help);
+  const float width = row_label(ui, "Name", help);
+  if (!name_field(session, ui, "inspector/name", part, width)) help_on_hover(help);
 }
 
-void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
-              const char* help, const std::function<void(const std::string&)>& take) {
-  const float width = row_label(app, label, help);
-  if (!text_field(app, {.name = name, .text = text, .check = {}, .take = take}, width) && !text.empty())
+void text_row(Session& session, Ui& ui, const std::string& name, const std::string& label,
+              const std::string& text, const char* help,
+              const std::function<void(const std::string&)>& take) {
+  const float width = row_label(ui, label, help);
+  if (!text_field(session, ui, {.name = name, .text = text, .check = {}, .take = take}, width) &&
+      !text.empty())
     help_on_hover(text.c_str());
 }
 
-std::optional<std::size_t> choice_row(App& app, const std::string& name, const std::string& label,
+std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
                                       const char* help) {
   std::optional<std::size_t> other;
-  if (!begin_choice(app, name, label, std::string(options[chosen]), help)) return other;
+  if (!begin_choice(ui, name, label, std::string(options[chosen]), help)) return other;
   for (std::size_t i = 0; i < options.size(); ++i) {
     const std::string option(options[i]);
     if (ImGui::Selectable(option.c_str(), i == chosen) && i != chosen) other = i;
-    note_widget(app.widgets, name + "/" + option);
-    if (i == chosen) mark_chosen(app.widgets);
+    note_widget(ui.widgets, name + "/" + option);
+    if (i == chosen) mark_chosen(ui.widgets);
   }
   ImGui::EndCombo();
   return other;
 }
 
-std::optional<std::string> name_choice_row(App& app, const std::string& name, const std::string& label,
+std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                            std::span<const std::string> options, const std::string& chosen,
                                            const char* help) {
   std::optional<std::string> other;
-  if (!begin_choice(app, name, label, chosen, help)) return other;
-  std::string& search = app.fields.choice_search;
+  if (!begin_choice(ui, name, label, chosen, help)) return other;
+  std::string& search = ui.fields.choice_search;
   if (ImGui::IsWindowAppearing()) search.clear();
   if (options.size() > searchable) {
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "Search", &search);
-    note_widget(app.widgets, name + "/search", KeyUse::type);
+    note_widget(ui.widgets, name + "/search", KeyUse::type);
   }
   std::vector<const std::string*> shown;
   for (const std::string& option : options)
@@ -230,27 +233,27 @@ std::optional<std::string> name_choice_row(App& app, const std::string& name, co
       ImGui::PushID(i);
       if (ImGui::Selectable(option.c_str(), option == chosen) && option != chosen) other = option;
       ImGui::PopID();
-      note_widget(app.widgets, name + "/" + option);
-      if (option == chosen) mark_chosen(app.widgets);
+      note_widget(ui.widgets, name + "/" + option);
+      if (option == chosen) mark_chosen(ui.widgets);
     }
   ImGui::EndCombo();
   return other;
 }
 
-bool check_row(App& app, const std::string& name, const std::string& label, bool on, const char* help,
+bool check_row(Ui& ui, const std::string& name, const std::string& label, bool on, const char* help,
                const char* refused) {
   bool now = on;
   const float row_height = ImGui::GetFrameHeight();
   ImGui::BeginDisabled(refused != nullptr);
   ImGui::PushID(name.c_str());
-  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.f, std::round(app.scale)));
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * app.scale, 1 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, std::max(1.f, std::round(ui.scale)));
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {8 * ui.scale, 1 * ui.scale});
   // As high as other rows, so that several can stand in one.
   const float spare = std::max(row_height - ImGui::GetFrameHeight(), 0.f);
   ImGui::BeginGroup();
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + spare / 2);
   const bool clicked = ImGui::Checkbox(label.c_str(), &now);
-  note_stop(app.widgets, name);
+  note_stop(ui.widgets, name);
   const float used = ImGui::GetItemRectSize().x;
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y);
   ImGui::Dummy({used, spare / 2});
@@ -258,12 +261,12 @@ bool check_row(App& app, const std::string& name, const std::string& label, bool
   ImGui::PopStyleVar(2);
   ImGui::PopID();
   ImGui::EndDisabled();
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   help_on_hover(refused ? refused : help);
   return clicked;
 }
 
-void vector_rows(App& app, const std::string& label, const VectorField& field,
+void vector_rows(Session& session, Ui& ui, const std::string& label, const VectorField& field,
                  const std::function<void()>& reset) {
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -277,7 +280,7 @@ void vector_rows(App& app, const std::string& label, const VectorField& field,
     if (!field.address.empty()) number.address = field.address + "." + std::to_string(i);
     if (!field.expression.empty()) number.expression = field.expression + "." + std::to_string(i);
     if (field.set) number.set = [set = field.set, i](double value) { set(i, value); };
-    quantity_row(app, i == 0 ? label : "", number, i == 0 ? reset : std::function<void()>());
+    quantity_row(session, ui, i == 0 ? label : "", number, i == 0 ? reset : std::function<void()>());
   }
 }
 
@@ -289,27 +292,28 @@ std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground) {
   return names;
 }
 
-void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
-                  const char* label, const char* help) {
-  const std::vector<std::string> choices = body_choices(app.mechanism(), true);
+void body_end_row(Session& session, Ui& ui, const Part& part, const std::array<std::string, 2>& bodies,
+                  std::size_t end, const char* label, const char* help) {
+  const std::vector<std::string> choices = body_choices(session.mechanism(), true);
   const std::string name = "inspector/bodies/" + std::to_string(end);
   if (!help)
     help = end == 0 ? "The first body: what coordinates and reactions are counted from."
                     : "The second body, which a positive coordinate moves.";
-  if (const auto chosen = name_choice_row(app, name, label, choices, bodies[end], help)) {
+  if (const auto chosen = name_choice_row(ui, name, label, choices, bodies[end], help)) {
     if (*chosen == bodies[1 - end]) // two ends on one body have no meaning
-      swap_bodies(app, part);
+      swap_bodies(session, ui, part);
     else
-      change_bodies(app, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });
+      change_bodies(session, ui, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });
   }
   if (end == 0) return;
   ImGui::SameLine(0, 0);
-  if (margin_button(app, "inspector/bodies/swap", icon::swap, "Swap the two.")) swap_bodies(app, part);
+  if (margin_button(ui, "inspector/bodies/swap", icon::swap, "Swap the two.")) swap_bodies(session, ui, part);
 }
 
-void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end) {
+void end_point_rows(Session& session, Ui& ui, const Part& part, const std::array<Vec3, 2>& points,
+                    std::size_t end) {
   const char* list = part.kind == PartKind::joint ? "joints." : "forces.";
-  vector_rows(app, "at",
+  vector_rows(session, ui, "at",
               {.name = "inspector/points/" + std::to_string(end),
                .value = points[end],
                .unit = "m",

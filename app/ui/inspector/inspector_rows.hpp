@@ -13,36 +13,38 @@
 namespace flyball {
 
 // Edits the part of that name, wherever it is by then; nothing where it is gone.
-void edit_body(App& app, const std::string& step, const std::string& name, std::function<void(Body&)> change);
-void edit_joint(App& app, const std::string& step, const std::string& name,
+void edit_body(Session& session, Ui& ui, const std::string& step, const std::string& name,
+               std::function<void(Body&)> change);
+void edit_joint(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Joint&)> change);
-void edit_force(App& app, const std::string& step, const std::string& name,
+void edit_force(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Force&)> change);
-void edit_later(App& app, const std::string& step, std::function<void(Mechanism&, Selection&)> change);
+void edit_later(Session& session, Ui& ui, const std::string& step,
+                std::function<void(Mechanism&, Selection&)> change);
 // Takes out sliders of numbers that `before` had and `mechanism` has not.
 void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism);
 
 // A part of an inspector that opens and closes, and remembers it.
-bool inspector_section(App& app, const std::string& name, const char* title, bool open);
+bool inspector_section(Session& session, Ui& ui, const std::string& name, const char* title, bool open);
 
 // The label; what follows stands beside it. Returns the width for it (without the margin).
-float row_label(App& app, const std::string& label, const char* help = nullptr);
+float row_label(const Ui& ui, const std::string& label, const char* help = nullptr);
 // With references following; says in place why a name cannot be taken.
-void name_row(App& app, const Part& part);
+void name_row(Session& session, Ui& ui, const Part& part);
 // A field in which the part is given another name; whether it is being typed in.
-bool name_field(App& app, const std::string& widget, const Part& part, float width);
-void text_row(App& app, const std::string& name, const std::string& label, const std::string& text,
-              const char* help, const std::function<void(const std::string&)>& take);
+bool name_field(Session& session, Ui& ui, const std::string& widget, const Part& part, float width);
+void text_row(Session& session, Ui& ui, const std::string& name, const std::string& label,
+              const std::string& text, const char* help, const std::function<void(const std::string&)>& take);
 // One of several words; the new one where another was chosen.
-std::optional<std::size_t> choice_row(App& app, const std::string& name, const std::string& label,
+std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
                                       const char* help);
 // One of many names, searchable where there are very many.
-std::optional<std::string> name_choice_row(App& app, const std::string& name, const std::string& label,
+std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                            std::span<const std::string> options, const std::string& chosen,
                                            const char* help);
 // A tick; `refused` says why it cannot be set. Returns whether it was clicked.
-bool check_row(App& app, const std::string& name, const std::string& label, bool on, const char* help,
+bool check_row(Ui& ui, const std::string& name, const std::string& label, bool on, const char* help,
                const char* refused = nullptr);
 // Three numbers, each its own row.
 struct VectorField {
@@ -55,7 +57,7 @@ struct VectorField {
   bool standard = false;
   std::function<void(const Mechanism&, Mechanism&)> follow{}; // see QuantityField
 };
-void vector_rows(App& app, const std::string& label, const VectorField& field,
+void vector_rows(Session& session, Ui& ui, const std::string& label, const VectorField& field,
                  const std::function<void()>& reset = {});
 
 // The bodies' names, after the ground's where it may be chosen.
@@ -65,10 +67,11 @@ inline constexpr const char* bearing_in_help = "The body that the bearing is in,
 inline constexpr const char* bearing_holds_help = "The body that it holds, on which its force is told.";
 // One of the two bodies of a joint, spring or bearing; beside the second a button that swaps them. The ends
 // of both stay on their bodies. Without a help that of a joint or spring.
-void body_end_row(App& app, const Part& part, const std::array<std::string, 2>& bodies, std::size_t end,
-                  const char* label, const char* help = nullptr);
+void body_end_row(Session& session, Ui& ui, const Part& part, const std::array<std::string, 2>& bodies,
+                  std::size_t end, const char* label, const char* help = nullptr);
 // The point of that end, of a distance joint or spring.
-void end_point_rows(App& app, const Part& part, const std::array<Vec3, 2>& points, std::size_t end);
+void end_point_rows(Session& session, Ui& ui, const Part& part, const std::array<Vec3, 2>& points,
+                    std::size_t end);
 
 inline constexpr std::array<const char*, 3> axis_letters{"x", "y", "z"};
 

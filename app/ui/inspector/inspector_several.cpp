@@ -1,4 +1,5 @@
 // Several parts at once: the numbers all of them have, and what is done with them together.
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -69,7 +70,7 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
   } catch (const SceneError&) {
     return; // not all of them have it
   }
-  quantity_row(app, number.label,
+  quantity_row(app, app, number.label,
                {.name = std::string("inspector/all/") + number.key,
                 .value = value.value_or(0),
                 .unit = unit,

@@ -18,9 +18,9 @@ namespace {
 using Change = std::function<void(Body&, Shape&)>;
 
 // Mass or density as before, whichever was typed last; the density where none was.
-void take_again(const App& app, Body& body, double density) {
-  const auto given = app.inspector.given_masses.find(body.name);
-  const bool typed = given != app.inspector.given_masses.end();
+void take_again(const InspectorState& inspector, Body& body, double density) {
+  const auto given = inspector.given_masses.find(body.name);
+  const bool typed = given != inspector.given_masses.end();
   if (typed && given->second.mass) {
     take_uniform_mass(body, body.mass);
     return;
@@ -30,7 +30,8 @@ void take_again(const App& app, Body& body, double density) {
 }
 
 // The mass follows a shape that an expression gives, unless expressions give what would follow.
-void mass_follows(const App& app, const std::string& name, const Mechanism& before, Mechanism& next) {
+void mass_follows(const InspectorState& inspector, const std::string& name, const Mechanism& before,
+                  Mechanism& next) {
   const int from = body_index(before, name), to = body_index(next, name);
   if (from < 0 || to < 0) return;
   const Body& earlier = before.bodies[static_cast<std::size_t>(from)];
@@ -38,28 +39,30 @@ void mass_follows(const App& app, const std::string& name, const Mechanism& befo
     return formula.key == "mass" || formula.key.starts_with("position") || formula.key.starts_with("inertia");
   });
   const std::optional<double> density = density_of(earlier);
-  if (!earlier.density && !given && density && follows_shapes(app, earlier))
-    take_again(app, next.bodies[static_cast<std::size_t>(to)], *density);
+  if (!earlier.density && !given && density && follows_shapes(inspector, earlier))
+    take_again(inspector, next.bodies[static_cast<std::size_t>(to)], *density);
 }
 
 // Edits one shape; the mass follows where it did before.
-void edit_shape(App& app, const std::string& body, std::size_t index, const char* what,
-                const Change& change) {
-  later(app, [=, &app] {
-    edit(app, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
+void edit_shape(Session& session, Ui& ui, const InspectorState& inspector, const std::string& body,
+                std::size_t index, const char* what, const Change& change) {
+  later(ui, [=, &session, &inspector] {
+    edit(session, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
       for (Body& same : mechanism.bodies) {
         if (same.name != body || index >= same.shapes.size()) continue;
-        const bool follows = follows_shapes(app, same);
+        const bool follows = follows_shapes(inspector, same);
         const std::optional<double> density = density_of(same);
         change(same, same.shapes[index]);
-        if (follows && density) take_again(app, same, *density);
+        if (follows && density) take_again(inspector, same, *density);
       }
     });
   });
 }
 
 struct ShapeRows {
-  App& app;
+  Session& session;
+  Ui& ui;
+  InspectorState& inspector;
   const Body& body;
   std::size_t index;
   std::string name; // of the widgets
@@ -70,14 +73,14 @@ struct ShapeRows {
     return "bodies." + body.name + ".shapes." + std::to_string(index) + "." + key;
   }
   auto follow() const {
-    return [&app = app, body = body.name](const Mechanism& before, Mechanism& next) {
-      mass_follows(app, body, before, next);
+    return [&inspector = inspector, body = body.name](const Mechanism& before, Mechanism& next) {
+      mass_follows(inspector, body, before, next);
     };
   }
 
   void length(const std::string& label, const std::string& widget, const std::string& key, double value,
               const char* help, const std::function<void(Shape&, double)>& set) const {
-    quantity_row(app, label,
+    quantity_row(session, ui, label,
                  {.name = name + "/" + widget,
                   .value = value,
                   .unit = "m",
@@ -85,8 +88,9 @@ struct ShapeRows {
                   .least = Least::above_zero,
                   .expression = expression(key),
                   .set =
-                      [&app = app, body = body.name, index = index, set](double typed) {
-                        edit_shape(app, body, index, "Size",
+                      [&session = session, &ui = ui, &inspector = inspector, body = body.name, index = index,
+                       set](double typed) {
+                        edit_shape(session, ui, inspector, body, index, "Size",
                                    [set, typed](Body&, Shape& s) { set(s, typed); });
                       },
                   .follow = follow()});
@@ -94,15 +98,16 @@ struct ShapeRows {
 
   void point(const std::string& label, const std::string& key, const Vec3& value, const char* help,
              const std::function<Vec3&(Body&, Shape&)>& place, bool standard = false) const {
-    vector_rows(app, label,
+    vector_rows(session, ui, label,
                 {.name = name + "/" + key,
                  .value = value,
                  .unit = "m",
                  .help = help,
                  .expression = expression(key),
                  .set =
-                     [&app = app, body = body.name, index = index, place](int axis, double typed) {
-                       edit_shape(app, body, index, "Shape",
+                     [&session = session, &ui = ui, &inspector = inspector, body = body.name, index = index,
+                      place](int axis, double typed) {
+                       edit_shape(session, ui, inspector, body, index, "Shape",
                                   [=](Body& b, Shape& s) { place(b, s)[axis] = typed; });
                      },
                  .standard = standard,
@@ -146,27 +151,28 @@ struct ShapeRows {
     if (ImGui::InvisibleButton(widget.c_str(), {side, side})) {
       std::optional<std::array<double, 3>> wanted;
       if (color) wanted = numbers(*color);
-      edit_shape(app, body.name, index, "Colour", [wanted](Body&, Shape& s) { s.color = wanted; });
+      edit_shape(session, ui, inspector, body.name, index, "Colour",
+                 [wanted](Body&, Shape& s) { s.color = wanted; });
     }
-    note_widget(app.widgets, widget);
+    note_widget(ui.widgets, widget);
     help_on_hover(color ? "Colour of the shape." : "The colour the program chooses for the body.");
-    const UiColors& colors = colors_of(app);
+    const UiColors& colors = colors_of(ui);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to(from.x + side, from.y + side), middle((from.x + to.x) / 2, (from.y + to.y) / 2);
     if (color)
       list.AddCircleFilled(middle, 0.42f * side, packed(to_imgui(*color)));
     else
-      list.AddCircle(middle, 0.38f * side, packed(colors.dim), 0, 1.5f * app.scale);
-    if (on) list.AddCircle(middle, 0.5f * side, packed(colors.accent), 0, 2 * app.scale);
+      list.AddCircle(middle, 0.38f * side, packed(colors.dim), 0, 1.5f * ui.scale);
+    if (on) list.AddCircle(middle, 0.5f * side, packed(colors.accent), 0, 2 * ui.scale);
   }
 
   void colours() const {
     constexpr std::array palette{okabe_ito::orange, okabe_ito::sky_blue, okabe_ito::green,
                                  okabe_ito::yellow, okabe_ito::blue,     okabe_ito::vermillion,
                                  okabe_ito::purple, rgb(0x9AA3AD)};
-    const float width = row_label(app, "Colour", "How the shape is coloured; it means nothing else.");
-    const float side = ImGui::GetFrameHeight() - 4 * app.scale, gap = 3 * app.scale;
-    const int a_row = std::max(1, static_cast<int>((width + margin_width(app) + gap) / (side + gap)));
+    const float width = row_label(ui, "Colour", "How the shape is coloured; it means nothing else.");
+    const float side = ImGui::GetFrameHeight() - 4 * ui.scale, gap = 3 * ui.scale;
+    const int a_row = std::max(1, static_cast<int>((width + margin_width(ui) + gap) / (side + gap)));
     ImGui::BeginGroup();
     for (int i = 0; i <= static_cast<int>(palette.size()); ++i) {
       if (i % a_row != 0) ImGui::SameLine(0, gap);
@@ -183,25 +189,25 @@ struct ShapeRows {
 
   void type() const {
     constexpr std::array<std::string_view, 4> types{"sphere", "box", "cylinder", "capsule"};
-    const auto chosen = choice_row(app, name + "/type", "Shape", types,
-                                   static_cast<std::size_t>(shape().type), "What the body looks like.");
+    const auto chosen = choice_row(ui, name + "/type", "Shape", types, static_cast<std::size_t>(shape().type),
+                                   "What the body looks like.");
     if (chosen)
-      edit_shape(app, body.name, index, "Shape",
+      edit_shape(session, ui, inspector, body.name, index, "Shape",
                  [type = static_cast<ShapeType>(*chosen)](Body& b, Shape& s) { s = shape_as(s, type, b); });
     ImGui::SameLine(0, 0);
-    if (margin_button(app, name + "/remove", icon::close, "Take this shape away; the mass stays."))
-      edit_body(app, "Remove a shape of " + body.name, body.name, [index = index](Body& same) {
+    if (margin_button(ui, name + "/remove", icon::close, "Take this shape away; the mass stays."))
+      edit_body(session, ui, "Remove a shape of " + body.name, body.name, [index = index](Body& same) {
         if (index < same.shapes.size())
           same.shapes.erase(same.shapes.begin() + static_cast<std::ptrdiff_t>(index));
       });
   }
 };
 
-void add_shape(App& app, const Body& body) {
+void add_shape(Session& session, Ui& ui, const Body& body) {
   Shape shape;
-  shape.radius = body.shapes.empty() ? 2 * scene_scale(app.mechanism()).unit : body.shapes.back().radius;
+  shape.radius = body.shapes.empty() ? 2 * scene_scale(session.mechanism()).unit : body.shapes.back().radius;
   if (!(shape.radius > 0)) shape.radius = body.shapes.back().size.maxCoeff() / 2;
-  edit_body(app, "Add a shape to " + body.name, body.name,
+  edit_body(session, ui, "Add a shape to " + body.name, body.name,
             [shape](Body& same) { same.shapes.push_back(shape); });
 }
 
@@ -237,17 +243,17 @@ Shape shape_as(const Shape& shape, ShapeType type, const Body& body) {
   return other;
 }
 
-void shapes_section(App& app, const Body& body) {
-  if (!inspector_section(app, "inspector/shapes section", "Shapes", true)) return;
-  if (body.shapes.empty()) paragraph("Drawn from what is joined to it.", colors_of(app).dim);
+void shapes_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
+  if (!inspector_section(session, ui, "inspector/shapes section", "Shapes", true)) return;
+  if (body.shapes.empty()) paragraph("Drawn from what is joined to it.", colors_of(ui).dim);
   for (std::size_t i = 0; i < body.shapes.size(); ++i) {
-    if (i > 0) ImGui::Dummy({0, 3 * app.scale});
-    const ShapeRows rows{app, body, i, "inspector/shapes/" + std::to_string(i)};
+    if (i > 0) ImGui::Dummy({0, 3 * ui.scale});
+    const ShapeRows rows{session, ui, inspector, body, i, "inspector/shapes/" + std::to_string(i)};
     rows.type();
     rows.sizes();
     rows.colours();
   }
-  if (text_button(app, "inspector/shapes/add", "Add a shape")) add_shape(app, body);
+  if (text_button(ui, "inspector/shapes/add", "Add a shape")) add_shape(session, ui, body);
   help_on_hover("Another solid that the body looks like; its mass stays until a density is typed.");
 }
 

@@ -1,7 +1,7 @@
 // The order in which the keyboard goes through widgets and regions, and the ring round the one it is at.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/ui/ui.hpp"
 
 #include <span>
 #include <string_view>

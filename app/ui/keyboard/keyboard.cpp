@@ -1,6 +1,7 @@
 #include "app/ui/keyboard/keyboard.hpp"
 
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
 #include "app/ui/keyboard/menu_keys.hpp"
@@ -71,24 +72,24 @@ void go(Ui& ui, const KeyStop& stop, bool type) {
   if (type && stop.use == KeyUse::type) begin_typing(state, stop);
 }
 
-void go_to_view(App& app, bool ring) {
-  KeyboardState& state = app.keyboard;
+void go_to_view(Ui& ui, bool ring) {
+  KeyboardState& state = ui.keyboard;
   if (typed_stop(state)) ImGui::ClearActiveID();
   state.at.clear();
   state.region = view_region;
   state.ring = ring;
-  app.keyboard.focus = {};
+  ui.keyboard.focus = {};
 }
 
-void go_to_region(App& app, int step) {
-  KeyboardState& state = app.keyboard;
+void go_to_region(Ui& ui, int step) {
+  KeyboardState& state = ui.keyboard;
   const KeyStop* now = focused_stop(state);
   const std::string next = next_region(state.stops, now ? region_of(*now) : std::string(view_region), step);
-  if (next == view_region) return go_to_view(app, true);
+  if (next == view_region) return go_to_view(ui, true);
   const auto was = state.was.find(next);
   const KeyStop* stop = was == state.was.end() ? nullptr : stop_named(state.stops, was->second);
   if (!stop || region_of(*stop) != next) stop = tab_stop(state, next, nullptr, 1);
-  if (stop) go(app, *stop, false);
+  if (stop) go(ui, *stop, false);
 }
 
 void press(Ui& ui, const KeyStop& stop) {
@@ -165,10 +166,10 @@ bool move_by_arrow(Ui& ui, const KeyStop& stop, const KeyPress& key) {
 }
 
 // Escape goes back one step: from a list or menu to what opened it, from a widget to the view.
-bool step_out(App& app) {
-  KeyboardState& state = app.keyboard;
+bool step_out(Ui& ui, const DialogState& dialog) {
+  KeyboardState& state = ui.keyboard;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
-  if (app.dialog.showing && open <= 1) return false; // has its own use for it
+  if (dialog.showing && open <= 1) return false; // has its own use for it
   if (open > 0) {
     ImGui::ClosePopupToLevel(open - 1, true);
     return true;
@@ -177,7 +178,7 @@ bool step_out(App& app) {
     state.at.clear();
     return false;
   }
-  go_to_view(app, false);
+  go_to_view(ui, false);
   return true;
 }
 
@@ -211,8 +212,8 @@ bool take_focus_key(App& app, const KeyPress& key) {
   const KeyStop* stop = focused_stop(state);
   const bool typing = ImGui::GetIO().WantTextInput;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
-  if (key.alt || key.key == keys::alt) return take_alt(app, key);
-  if (key.key == keys::escape) return !typing && step_out(app);
+  if (key.alt || key.key == keys::alt) return take_alt(app, app.dialog, key);
+  if (key.key == keys::escape) return !typing && step_out(app, app.dialog);
   if (open == 0 && (key.key == keys::f6 || (key.ctrl && key.key == keys::tab))) {
     go_to_region(app, key.shift ? -1 : 1);
     return true;
@@ -364,13 +365,13 @@ void seek_number(Ui& ui, const std::string& address) {
   ui.keyboard.sought_frames = patience_to_draw;
 }
 
-void note_number(App& app, const std::string& name, const std::string& address) {
-  mark_address(app.widgets, address);
-  KeyboardState& state = app.keyboard;
+void note_number(Ui& ui, const std::string& name, const std::string& address) {
+  mark_address(ui.widgets, address);
+  KeyboardState& state = ui.keyboard;
   if (address.empty() || address != state.sought) return;
   state.sought.clear();
-  focus_widget(app, name);
-  if (name.starts_with("inspector/") && !state.section.empty()) app.sections.open[state.section] = true;
+  focus_widget(ui, name);
+  if (name.starts_with("inspector/") && !state.section.empty()) ui.sections.open[state.section] = true;
 }
 
 void enter_dialog_at(Ui& ui, const std::string& name) {

@@ -6,9 +6,11 @@
 // release to release and knows nothing of our widgets, so this uses no more of it than pressing an item.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/ui/ui.hpp"
 
 namespace flyball {
+
+struct App;
 
 // Takes the keys that move the focus or act on the widget that has it out of app.keys; at the beginning of a
 // frame, before tools and shortcuts look at them.
@@ -28,7 +30,7 @@ bool has_keyboard(const Ui& ui, const std::string& name);
 // section that it is in.
 void seek_number(Ui& ui, const std::string& address);
 // Of a field or slider of that number, while it is drawn.
-void note_number(App& app, const std::string& name, const std::string& address);
+void note_number(Ui& ui, const std::string& name, const std::string& address);
 // What keys do to this slider or plot in this frame; null: nothing.
 const KeyNudge* nudge_of(const Ui& ui, const std::string& name);
 // What keys make of a slider's value between its ends, in hundredths of the way; whether it is another.

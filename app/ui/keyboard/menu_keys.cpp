@@ -2,6 +2,7 @@
 
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/dialog_state.hpp"
 
 #include <algorithm>
 
@@ -27,20 +28,20 @@ void open_menu(Ui& ui, int menu) {
 
 } // namespace
 
-bool take_alt(App& app, const KeyPress& key) {
-  KeyboardState& state = app.keyboard;
-  if (app.dialog.showing) return true;
+bool take_alt(Ui& ui, DialogState& dialog, const KeyPress& key) {
+  KeyboardState& state = ui.keyboard;
+  if (dialog.showing) return true;
   const auto titles = menu_titles();
   if (key.key == keys::alt) {
     if (state.menu >= 0)
       ImGui::ClosePopupToLevel(0, true);
     else
-      open_menu(app, 0);
+      open_menu(ui, 0);
     return true;
   }
   const auto found =
       std::ranges::find_if(titles, [&](const char* title) { return title[0] == static_cast<char>(key.key); });
-  if (found != titles.end()) open_menu(app, static_cast<int>(found - titles.begin()));
+  if (found != titles.end()) open_menu(ui, static_cast<int>(found - titles.begin()));
   return true;
 }
 

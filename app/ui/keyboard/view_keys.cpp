@@ -1,5 +1,6 @@
 // The view by keys: arrows turn it, with Shift they move it, plus and minus zoom; while a tool places, they
 // move its cursor instead.
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/tool_cursor.hpp"
@@ -16,11 +17,11 @@ namespace {
 constexpr double turn_by_key = 24,
                  closer = 1.15; // points of a drag, as far as one press turns; a press of plus
 
-bool steer_by_key(App& app, const KeyPress& key, ViewSize size) {
-  const double by = turn_by_key * static_cast<double>(app.scale) * (key.ctrl ? 3 : 1);
+bool steer_by_key(const Ui& ui, ViewState& view, const KeyPress& key, ViewSize size) {
+  const double by = turn_by_key * static_cast<double>(ui.scale) * (key.ctrl ? 3 : 1);
   const double dx = (key.key == keys::right ? by : 0) - (key.key == keys::left ? by : 0);
   const double dy = (key.key == keys::down ? by : 0) - (key.key == keys::up ? by : 0);
-  ViewCamera& camera = app.view.camera;
+  ViewCamera& camera = view.camera;
   if (dx != 0 || dy != 0) {
     if (key.shift)
       camera.pan(dx, dy, size);
@@ -31,7 +32,7 @@ bool steer_by_key(App& app, const KeyPress& key, ViewSize size) {
   } else {
     return false;
   }
-  app.view.fit = false;
+  view.fit = false;
   return true;
 }
 
@@ -47,7 +48,7 @@ void take_view_keys(App& app) {
                       static_cast<double>(view.to.y - view.from.y)};
   std::erase_if(app.keys, [&](const KeyPress& key) {
     if (app.mode == Mode::build && places(app.tool.tool) && take_cursor_key(app, key, size)) return true;
-    return steer_by_key(app, key, size);
+    return steer_by_key(app, app.view, key, size);
   });
 }
 

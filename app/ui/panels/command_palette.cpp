@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/panels/palette_entries.hpp"
 #include "app/ui/widgets/dialog.hpp"
@@ -15,8 +16,8 @@ namespace {
 constexpr const char* palette_title = "palette";
 
 // The title with what was typed of it marked; returns its width.
-float draw_title(App& app, const PaletteEntry& entry, ImVec2 at) {
-  const UiColors& colors = colors_of(app);
+float draw_title(const Ui& ui, const PaletteEntry& entry, ImVec2 at) {
+  const UiColors& colors = colors_of(ui);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::string& text = entry.title;
   const float start = at.x;
@@ -28,9 +29,9 @@ float draw_title(App& app, const PaletteEntry& entry, ImVec2 at) {
       if (marked) ++mark;
       ++to;
     }
-    ImFont* font = marked ? app.fonts.strong : app.fonts.text;
+    ImFont* font = marked ? ui.fonts.strong : ui.fonts.text;
     const ImVec4& color = !entry.enabled ? colors.dim : marked ? colors.accent : colors.text;
-    const float size = app.fonts.text->FontSize;
+    const float size = ui.fonts.text->FontSize;
     const char *first = text.c_str() + from, *last = text.c_str() + to;
     list.AddText(font, size, at, packed(color), first, last);
     at.x += font->CalcTextSizeA(size, 1e9f, 0, first, last).x;
@@ -40,15 +41,15 @@ float draw_title(App& app, const PaletteEntry& entry, ImVec2 at) {
 }
 
 // A row; returns whether it was clicked.
-bool entry_row(App& app, const PaletteEntry& entry, bool chosen) {
-  const UiColors& colors = colors_of(app);
-  const float width = ImGui::GetContentRegionAvail().x, gap = 18 * app.scale;
+bool entry_row(Ui& ui, const PaletteEntry& entry, bool chosen) {
+  const UiColors& colors = colors_of(ui);
+  const float width = ImGui::GetContentRegionAvail().x, gap = 18 * ui.scale;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::PushID(entry.name.c_str());
   const bool clicked =
       ImGui::Selectable("##entry", chosen, ImGuiSelectableFlags_DontClosePopups) && entry.enabled;
-  note_widget(app.widgets, "palette/" + entry.name, KeyUse::none); // arrows and Enter are the palette's
-  const float title_width = draw_title(app, entry, from);
+  note_widget(ui.widgets, "palette/" + entry.name, KeyUse::none); // arrows and Enter are the palette's
+  const float title_width = draw_title(ui, entry, from);
   const float right_width = ImGui::CalcTextSize(entry.right.c_str()).x;
   ImGui::SameLine(title_width + gap);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);

@@ -1,6 +1,7 @@
 #include "app/ui/panels/context_menu.hpp"
 
 #include "app/document/gear_kinds.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
@@ -64,50 +65,52 @@ std::string addresses_begin(const Part& part) {
 }
 
 // A tick for each number of the part: whether it has a slider.
-void number_items(App& app, const Part& part) {
+void number_items(Session& session, Ui& ui, const Part& part) {
   const std::string begins = addresses_begin(part);
   std::vector<std::string> addresses;
-  for (std::string& address : parameter_addresses(app.mechanism()))
+  for (std::string& address : parameter_addresses(session.mechanism()))
     if (address.starts_with(begins)) addresses.push_back(std::move(address));
   if (addresses.empty() || !ImGui::BeginMenu("Slider for")) {
-    note_widget(app.widgets, "view/menu/pins");
+    note_widget(ui.widgets, "view/menu/pins");
     return;
   }
-  note_widget(app.widgets, "view/menu/pins");
+  note_widget(ui.widgets, "view/menu/pins");
   for (const std::string& address : addresses) {
-    const bool pinned = is_pinned(app.mechanism(), address);
+    const bool pinned = is_pinned(session.mechanism(), address);
     const std::string words = address.substr(begins.size());
-    const std::string unit = parameter_unit(app.mechanism(), address);
-    const std::string value = short_text(get_parameter(app.mechanism(), address)) + " " + unit;
+    const std::string unit = parameter_unit(session.mechanism(), address);
+    const std::string value = short_text(get_parameter(session.mechanism(), address)) + " " + unit;
     if (ImGui::MenuItem(words.c_str(), value.c_str(), pinned))
-      later(app, [&app, address, pinned] { pin(app, address, !pinned); });
-    note_widget(app.widgets, "view/menu/pin/" + address);
+      later(ui, [&session, address, pinned] { pin(session, address, !pinned); });
+    note_widget(ui.widgets, "view/menu/pin/" + address);
   }
   ImGui::EndMenu();
 }
 
-void drive_items(App& app, const Joint& joint) {
+void drive_items(Session& session, Ui& ui, const Joint& joint) {
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
     const int coordinate = static_cast<int>(i);
     const bool on = joint.coordinates[i].drive.has_value();
     const char* refused = on ? nullptr : drive_refused(joint, coordinate);
     const std::string words = joint.coordinates.size() == 1 ? "Driven" : "Driven: " + std::to_string(i);
     if (ImGui::MenuItem(words.c_str(), nullptr, on, !refused))
-      later(app, [&app, name = joint.name, coordinate, on] { set_driven(app, name, coordinate, !on); });
-    note_widget(app.widgets, "view/menu/drive/" + std::to_string(i));
+      later(ui, [&session, &ui, name = joint.name, coordinate, on] {
+        set_driven(session, ui, name, coordinate, !on);
+      });
+    note_widget(ui.widgets, "view/menu/drive/" + std::to_string(i));
     help_on_hover(refused ? refused : "Moves the coordinate at a constant speed.");
   }
 }
 
 // The loads of a steady state, which is shown while exploring.
-void free_body_item(App& app) {
-  const bool on = app.view.loads && app.mode == Mode::explore;
+void free_body_item(Session& session, Ui& ui, ViewState& view) {
+  const bool on = view.loads && session.mode == Mode::explore;
   if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
-    later(app, [&app, on] {
-      app.view.fit_loads = app.view.loads = !on;
-      if (!on) set_mode(app, Mode::explore);
+    later(ui, [&session, &view, on] {
+      view.fit_loads = view.loads = !on;
+      if (!on) set_mode(session, Mode::explore);
     });
-  note_widget(app.widgets, "view/menu/view.loads");
+  note_widget(ui.widgets, "view/menu/view.loads");
   help_on_hover("What acts on this body alone in the steady state; it adds up to zero.");
 }
 
@@ -132,9 +135,9 @@ void part_items(App& app) {
   if (can_give_backlash(app)) command_item(app, "edit.backlash");
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
-    drive_items(app, mechanism.joints[static_cast<std::size_t>(id.index)]);
-  if (alone) number_items(app, part);
-  if (alone && id.kind == PartKind::body) free_body_item(app);
+    drive_items(app, app, mechanism.joints[static_cast<std::size_t>(id.index)]);
+  if (alone) number_items(app, app, part);
+  if (alone && id.kind == PartKind::body) free_body_item(app, app, app.view);
   ImGui::Separator();
   command_items(app, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
 }
@@ -163,7 +166,7 @@ void view_items(App& app) {
 
 // Where a key has asked for it: at the selected part, else in the middle of the view.
 ImVec2 place_for_key(App& app, const ViewInput& input) {
-  const std::vector<PartId> selected = find_parts(*shown_mechanism(app), app.selection());
+  const std::vector<PartId> selected = find_parts(*shown_mechanism(app, app.tool), app.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
     if (!selected.empty() && instance.part == selected.back()) bounds.add(instance_bounds(instance));
@@ -190,7 +193,7 @@ void context_menu(App& app, const ViewInput& input) {
   if (input.menu && !app.tool.grab) {
     const auto hit = part_under_cursor(app, input);
     if (hit) {
-      Part part = part_of(*shown_mechanism(app), hit->part);
+      Part part = part_of(*shown_mechanism(app, app.tool), hit->part);
       if (!app.selection().has(part)) select(app, {{std::move(part)}});
     }
     const ImVec2 at = ImGui::GetIO().MousePos;

@@ -1,7 +1,7 @@
 // Where everything settles: each coordinate in the units of the screen, in SI where these are others, and its
 // error.
 #include "app/session/units.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/goal_handle.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
@@ -15,13 +15,12 @@ namespace {
 // With more coordinates than this each takes one line, and the rest appears over it.
 constexpr int spacious = 8;
 
-void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
+void free_coordinate(Session& session, Ui& ui, const CoordinateSolution& c, bool compact) {
   const auto [name, value, error, si] = *found_number(c);
-  const NumberStyle& numbers = app.options.numbers;
-  const UiColors& colors = colors_of(app);
-  const ShownUnit unit = shown_unit(si, app.units);
-  row(app, coordinate_label(c), value_text(unit.shown(value), error * unit.factor, numbers),
-      unit.text.c_str(),
+  const NumberStyle& numbers = session.options.numbers;
+  const UiColors& colors = colors_of(ui);
+  const ShownUnit unit = shown_unit(si, session.units);
+  row(ui, coordinate_label(c), value_text(unit.shown(value), error * unit.factor, numbers), unit.text.c_str(),
       c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
   const std::string in_si = " " + std::string(si), widget = "results/" + coordinate_label(c);
   std::string second; // the same in SI, where that is another unit, and its error
@@ -30,34 +29,35 @@ void free_coordinate(App& app, const CoordinateSolution& c, bool compact) {
     second +=
         (second.empty() ? "± " : "  ± ") + magnitude_text(std::max(error, numbers.noise), numbers) + in_si;
   if (c.dependent) {
-    note_widget(app.widgets, widget);
+    note_widget(ui.widgets, widget);
     if (compact) help_on_hover(second.c_str());
   } else {
-    goal_handle(app, {.name = widget,
-                      .wanted = name,
-                      .value = value,
-                      .unit = std::string(si),
-                      .help = c.speed ? "The steady speed: there the drive's torque, less its load, is what "
-                                        "turning takes."
-                              : compact ? second
-                                        : ""});
+    goal_handle(session, ui,
+                {.name = widget,
+                 .wanted = name,
+                 .value = value,
+                 .unit = std::string(si),
+                 .help = c.speed   ? "The steady speed: there the drive's torque, less its load, is what "
+                                     "turning takes."
+                         : compact ? second
+                                   : ""});
   }
   if (compact || second.empty()) return;
-  right_digits(app, second, colors.dim);
-  note_widget(app.widgets, widget + "/error");
+  right_digits(ui, second, colors.dim);
+  note_widget(ui.widgets, widget + "/error");
   ImGui::Dummy({0, 0});
 }
 
 } // namespace
 
-void coordinate_results(App& app) {
-  const auto& all = app.answer.solution.coordinates;
+void coordinate_results(Session& session, Ui& ui) {
+  const auto& all = session.answer.solution.coordinates;
   const auto free = std::ranges::count_if(all, is_found);
   if (free == 0) return;
-  heading(app, "Where it settles");
+  heading(ui, "Where it settles");
   if (free <= spacious) {
     for (const CoordinateSolution& c : all)
-      if (is_found(c)) free_coordinate(app, c, false);
+      if (is_found(c)) free_coordinate(session, ui, c, false);
     return;
   }
   // Of thousands only those that are in sight; the driven ones among them, which are few, take no line.
@@ -68,7 +68,7 @@ void coordinate_results(App& app) {
   while (clipper.Step())
     for (; next != all.end() && passed < clipper.DisplayEnd; ++next) {
       if (!is_found(*next)) continue;
-      if (passed++ >= clipper.DisplayStart) free_coordinate(app, *next, true);
+      if (passed++ >= clipper.DisplayStart) free_coordinate(session, ui, *next, true);
     }
 }
 

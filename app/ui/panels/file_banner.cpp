@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -36,16 +37,16 @@ void conflict(App& app) {
   if (text_button(app, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true)) keep_mine(app);
 }
 
-void discarded(App& app) {
+void discarded(Session& session, Ui& ui, DialogState& dialog) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("The unsaved work was discarded.");
   ImGui::SameLine();
-  if (text_button(app, "banner/bring_back", "Bring it back")) {
-    bring_back_discarded(app);
-    offer_leftovers(app);
+  if (text_button(ui, "banner/bring_back", "Bring it back")) {
+    bring_back_discarded(session);
+    offer_leftovers(session, dialog);
   }
   ImGui::SameLine();
-  if (text_button(app, "banner/close", icon::close)) app.files.aside.clear();
+  if (text_button(ui, "banner/close", icon::close)) session.files.aside.clear();
 }
 
 } // namespace
@@ -66,7 +67,7 @@ void file_banner(App& app, const PanelRect& view) {
   if (both_changed)
     conflict(app);
   else
-    discarded(app);
+    discarded(app, app, app.dialog);
   ImGui::End();
 }
 

@@ -1,7 +1,7 @@
 // What dry friction makes of the steady state: how far it may stand away, whether the drawn pose holds, and
 // the speeds between which it does not move.
 #include "app/session/units.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -24,62 +24,62 @@ std::string percent_words(double part) {
   return std::isfinite(part) ? short_text(100 * part, 3) : "∞";
 }
 
-void band_rows(App& app, const FrictionBand& band) {
+void band_rows(const Session& session, Ui& ui, const FrictionBand& band) {
   for (const BandExtent& extent : band.extents) {
-    const ShownUnit unit = shown_unit(extent.unit, app.units);
-    row(app, extent.name, range_words(unit, extent.low, extent.high), unit.text.c_str(),
+    const ShownUnit unit = shown_unit(extent.unit, session.units);
+    row(ui, extent.name, range_words(unit, extent.low, extent.high), unit.text.c_str(),
         ("Between these friction holds it, wherever it came to rest." +
          (extent.error
               ? "\nEach end within " + short_text(unit.shown(*extent.error), 1) + " " + unit.text + "."
               : std::string()))
             .c_str());
-    note_widget(app.widgets, "results/friction/" + extent.name);
+    note_widget(ui.widgets, "results/friction/" + extent.name);
   }
-  if (!band.message.empty()) paragraph(band.message, colors_of(app).dim);
+  if (!band.message.empty()) paragraph(band.message, colors_of(ui).dim);
 }
 
-void drawn_rows(App& app, const Holding& drawn) {
-  if (!drawn.takes) return paragraph("Drawn pose: " + drawn.message, colors_of(app).dim);
+void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
+  if (!drawn.takes) return paragraph("Drawn pose: " + drawn.message, colors_of(ui).dim);
   std::string help = drawn.message;
   for (const HeldJoint& joint : drawn.joints) {
-    const ShownUnit unit = shown_unit(joint.angle ? "N m" : "N", app.units);
+    const ShownUnit unit = shown_unit(joint.angle ? "N m" : "N", session.units);
     help += "\n" + coordinate_label(joint) + ": at most " + short_text(unit.shown(joint.limit), digits) +
             " " + unit.text;
     if (joint.force) help += ", needed " + short_text(unit.shown(*joint.force), digits) + " " + unit.text;
   }
-  row(app, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs",
-      percent_words(*drawn.takes), "%", help.c_str());
-  note_widget(app.widgets, "results/friction/drawn");
+  row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs", percent_words(*drawn.takes),
+      "%", help.c_str());
+  note_widget(ui.widgets, "results/friction/drawn");
 }
 
-void speed_rows(App& app, const std::vector<HeldSpeeds>& all) {
+void speed_rows(const Session& session, Ui& ui, const std::vector<HeldSpeeds>& all) {
   for (const HeldSpeeds& held : all) {
-    const ShownUnit unit = rate_unit(held.angle, app.units);
+    const ShownUnit unit = rate_unit(held.angle, session.units);
     const std::string low = held.lower ? short_text(unit.shown(*held.lower), digits) : "rest",
                       high = held.upper ? short_text(unit.shown(*held.upper), digits) : "any";
-    row(app, "Unmoved by " + coordinate_label(held), low + " … " + high, unit.text.c_str(),
+    row(ui, "Unmoved by " + coordinate_label(held), low + " … " + high, unit.text.c_str(),
         "Between these speeds friction holds it where it stands.");
     if (const auto part = held.insensitivity())
-      row(app, "Insensitivity", percent_words(*part), "%",
+      row(ui, "Insensitivity", percent_words(*part), "%",
           "The difference of these speeds over their mean: what a governor does not answer.");
-    note_widget(app.widgets, "results/friction/" + coordinate_label(held) + "/speeds");
+    note_widget(ui.widgets, "results/friction/" + coordinate_label(held) + "/speeds");
   }
 }
 
 } // namespace
 
-void friction_results(App& app) {
-  const FrictionReport* friction = friction_report(app);
+void friction_results(const Session& session, Ui& ui) {
+  const FrictionReport* friction = friction_report(session);
   if (!friction) return;
-  heading(app, "Held by friction");
+  heading(ui, "Held by friction");
   help_on_hover(
       "At rest friction gives whatever holds, up to its limits: the steady state is a band. Above is the "
       "state at the joints' shares; stability is told of the motion once they slip.");
-  band_rows(app, friction->band);
-  drawn_rows(app, friction->drawn);
-  speed_rows(app, friction->speeds);
-  if (app.options.numbers.run_times)
-    row(app, "Run time", duration_text(friction->run_time_s, app.options.numbers), "");
+  band_rows(session, ui, friction->band);
+  drawn_rows(session, ui, friction->drawn);
+  speed_rows(session, ui, friction->speeds);
+  if (session.options.numbers.run_times)
+    row(ui, "Run time", duration_text(friction->run_time_s, session.options.numbers), "");
 }
 
 } // namespace flyball

@@ -1,4 +1,5 @@
 // Every step since the document was opened, to go back to.
+#include "app/ui/app.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -9,24 +10,25 @@ namespace flyball {
 
 namespace {
 
-void step_row(App& app, std::size_t i, float height) {
-  const UiColors& colors = colors_of(app);
-  const std::size_t present = app.document.position();
+void step_row(Session& session, Ui& ui, std::size_t i, float height) {
+  const UiColors& colors = colors_of(ui);
+  const std::size_t present = session.document.position();
   const std::string widget = "history/" + std::to_string(i);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
-  if (ImGui::InvisibleButton(widget.c_str(), {width, height})) later(app, [&app, i] { go_to_step(app, i); });
-  note_widget(app.widgets, widget, KeyUse::row);
-  if (i == present) mark_chosen(app.widgets);
+  if (ImGui::InvisibleButton(widget.c_str(), {width, height}))
+    later(ui, [&session, i] { go_to_step(session, i); });
+  note_widget(ui.widgets, widget, KeyUse::row);
+  if (i == present) mark_chosen(ui.widgets);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 to(from.x + width, from.y + height);
   if (ImGui::IsItemHovered() || i == present)
     list.AddRectFilled(from, to, packed(colors.raised), ImGui::GetStyle().FrameRounding);
   if (i == present)
-    list.AddRectFilled(from, {from.x + 3 * app.scale, to.y}, packed(colors.accent), 1.5f * app.scale);
-  ImGui::SetCursorScreenPos({from.x + 9 * app.scale, from.y + (height - ImGui::GetTextLineHeight()) / 2});
+    list.AddRectFilled(from, {from.x + 3 * ui.scale, to.y}, packed(colors.accent), 1.5f * ui.scale);
+  ImGui::SetCursorScreenPos({from.x + 9 * ui.scale, from.y + (height - ImGui::GetTextLineHeight()) / 2});
   ImGui::PushStyleColor(ImGuiCol_Text, i > present ? colors.dim : colors.text);
-  clipped_text(app.document.steps()[i].name, width - 12 * app.scale);
+  clipped_text(session.document.steps()[i].name, width - 12 * ui.scale);
   ImGui::PopStyleColor();
   ImGui::SetCursorScreenPos({from.x, to.y});
 }
@@ -61,7 +63,7 @@ void history_panel(App& app) {
     clipper.Begin(count, height);
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        step_row(app, static_cast<std::size_t>(i), height);
+        step_row(app, app, static_cast<std::size_t>(i), height);
   }
   ImGui::End();
   ImGui::PopStyleVar(4);

@@ -1,4 +1,4 @@
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <fmt/format.h>
@@ -35,18 +35,18 @@ Decades decades_of(const std::vector<double>& history, double noise) {
 
 } // namespace
 
-void history_plot(App& app, float width, float height) {
-  const std::vector<double>& history = app.answer.solution.history;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+void history_plot(const Session& session, Ui& ui, float width, float height) {
+  const std::vector<double>& history = session.answer.solution.history;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale;
   ImGui::Dummy({0, 2 * s});
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, height});
-  note_widget(app.widgets, "results/history");
+  note_widget(ui.widgets, "results/history");
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImFont* font = app.fonts.digits;
+  const ImFont* font = ui.fonts.digits;
   const float text = std::round(0.85f * font->FontSize);
-  const Decades decades = decades_of(history, app.options.numbers.noise);
+  const Decades decades = decades_of(history, session.options.numbers.noise);
 
   const float left = from.x + 44 * s, right = from.x + width - 6 * s;
   const float top = from.y + 8 * s, bottom = from.y + height - text - 8 * s;
@@ -69,8 +69,8 @@ void history_plot(App& app, float width, float height) {
   list.AddText(font, text, {right - wide, bottom + 5 * s}, packed(colors.dim), last.c_str());
   const char* axis = "residual by evaluation";
   const float axis_size = std::round(0.87f * ImGui::GetFontSize());
-  const float axis_width = app.fonts.text->CalcTextSizeA(axis_size, 1e9f, 0, axis).x;
-  list.AddText(app.fonts.text, axis_size, {(left + right - axis_width) / 2, bottom + 4 * s},
+  const float axis_width = ui.fonts.text->CalcTextSizeA(axis_size, 1e9f, 0, axis).x;
+  list.AddText(ui.fonts.text, axis_size, {(left + right - axis_width) / 2, bottom + 4 * s},
                packed(colors.dim), axis);
 
   for (std::size_t i = 0; i + 1 < history.size(); ++i)

@@ -1,5 +1,6 @@
 #include "app/ui/panels/legend.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -27,60 +28,60 @@ void dashes(ImDrawList& list, ImVec2 from, ImVec2 to, ImU32 color, float scale) 
       list.AddLine({x, y}, {x, std::min(y + on, to.y)}, color, thick);
 }
 
-void draw_mark(const App& app, LegendMark mark, ImVec2 from, ImVec2 to) {
-  const Palette& colors = palette(app.theme);
+void draw_mark(const Session& session, const Ui& ui, LegendMark mark, ImVec2 from, ImVec2 to) {
+  const Palette& colors = palette(ui.theme);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const BodyHues& hues = app.document.hues();
+  const BodyHues& hues = session.document.hues();
   const Color body = colors.bodies[hues.empty() ? 0 : hues.front() % colors.bodies.size()];
   const auto fill = [&](Color color, float alpha) {
     color.a = alpha;
-    list.AddRectFilled(from, to, packed(to_imgui(color)), 2 * app.scale);
+    list.AddRectFilled(from, to, packed(to_imgui(color)), 2 * ui.scale);
   };
   if (mark == LegendMark::solid || mark == LegendMark::outlined) fill(body, 1);
   if (mark == LegendMark::glass) fill(body, 0.45f);
   if (mark == LegendMark::motion) fill(colors.motion, colors.motion.a);
   if (mark == LegendMark::outlined || mark == LegendMark::dashed)
-    dashes(list, from, to, packed(to_imgui(colors.drawn)), app.scale);
+    dashes(list, from, to, packed(to_imgui(colors.drawn)), ui.scale);
 }
 
 } // namespace
 
 namespace {
 
-std::vector<LegendRow> pose_rows(App& app) {
-  if (app.mechanism().bodies.empty() || !app.view.scene.scene) return {};
-  const ViewScene& scene = *app.view.scene.scene;
+std::vector<LegendRow> pose_rows(const Session& session, const ToolState& tool, const ViewState& view) {
+  if (session.mechanism().bodies.empty() || !view.scene.scene) return {};
+  const ViewScene& scene = *view.scene.scene;
   const bool apart = !scene.drawn.empty(); // the two poses differ
-  const bool periodic = !converged(app) && periodic_motion(app);
+  const bool periodic = !converged(session) && periodic_motion(session);
   const std::string found = periodic ? "Periodic motion" : "Steady state";
   std::vector<LegendRow> rows;
-  if (app.tool.assembly) {
+  if (tool.assembly) {
     rows.push_back({LegendMark::solid, "Drawn pose"});
     if (apart) rows.push_back({LegendMark::dashed, "Before the pull"});
     return rows;
   }
-  if (app.mode == Mode::build) {
+  if (session.mode == Mode::build) {
     rows.push_back({apart ? LegendMark::outlined : LegendMark::solid, "Drawn pose"});
     if (apart)
       rows.push_back({LegendMark::glass, found});
-    else if (converged(app) && app.view.ghost && !solving(app))
+    else if (converged(session) && view.ghost && !solving(session))
       rows.front().words = "Drawn pose = steady state";
     return rows;
   }
-  const bool moves = !app.view.scene.source.poses.empty();
-  if (converged(app) || periodic)
+  const bool moves = !view.scene.source.poses.empty();
+  if (converged(session) || periodic)
     rows.push_back({LegendMark::solid, found});
   else
-    rows.push_back({LegendMark::solid, moves ? motion_words(app) : std::string("Drawn pose")});
+    rows.push_back({LegendMark::solid, moves ? motion_words(session) : std::string("Drawn pose")});
   if (apart) rows.push_back({LegendMark::dashed, "Drawn pose"});
-  if (!scene.motion.empty()) rows.push_back({LegendMark::motion, motion_words(app)});
+  if (!scene.motion.empty()) rows.push_back({LegendMark::motion, motion_words(session)});
   return rows;
 }
 
 } // namespace
 
 std::vector<LegendRow> legend_rows(App& app) {
-  std::vector<LegendRow> rows = pose_rows(app);
+  std::vector<LegendRow> rows = pose_rows(app, app.tool, app.view);
   if (rows.empty()) return rows;
   if (const std::size_t hidden = app.view.scene.source.hidden.size())
     rows.push_back({.mark = LegendMark::note,
@@ -95,14 +96,14 @@ namespace {
 constexpr float largest_share = 0.2f; // of the view, that an open legend takes unasked
 
 // How much of the loads' arrows lies in a part of the view, in fifths of an arrow.
-int arrows_within(const App& app, const PanelRect& view, ImVec2 from, ImVec2 to) {
-  const ShownScene& shown = app.view.scene;
+int arrows_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
+  const ShownScene& shown = state.scene;
   if (!shown.scene || !shown.source.loads) return 0;
   const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
   int within = 0;
   for (const LoadArrow& arrow : shown.scene->arrows.arrows)
     for (const double part : {0.2, 0.4, 0.6, 0.8, 1.}) {
-      const auto at = app.view.camera.project(arrow.from + part * (arrow.to - arrow.from), size);
+      const auto at = state.camera.project(arrow.from + part * (arrow.to - arrow.from), size);
       if (!at) continue;
       const float x = view.x + static_cast<float>(at->x()), y = view.y + static_cast<float>(at->y());
       within += x > from.x && x < to.x && y > from.y && y < to.y;
@@ -112,15 +113,16 @@ int arrows_within(const App& app, const PanelRect& view, ImVec2 from, ImVec2 to)
 
 // The corner of the view in which a legend of this size hides the fewest arrows, the upper one where that is
 // all the same. It does not jump while the view is turned.
-float legend_top(App& app, const PanelRect& view, ImVec2 size) {
-  const float s = app.scale, left = view.x + view.width - 10 * s - size.x;
+float legend_top(const Ui& ui, const ViewState& state, PanelState& panels, const PanelRect& view,
+                 ImVec2 size) {
+  const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
   const float upper = view.y + 10 * s, lower = view.y + view.height - 44 * s - size.y; // above the chips
   const auto hidden = [&](float top) {
-    return arrows_within(app, view, {left, top}, {left + size.x, top + size.y});
+    return arrows_within(state, view, {left, top}, {left + size.x, top + size.y});
   };
-  if (!ImGui::IsAnyMouseDown() && app.panels.legend)
-    app.panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
-  return app.panels.legend_low ? lower : upper;
+  if (!ImGui::IsAnyMouseDown() && panels.legend)
+    panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
+  return panels.legend_low ? lower : upper;
 }
 
 } // namespace
@@ -152,7 +154,8 @@ void legend(App& app, const PanelRect& view, bool folds) {
   const bool open = !folds || (crowded ? app.panels.legend_anyway : app.panels.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
-  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(legend_top(app, view, size))},
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s),
+                           std::round(legend_top(app, app.view, app.panels, view, size))},
                           ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
@@ -191,7 +194,7 @@ void legend(App& app, const PanelRect& view, bool folds) {
     if (shown[i].mark == LegendMark::load)
       draw_load_mark(app, shown[i], {at.x + s, at.y}, line);
     else if (!note)
-      draw_mark(app, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
+      draw_mark(app, app, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
     list.AddText({at.x + (note ? s : width + 7 * s), at.y}, packed(note ? colors.dim : colors.text),
                  shown[i].words.c_str());
     ImGui::Dummy({room, line});

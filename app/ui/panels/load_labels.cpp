@@ -1,5 +1,6 @@
 #include "app/ui/panels/load_labels.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -70,12 +71,12 @@ bool is_one_of_many(const Solution& solution, const std::string& part, const Loa
 }
 
 // What else is drawn over the view.
-std::vector<LabelBox> taken_by_others(const App& app, const PanelRect& rect) {
+std::vector<LabelBox> taken_by_others(const Ui& ui, const ViewState& view, const PanelRect& rect) {
   std::vector<LabelBox> taken;
   if (const ImGuiWindow* legend = ImGui::FindWindowByName("legend"); legend && legend->WasActive)
     taken.push_back({legend->Pos, {legend->Pos.x + legend->Size.x, legend->Pos.y + legend->Size.y}});
-  if (has_view_cube(app, rect)) {
-    const WidgetRect cube = app.widgets.at("view/cube");
+  if (has_view_cube(ui, view, rect)) {
+    const WidgetRect cube = ui.widgets.at("view/cube");
     taken.push_back({cube.from, cube.to});
   }
   return taken;
@@ -106,21 +107,21 @@ std::optional<LabelBox> free_place(ImVec2 best, ImVec2 half, const LabelBox& roo
 
 } // namespace
 
-void load_labels(App& app, const PanelRect& rect) {
-  const ShownScene& shown = app.view.scene;
+void load_labels(Ui& ui, const ViewState& view, const PanelRect& rect) {
+  const ShownScene& shown = view.scene;
   if (!shown.scene || !shown.source.loads || shown.source.loads_body < 0) return;
   const ViewScene& scene = *shown.scene;
-  const ViewCamera& camera = app.view.camera;
+  const ViewCamera& camera = view.camera;
   const ViewSize size{static_cast<double>(rect.width), static_cast<double>(rect.height)};
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = 4 * s;
-  const ImFont& font = *app.fonts.text;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, pad = 4 * s;
+  const ImFont& font = *ui.fonts.text;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float above = app.view.alone ? pad : 32 * s,
-              below = app.view.alone ? pad : 44 * s; // the view's own lines
+  const float above = view.alone ? pad : 32 * s,
+              below = view.alone ? pad : 44 * s; // the view's own lines
   const LabelBox room{{rect.x + pad, rect.y + above},
                       {rect.x + rect.width - pad, rect.y + rect.height - below}};
-  std::vector<LabelBox> taken = taken_by_others(app, rect);
+  std::vector<LabelBox> taken = taken_by_others(ui, view, rect);
   for (const LoadArrow& arrow : scene.arrows.arrows) {
     const Load& load = scene.loads[arrow.load];
     const auto tail = camera.project(arrow.from, size), tip = camera.project(arrow.to, size);
@@ -140,10 +141,10 @@ void load_labels(App& app, const PanelRect& rect) {
       plate.w = 0.85f;
       list.AddRectFilled(box.from, box.to, packed(plate), 3 * s);
       list.AddRectFilled(box.from, {box.from.x + 3 * s, box.to.y},
-                         packed(load_color(load.kind, palette(app.theme)), 1), 2 * s);
-      list.AddText(app.fonts.text, font.FontSize, {box.from.x + pad + 2 * s, box.from.y + s},
+                         packed(load_color(load.kind, palette(ui.theme)), 1), 2 * s);
+      list.AddText(ui.fonts.text, font.FontSize, {box.from.x + pad + 2 * s, box.from.y + s},
                    packed(colors.text), words.c_str());
-      app.widgets["load/" + words.substr(0, words.find(' ')) + (load.moment ? "/moment" : "/force")] = {
+      ui.widgets["load/" + words.substr(0, words.find(' ')) + (load.moment ? "/moment" : "/force")] = {
           box.from, box.to};
       taken.push_back(box);
     }

@@ -1,5 +1,6 @@
 #include "app/ui/panels/load_legend.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/load_view.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -86,7 +87,8 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
   const auto note = [&](std::string words) {
     rows.push_back({.mark = LegendMark::note, .words = std::move(words)});
   };
-  if (const std::string missing = loads_missing(app); !missing.empty()) return note(missing);
+  if (const std::string missing = loads_missing(app, app.tool, app.view); !missing.empty())
+    return note(missing);
   const ShownScene& shown = app.view.scene;
   if (!shown.scene || !shown.source.loads) return;
   const ViewScene& scene = *shown.scene;

@@ -1,5 +1,6 @@
 // What the drives and joints bear.
-#include "app/ui/panels.hpp"
+#include "app/ui/panel_state.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -25,11 +26,11 @@ std::string vector_text(const Vec3& v, double largest) {
   return text;
 }
 
-void drive_torques(App& app) {
-  const std::vector<DriveTorque>& torques = app.answer.solution.drive_torques;
+void drive_torques(const Session& session, Ui& ui, PanelState& panels) {
+  const std::vector<DriveTorque>& torques = session.answer.solution.drive_torques;
   if (torques.empty()) return;
-  ImGui::Dummy({0, 2 * app.scale});
-  if (!section(app, "results/torques", "Drive torques", app.panels.torques)) return;
+  ImGui::Dummy({0, 2 * ui.scale});
+  if (!section(ui, "results/torques", "Drive torques", panels.torques)) return;
   double largest = 0;
   struct Row {
     const DriveTorque* torque;
@@ -44,16 +45,16 @@ void drive_torques(App& app) {
   visible_rows(rows.size(), [&](std::size_t i) {
     const DriveTorque& t = *rows[i].torque;
     const char* unit = t.angle ? "N m" : "N";
-    const auto text = [&](double value) { return force_text(value, largest, app.options.numbers); };
+    const auto text = [&](double value) { return force_text(value, largest, session.options.numbers); };
     if (rows[i].range)
-      return row(app, "   least … greatest", text(t.range->least) + " … " + text(t.range->most), unit,
+      return row(ui, "   least … greatest", text(t.range->least) + " … " + text(t.range->most), unit,
                  "Over all phases of the drives.");
     std::string help = "By the drive, positive along its coordinate.";
     if (t.varying)
       help += "\nChanges as the drives turn; at the drawn phase " + text(t.value) + " " + unit + ".";
     if (t.nonunique) help += "\nThe loops share it among several drives: the smallest that do it.";
     const std::string name = coordinate_label(t);
-    row(app,
+    row(ui,
         !t.varying ? name
         : t.range  ? name + " (mean)"
                    : name + " (varies)",
@@ -62,13 +63,13 @@ void drive_torques(App& app) {
 }
 
 // What gears do along the coordinates of their joints, whose reactions include it.
-void gear_reactions(App& app, double force, double torque) {
-  const std::vector<GearReaction>& gears = app.answer.solution.gears;
-  const NumberStyle& numbers = app.options.numbers;
+void gear_reactions(const Session& session, const Ui& ui, double force, double torque) {
+  const std::vector<GearReaction>& gears = session.answer.solution.gears;
+  const NumberStyle& numbers = session.options.numbers;
   visible_rows(2 * gears.size(), [&](std::size_t i) {
     const GearReaction& g = gears[i / 2];
     const bool second = i % 2 == 1, angle = second ? g.angle_b : g.angle_a;
-    row(app,
+    row(ui,
         second      ? ""
         : g.varying ? g.joint + " (varies)"
                     : g.joint,
@@ -79,28 +80,27 @@ void gear_reactions(App& app, double force, double torque) {
 }
 
 // What bearings exert on their second bodies.
-void bearing_forces(App& app, double force, double torque) {
-  const std::vector<BearingForce>& all = app.answer.solution.bearings;
+void bearing_forces(const Session& session, const Ui& ui, double force, double torque) {
+  const std::vector<BearingForce>& all = session.answer.solution.bearings;
   const bool torques = torque > 1e-9 * force;
   const std::size_t rows = torques ? 2 : 1;
   visible_rows(rows * all.size(), [&](std::size_t i) {
     const BearingForce& b = all[i / rows];
-    if (i % rows == 1)
-      return row(app, "", vector_text(b.torque, torque), "N m", "About the bearing's point.");
-    row(app, b.bearing + (b.varying ? " (varies)" : ""), vector_text(b.force, force), "N",
+    if (i % rows == 1) return row(ui, "", vector_text(b.torque, torque), "N m", "About the bearing's point.");
+    row(ui, b.bearing + (b.varying ? " (varies)" : ""), vector_text(b.force, force), "N",
         b.varying ? "The bearing on its second body. Changes as the drives turn; at the drawn phase."
                   : "The bearing on its second body.");
   });
 }
 
-void reactions(App& app) {
-  const Solution& solution = app.answer.solution;
+void reactions(const Session& session, Ui& ui, PanelState& panels) {
+  const Solution& solution = session.answer.solution;
   if (solution.reactions.empty() && solution.bearings.empty()) return;
-  if (!section(app, "results/reactions", "Reactions", app.panels.reactions)) return;
+  if (!section(ui, "results/reactions", "Reactions", panels.reactions)) return;
   paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
                                            "they need; of those marked ≈ these are the smallest that do it."
                                          : "Parent on child: x, y, z of the world.",
-            colors_of(app).dim);
+            colors_of(ui).dim);
   double force = 0, torque = 0;
   for (const Reaction& r : solution.reactions) {
     force = std::max(force, r.force.lpNorm<Eigen::Infinity>());
@@ -115,22 +115,22 @@ void reactions(App& app) {
   const std::size_t rows = torques ? 2 : 1;
   visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
     const Reaction& r = solution.reactions[i / rows];
-    if (i % rows == 1) return row(app, "", vector_text(r.torque, torque), "N m");
-    row(app, std::string(r.nonunique ? "≈ " : "") + r.joint + (r.varying ? " (varies)" : ""),
+    if (i % rows == 1) return row(ui, "", vector_text(r.torque, torque), "N m");
+    row(ui, std::string(r.nonunique ? "≈ " : "") + r.joint + (r.varying ? " (varies)" : ""),
         vector_text(r.force, force), "N",
         r.varying     ? "Changes as the drives turn; at the drawn phase."
         : r.nonunique ? "The loops hold more than they need; of many possible ones the smallest."
                       : nullptr);
   });
-  bearing_forces(app, force, torque);
-  gear_reactions(app, force, torque);
+  bearing_forces(session, ui, force, torque);
+  gear_reactions(session, ui, force, torque);
 }
 
 } // namespace
 
-void load_results(App& app) {
-  drive_torques(app);
-  reactions(app);
+void load_results(Session& session, Ui& ui, PanelState& panels) {
+  drive_torques(session, ui, panels);
+  reactions(session, ui, panels);
 }
 
 } // namespace flyball

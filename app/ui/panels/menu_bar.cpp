@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/widgets/widgets.hpp"

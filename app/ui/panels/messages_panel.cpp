@@ -1,4 +1,5 @@
 // What was told before, the latest first; Enter or a click copies a line.
+#include "app/ui/app.hpp"
 #include "app/ui/layout.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -20,20 +21,20 @@ std::string clock_text(std::chrono::system_clock::time_point when) {
   return text.data();
 }
 
-void message_row(App& app, std::size_t i, float wrap) {
-  const UiColors& colors = colors_of(app);
-  const PastNotice& notice = app.notice_log.past[i];
-  const float s = app.scale, indent = ImGui::CalcTextSize("00:00:00").x + 10 * s;
+void message_row(Ui& ui, NoticeLog& log, std::size_t i, float wrap) {
+  const UiColors& colors = colors_of(ui);
+  const PastNotice& notice = log.past[i];
+  const float s = ui.scale, indent = ImGui::CalcTextSize("00:00:00").x + 10 * s;
   const std::string text = (notice.error ? "Error: " : "") + notice.text;
   const float height = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap - indent).y + 6 * s;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::PushID(static_cast<int>(i));
   if (ImGui::Selectable("##message", false, 0, {0, height})) ImGui::SetClipboardText(notice.text.c_str());
   ImGui::PopID();
-  note_widget(app.widgets, "messages/" + std::to_string(app.notice_log.past.size() - i), KeyUse::row);
+  note_widget(ui.widgets, "messages/" + std::to_string(log.past.size() - i), KeyUse::row);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText({from.x, from.y + 3 * s}, packed(colors.dim), clock_text(notice.when).c_str());
-  list.AddText(app.fonts.text, ImGui::GetFontSize(), {from.x + indent, from.y + 3 * s},
+  list.AddText(ui.fonts.text, ImGui::GetFontSize(), {from.x + indent, from.y + 3 * s},
                packed(notice.error ? colors.bad : colors.text), text.c_str(), nullptr, wrap - indent);
 }
 
@@ -53,7 +54,7 @@ void messages_panel(App& app) {
     const float wrap = ImGui::GetContentRegionAvail().x;
     if (app.notice_log.past.empty()) paragraph("Nothing has been told yet.", colors_of(app).dim);
     for (std::size_t i = app.notice_log.past.size(); i-- > 0;)
-      message_row(app, i, wrap);
+      message_row(app, app.notice_log, i, wrap);
     note_widget(app.widgets, "messages", KeyUse::none);
   }
   ImGui::End();

@@ -1,5 +1,6 @@
 // The parts of the mechanism as a list in three sections, in step with what is selected in the view.
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
@@ -96,20 +97,20 @@ std::vector<PartId> open_rows(const Outline& outline) {
   return rows;
 }
 
-void keep_rows(App& app) {
-  OutlineRows& kept = app.inspector.rows;
-  const std::string& search = app.inspector.search;
-  if (kept.revision == app.document.revision() && kept.theme == app.theme && kept.search == search) return;
-  kept.revision = app.document.revision();
-  kept.theme = app.theme;
+void keep_rows(const Session& session, const Ui& ui, InspectorState& inspector) {
+  OutlineRows& kept = inspector.rows;
+  const std::string& search = inspector.search;
+  if (kept.revision == session.document.revision() && kept.theme == ui.theme && kept.search == search) return;
+  kept.revision = session.document.revision();
+  kept.theme = ui.theme;
   kept.search = search;
-  kept.colours = body_colors(app.document.hues(), app.theme);
+  kept.colours = body_colors(session.document.hues(), ui.theme);
   for (std::size_t i = 0; i < outline_sections.size(); ++i) {
     kept.listed[i].clear();
-    const int count = static_cast<int>(count_of(app.mechanism(), outline_sections[i].kind));
+    const int count = static_cast<int>(count_of(session.mechanism(), outline_sections[i].kind));
     for (int k = 0; k < count; ++k)
       if (const PartId id{outline_sections[i].kind, k};
-          search.empty() || matches(name_of(app.mechanism(), id), search))
+          search.empty() || matches(name_of(session.mechanism(), id), search))
         kept.listed[i].push_back(id);
   }
 }
@@ -245,7 +246,7 @@ void part_row(Outline& outline, PartId id) {
     ImGui::SetCursorScreenPos({from.x + 22 * app.scale, from.y});
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         {6 * app.scale, (outline.height - ImGui::GetFontSize()) / 2});
-    name_field(app, field, part, width - 22 * app.scale);
+    name_field(app, app, field, part, width - 22 * app.scale);
     ImGui::PopStyleVar();
     ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
     return;
@@ -257,7 +258,7 @@ void part_row(Outline& outline, PartId id) {
   const bool hovered = ImGui::IsItemHovered();
   if (hovered) app.view.hovered = id;
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
-    later(app, [&app, field, name = part.name] { start_typing(app, field, name); });
+    later(app, [&app, field, name = part.name] { start_typing(app, app, field, name); });
   if (takes_menu_key(app, widget)) ImGui::OpenPopup(ImGui::GetItemID());
   row_menu(app, part);
   ImGui::PopID();
@@ -275,7 +276,7 @@ void part_section(Outline& outline, std::size_t section) {
   const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
   const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
   if (reveal) app.sections.open[std::string("outline/") + words.list] = true;
-  if (!inspector_section(app, std::string("outline/") + words.list, title.c_str(), true)) return;
+  if (!inspector_section(app, app, std::string("outline/") + words.list, title.c_str(), true)) return;
   outline.open[section] = true;
   if (reveal) {
     const auto row = std::ranges::find(shown, find_part(outline.mechanism(), last));
@@ -294,24 +295,24 @@ void part_section(Outline& outline, std::size_t section) {
   ImGui::PopID();
 }
 
-void search_field(App& app) {
-  const Mechanism& mechanism = app.mechanism();
+void search_field(const Session& session, Ui& ui, InspectorState& inspector) {
+  const Mechanism& mechanism = session.mechanism();
   if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable_parts) {
-    app.inspector.search.clear();
+    inspector.search.clear();
     return;
   }
   ImGui::SetNextItemWidth(-1);
-  ImGui::InputTextWithHint("##search", "Search", &app.inspector.search);
-  note_widget(app.widgets, "outline/search", KeyUse::type);
-  ImGui::Dummy({0, 4 * app.scale});
+  ImGui::InputTextWithHint("##search", "Search", &inspector.search);
+  note_widget(ui.widgets, "outline/search", KeyUse::type);
+  ImGui::Dummy({0, 4 * ui.scale});
 }
 
-void what_is_missing(App& app) {
+void what_is_missing(Session& session, Ui& ui, InspectorState& inspector) {
   const float top = ImGui::GetCursorPosY();
-  ImGui::Dummy({0, 6 * app.scale});
-  heading(app, "What is missing");
-  mistake_rows(app, "mistakes", 0, most_mistakes);
-  app.inspector.missing_height = ImGui::GetCursorPosY() - top;
+  ImGui::Dummy({0, 6 * ui.scale});
+  heading(ui, "What is missing");
+  mistake_rows(session, ui, "mistakes", 0, most_mistakes);
+  inspector.missing_height = ImGui::GetCursorPosY() - top;
 }
 
 } // namespace
@@ -321,18 +322,18 @@ void start_rename(App& app) {
   const Part& part = app.selection().parts.front();
   const bool listed = app.mode == Mode::build;
   app.inspector.revealed = {}; // bring its row into view
-  start_typing(app, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
+  start_typing(app, app, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
 }
 
 void outline_panel(App& app, const PanelRect& rect) {
   begin_panel("outline", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
-  search_field(app);
+  search_field(app, app, app.inspector);
   // What is missing stays in view below the list.
   const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;
   ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false);
-  keep_rows(app);
+  keep_rows(app, app, app.inspector);
   Outline outline{app, {}, {}, 0};
   outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
   for (std::size_t i = 0; i < app.mistakes.size(); ++i)
@@ -350,7 +351,7 @@ void outline_panel(App& app, const PanelRect& rect) {
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
     later(app, [&app] { select(app, {}); });
   ImGui::EndChild();
-  if (!none && !app.mistakes.empty()) what_is_missing(app);
+  if (!none && !app.mistakes.empty()) what_is_missing(app, app, app.inspector);
   ImGui::PopStyleVar();
   ImGui::End();
 }

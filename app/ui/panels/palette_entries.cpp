@@ -5,6 +5,7 @@
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/layout.hpp"
 #include "engine/mechanism/address.hpp"
@@ -100,18 +101,18 @@ struct Ranked {
   PaletteEntry entry;
 };
 
-int recent_bonus(const App& app, const std::string& name) {
-  const auto found = std::ranges::find(app.commands.recent, name);
-  if (found == app.commands.recent.end()) return 0;
-  return recently_used - static_cast<int>(found - app.commands.recent.begin());
+int recent_bonus(const CommandState& commands, const std::string& name) {
+  const auto found = std::ranges::find(commands.recent, name);
+  if (found == commands.recent.end()) return 0;
+  return recently_used - static_cast<int>(found - commands.recent.begin());
 }
 
 // Whether the entry answers, with what it makes of a number behind its name.
-void try_entry(const App& app, const std::string& search, const PaletteEntry& entry,
-               std::vector<Ranked>& ranked) {
+void try_entry(const Session& session, const CommandState& commands, const std::string& search,
+               const PaletteEntry& entry, std::vector<Ranked>& ranked) {
   if (FuzzyMatch match = fuzzy_match(search, entry.title, entry.more)) {
     ranked.push_back(
-        {match.score + recent_bonus(app, entry.name) + (entry.enabled ? 0 : disabled_command), entry});
+        {match.score + recent_bonus(commands, entry.name) + (entry.enabled ? 0 : disabled_command), entry});
     ranked.back().entry.marks = std::move(match.marks);
     return;
   }
@@ -120,13 +121,13 @@ void try_entry(const App& app, const std::string& search, const PaletteEntry& en
   if (number.empty()) return;
   FuzzyMatch match = fuzzy_match(words, entry.title, entry.more);
   if (!match) return;
-  const std::string unit = parameter_unit(app.mechanism(), entry.address);
-  const Quantity typed = parse_quantity(number, unit, shown_unit(unit, app.units).text);
+  const std::string unit = parameter_unit(session.mechanism(), entry.address);
+  const Quantity typed = parse_quantity(number, unit, shown_unit(unit, session.units).text);
   if (!typed) return;
   // Numbers with a slider are what is most likely meant.
-  const bool slider =
-      std::ranges::find(app.parameters, entry.address, &ParameterControl::address) != app.parameters.end();
-  ranked.push_back({match.score + recent_bonus(app, entry.name) + (slider ? 25 : 0), entry});
+  const bool slider = std::ranges::find(session.parameters, entry.address, &ParameterControl::address) !=
+                      session.parameters.end();
+  ranked.push_back({match.score + recent_bonus(commands, entry.name) + (slider ? 25 : 0), entry});
   ranked.back().entry.marks = std::move(match.marks);
   ranked.back().entry.value = typed.value;
 }
@@ -147,7 +148,7 @@ Part part_of_address(const std::string& address) {
 }
 
 void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*shown_mechanism(app), part);
+  const PartId id = find_part(*shown_mechanism(app, app.tool), part);
   const SceneList& scene = shown_scene(app)->solid;
   Bounds bounds;
   for (const Instance& instance : scene.instances)
@@ -191,9 +192,10 @@ const std::vector<PaletteEntry>& palette_entries(App& app) {
   if (index.fresh && index.search == search) return index.found;
   std::vector<Ranked> ranked;
   for (const Command& command : commands())
-    try_entry(app, search, command_entry(app, command), ranked);
+    try_entry(app, app.commands, search, command_entry(app, command), ranked);
   for (const PaletteEntry& entry : index.entries)
-    if (!starts_empty(search) || recent_bonus(app, entry.name) > 0) try_entry(app, search, entry, ranked);
+    if (!starts_empty(search) || recent_bonus(app.commands, entry.name) > 0)
+      try_entry(app, app.commands, search, entry, ranked);
   std::ranges::stable_sort(ranked, [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
   if (ranked.size() > most_entries) ranked.resize(most_entries);
   index.found.clear();

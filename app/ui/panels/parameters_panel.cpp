@@ -1,6 +1,7 @@
 // The sliders: what a person explores with.
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
@@ -15,9 +16,10 @@ namespace flyball {
 namespace {
 
 // Edits the pinned slider of this address; where its range makes no sense, nothing happens but a notice.
-void change_slider(App& app, const std::string& address, const std::function<void(Slider&)>& change) {
-  later(app, [&app, address, change] {
-    edit(app, "Range of " + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
+void change_slider(Session& session, Ui& ui, const std::string& address,
+                   const std::function<void(Slider&)>& change) {
+  later(ui, [&session, address, change] {
+    edit(session, "Range of " + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
       for (Slider& slider : mechanism.sliders) {
         if (slider.parameter != address) continue;
         change(slider);
@@ -30,7 +32,7 @@ void change_slider(App& app, const std::string& address, const std::function<voi
 }
 
 // From, to, scale and unpinning of a pinned slider; of another, pinning.
-void range_menu(App& app, const ParameterControl& control) {
+void range_menu(Session& session, Ui& ui, const ParameterControl& control) {
   if (!ImGui::BeginPopup("range")) return;
   const std::string name = "parameters/" + control.address + "/range";
   if (control.group == ParameterGroup::pinned) {
@@ -39,29 +41,29 @@ void range_menu(App& app, const ParameterControl& control) {
                                 .value = value,
                                 .unit = control.unit,
                                 .help = "Where the slider ends.",
-                                .set = [&app, address = control.address, which](double typed) {
-                                  change_slider(app, address, [=](Slider& s) { s.*which = typed; });
+                                .set = [&session, &ui, address = control.address, which](double typed) {
+                                  change_slider(session, ui, address, [=](Slider& s) { s.*which = typed; });
                                 }};
       ImGui::AlignTextToFramePadding();
       ImGui::TextUnformatted(label);
-      ImGui::SameLine(52 * app.scale);
-      quantity_field(app, field, 150 * app.scale);
+      ImGui::SameLine(52 * ui.scale);
+      quantity_field(session, ui, field, 150 * ui.scale);
     };
     end("From", "from", control.from, &Slider::from);
     end("To", "to", control.to, &Slider::to);
     bool log = control.log;
     if (ImGui::Checkbox("Logarithmic", &log))
-      change_slider(app, control.address, [log](Slider& slider) {
+      change_slider(session, ui, control.address, [log](Slider& slider) {
         slider.scale = log ? SliderScale::log : SliderScale::linear;
         // From nothing there is no way up by factors.
         if (log && slider.from == 0) slider.from = slider.to / 1000;
       });
-    note_widget(app.widgets, name + "/log");
+    note_widget(ui.widgets, name + "/log");
     help_on_hover("Equal steps of the hand multiply the number, rather than add to it.");
   }
   const bool pinned = control.group == ParameterGroup::pinned;
-  if (text_button(app, name + "/pin", pinned ? "Unpin" : "Pin")) {
-    later(app, [&app, address = control.address, pinned] { pin(app, address, !pinned); });
+  if (text_button(ui, name + "/pin", pinned ? "Unpin" : "Pin")) {
+    later(ui, [&session, address = control.address, pinned] { pin(session, address, !pinned); });
     ImGui::CloseCurrentPopup();
   }
   help_on_hover(pinned ? "Take it off the pinned sliders."
@@ -70,14 +72,14 @@ void range_menu(App& app, const ParameterControl& control) {
 }
 
 // A small button at the end of the row, shown where it is of use now.
-bool small_icon(App& app, const std::string& name, const char* icon, const char* help, bool shown,
+bool small_icon(Ui& ui, const std::string& name, const char* icon, const char* help, bool shown,
                 float width) {
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(ui);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetFrameHeight();
   const bool pressed = ImGui::InvisibleButton(name.c_str(), {width, height});
-  note_widget(app.widgets, name, KeyUse::aside);
-  const bool hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
+  note_widget(ui.widgets, name, KeyUse::aside);
+  const bool hovered = ImGui::IsItemHovered() || has_keyboard(ui, name);
   if (shown || hovered) {
     const ImVec2 size = ImGui::CalcTextSize(icon);
     ImGui::GetWindowDrawList()->AddText({from.x + (width - size.x) / 2, from.y + (height - size.y) / 2},
@@ -88,15 +90,15 @@ bool small_icon(App& app, const std::string& name, const char* icon, const char*
 }
 
 // Whether the number stays where it is while others go where a goal wants them.
-void hold_button(App& app, const ParameterControl& control, bool pointed, float width) {
-  const bool held = is_held(app, control.address);
-  if (small_icon(app, "parameters/" + control.address + "/hold", icon::lock,
+void hold_button(Session& session, Ui& ui, const ParameterControl& control, bool pointed, float width) {
+  const bool held = is_held(session, control.address);
+  if (small_icon(ui, "parameters/" + control.address + "/hold", icon::lock,
                  held
                      ? "Held: it stays while sliders follow a goal. Click to let it go."
                      : "Hold it where it is while sliders follow a goal, which a read-out below or a body in "
                        "the view (Alt+Shift) is dragged to.",
                  pointed || held, width))
-    hold_number(app, control.address, !held);
+    hold_number(session, control.address, !held);
 }
 
 // Whether the title of its section says what the number is: not of a torque among speeds, or one of several
@@ -107,15 +109,15 @@ bool told_by_title(const ParameterControl& control) {
 }
 
 // The name and what of it, as far as there is room.
-void control_label(App& app, const ParameterControl& control, float width) {
+void control_label(const Ui& ui, const ParameterControl& control, float width) {
   ImGui::AlignTextToFramePadding();
   const float start = ImGui::GetCursorPosX();
   clipped_text(control.name, width);
   const float used = ImGui::GetItemRectSize().x;
-  if (!told_by_title(control) && !control.what.empty() && used + 40 * app.scale < width) {
-    ImGui::SameLine(0, 6 * app.scale);
-    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
-    clipped_text(control.what, width - used - 6 * app.scale);
+  if (!told_by_title(control) && !control.what.empty() && used + 40 * ui.scale < width) {
+    ImGui::SameLine(0, 6 * ui.scale);
+    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
+    clipped_text(control.what, width - used - 6 * ui.scale);
     ImGui::PopStyleColor();
   }
   ImGui::SameLine();
@@ -123,47 +125,49 @@ void control_label(App& app, const ParameterControl& control, float width) {
 }
 
 // A pinned slider has a line of what it moves below it.
-float row_height(const App& app, ParameterGroup group) {
+float row_height(const Ui& ui, ParameterGroup group) {
   const float gap = ImGui::GetStyle().ItemSpacing.y;
-  return ImGui::GetFrameHeight() + 18 * app.scale + 2 * gap +
-         (group == ParameterGroup::pinned ? sensitivity_height(app) + gap : 0);
+  return ImGui::GetFrameHeight() + 18 * ui.scale + 2 * gap +
+         (group == ParameterGroup::pinned ? sensitivity_height(ui) + gap : 0);
 }
 
-void parameter(App& app, const ParameterControl& control) {
-  const float s = app.scale, icon_width = 22 * s;
+void parameter(Session& session, Ui& ui, PanelState& panels, const ParameterControl& control) {
+  const float s = ui.scale, icon_width = 22 * s;
   const std::string name = "parameters/" + control.address;
   ImGui::PushID(control.address.c_str());
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
   const bool pointed =
       ImGui::IsWindowHovered() &&
-      ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(app, control.group)});
+      ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(ui, control.group)});
   const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
   const float value_at = room - value_width - icon_width;
   const bool changed = control.value != control.file_value;
-  const ShownUnit unit = shown_unit(control.unit, app.units);
-  const auto set = [&app, address = control.address](double value) { change_parameter(app, address, value); };
+  const ShownUnit unit = shown_unit(control.unit, session.units);
+  const auto set = [&session, address = control.address](double value) {
+    change_parameter(session, address, value);
+  };
 
   // Before the value: back to what is stored, and for a pinned number whether it is held.
   const bool pinned = control.group == ParameterGroup::pinned;
   const float hold_at = value_at - (pinned ? icon_width : 0), reset_at = hold_at - icon_width;
-  const bool holds = pinned && (pointed || is_held(app, control.address));
-  control_label(app, control, (changed ? reset_at : holds ? hold_at : value_at) - 4 * s);
+  const bool holds = pinned && (pointed || is_held(session, control.address));
+  control_label(ui, control, (changed ? reset_at : holds ? hold_at : value_at) - 4 * s);
   if (changed) {
     ImGui::SetCursorPosX(start + reset_at);
     const std::string help =
         "Back to the stored " + short_text(unit.shown(control.file_value)) + " " + unit.text;
-    if (small_icon(app, name + "/reset", icon::undo, help.c_str(), true, icon_width))
-      later(app, [set, value = control.file_value] { set(value); });
+    if (small_icon(ui, name + "/reset", icon::undo, help.c_str(), true, icon_width))
+      later(ui, [set, value = control.file_value] { set(value); });
     ImGui::SameLine();
   }
   if (pinned) {
     ImGui::SetCursorPosX(start + hold_at);
-    hold_button(app, control, pointed, icon_width);
+    hold_button(session, ui, control, pointed, icon_width);
     ImGui::SameLine();
   }
   ImGui::SetCursorPosX(start + value_at);
-  quantity_field(app,
+  quantity_field(session, ui,
                  {.name = name + "/value",
                   .value = control.value,
                   .unit = control.unit,
@@ -173,27 +177,28 @@ void parameter(App& app, const ParameterControl& control) {
                   .framed = false},
                  value_width);
   ImGui::SameLine(0, 0);
-  if (small_icon(app, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))
+  if (small_icon(ui, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))
     ImGui::OpenPopup("range");
 
   double value = control.value;
   bool type_value = false;
-  if (slider(app, name, control, value, type_value)) later(app, [set, value] { set(value); });
+  if (slider(session, ui, name, control, value, type_value)) later(ui, [set, value] { set(value); });
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
-  if (takes_menu_key(app, name) || takes_menu_key(app, name + "/value")) ImGui::OpenPopup("range");
+  if (takes_menu_key(ui, name) || takes_menu_key(ui, name + "/value")) ImGui::OpenPopup("range");
   if (type_value)
-    later(app, [&app, field = name + "/value",
-                text = short_text(unit.shown(control.value), 12) + " " + unit.text] {
-      start_typing(app, field, text);
+    later(ui, [&session, &ui, field = name + "/value",
+               text = short_text(unit.shown(control.value), 12) + " " + unit.text] {
+      start_typing(session, ui, field, text);
     });
-  range_menu(app, control);
-  if (control.group == ParameterGroup::pinned) sensitivity_line(app, control);
+  range_menu(session, ui, control);
+  if (control.group == ParameterGroup::pinned) sensitivity_line(session, ui, panels, control);
   ImGui::PopID();
 }
 
-bool sliders_moved(const App& app) {
-  return std::ranges::any_of(
-      app.parameters, [](const ParameterControl& control) { return control.value != control.file_value; });
+bool sliders_moved(const Session& session) {
+  return std::ranges::any_of(session.parameters, [](const ParameterControl& control) {
+    return control.value != control.file_value;
+  });
 }
 
 void group(App& app, ParameterGroup which, const char* name, const char* title, bool& open) {
@@ -211,7 +216,7 @@ void group(App& app, ParameterGroup which, const char* name, const char* title, 
   clipper.Begin(static_cast<int>(last - first), row_height(app, which));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      parameter(app, first[i]);
+      parameter(app, app, app.panels, first[i]);
   ImGui::Dummy({0, 4 * app.scale});
 }
 

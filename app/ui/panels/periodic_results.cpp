@@ -1,6 +1,6 @@
 // Where a drive makes the balance turn: what the motion in the steady state's place runs through in a period.
 #include "app/session/units.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -14,27 +14,27 @@ namespace {
 constexpr int digits = 6; // of ends, which are looked at rather than copied
 
 // `less`: what the numbers leave out, "less -1 turns a period".
-void range_row(App& app, const std::string& name, const PeriodicRange& range, const ShownUnit& unit,
-               const std::string& help = {}, const std::string& less = {}) {
-  const NumberStyle& numbers = app.options.numbers;
-  if (!std::isfinite(range.mean)) return row(app, name, "-", "", "It is not defined throughout the period.");
+void range_row(Session& session, Ui& ui, const std::string& name, const PeriodicRange& range,
+               const ShownUnit& unit, const std::string& help = {}, const std::string& less = {}) {
+  const NumberStyle& numbers = session.options.numbers;
+  if (!std::isfinite(range.mean)) return row(ui, name, "-", "", "It is not defined throughout the period.");
   const double error = std::isfinite(range.error) ? range.error : 1e-6 * std::abs(range.most - range.least);
   const std::string about =
       (help.empty() ? "" : help + "\n") + "Mean over a period; below it the ends between which it moves.\n" +
       (std::isfinite(range.error)
            ? "± " + magnitude_text(std::max(error * unit.factor, numbers.noise), numbers) + " " + unit.text
            : std::string("Its error is not known."));
-  row(app, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
+  row(ui, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
       unit.text.c_str(), about.c_str());
-  note_widget(app.widgets, "results/periodic/" + name);
+  note_widget(ui.widgets, "results/periodic/" + name);
   if (!less.empty()) {
-    paragraph(less, colors_of(app).dim);
-    note_widget(app.widgets, "results/periodic/" + name + "/less");
+    paragraph(less, colors_of(ui).dim);
+    note_widget(ui.widgets, "results/periodic/" + name + "/less");
   }
-  right_digits(app,
+  right_digits(ui,
                short_text(unit.shown(range.least), digits) + " … " +
                    short_text(unit.shown(range.most), digits) + " " + unit.text,
-               colors_of(app).dim);
+               colors_of(ui).dim);
   ImGui::Dummy({0, 0});
 }
 
@@ -54,25 +54,26 @@ std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
 
 } // namespace
 
-void periodic_results(App& app) {
-  const PeriodicState* state = periodic_motion(app);
+void periodic_results(Session& session, Ui& ui) {
+  const PeriodicState* state = periodic_motion(session);
   if (!state) return;
-  heading(app, "Over a period");
-  row(app, "Period", value_text(state->period, 1e-7 * state->period, {8, 1e-16, false}), "s",
+  heading(ui, "Over a period");
+  row(ui, "Period", value_text(state->period, 1e-7 * state->period, {8, 1e-16, false}), "s",
       state->drive_periods == 1
           ? "That of the drives."
           : (std::to_string(state->drive_periods) + " times that of the drives.").c_str());
   for (const PeriodicCoordinate& c : state->coordinates) {
-    const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", app.units);
-    range_row(app, coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
+    const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", session.units);
+    range_row(session, ui, coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
   }
   for (const PeriodicMeasure& m : state->measures)
-    range_row(app, m.name, m.range, shown_unit(m.unit, app.units));
+    range_row(session, ui, m.name, m.range, shown_unit(m.unit, session.units));
   for (const PeriodicTorque& t : state->drive_torques)
-    range_row(app, "Drive of " + coordinate_label(t), t.range, shown_unit(t.angle ? "N m" : "N", app.units));
-  if (app.options.numbers.run_times)
-    row(app, "Run time", duration_text(state->run_time_s, app.options.numbers), "");
-  if (text_button(app, "results/periodic/motion", "Show in the motion's plots")) show_periodic_motion(app);
+    range_row(session, ui, "Drive of " + coordinate_label(t), t.range,
+              shown_unit(t.angle ? "N m" : "N", session.units));
+  if (session.options.numbers.run_times)
+    row(ui, "Run time", duration_text(state->run_time_s, session.options.numbers), "");
+  if (text_button(ui, "results/periodic/motion", "Show in the motion's plots")) show_periodic_motion(session);
   help_on_hover("The motion begins in this one, at the drawn phase.");
 }
 

@@ -1,6 +1,8 @@
 #include "app/render/icons.hpp"
 #include "app/session/state_words.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/remedies.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -49,25 +51,25 @@ std::string without_repetition(const std::string& message, const std::string& he
   return rest;
 }
 
-void verdict(App& app) {
-  const UiColors& colors = colors_of(app);
-  const Solution& solution = app.answer.solution;
-  const PeriodicState* motion = periodic_motion(app);
+void verdict(const Session& session, Ui& ui) {
+  const UiColors& colors = colors_of(ui);
+  const Solution& solution = session.answer.solution;
+  const PeriodicState* motion = periodic_motion(session);
   const Verdict verdict = motion ? verdict_of(*motion, colors) : verdict_of(solution, colors);
   const std::string unheld = unheld_words(solution), headline = unheld.empty() ? verdict.text : unheld;
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextColored(verdict.color, "%s", verdict.icon);
-  ImGui::SameLine(0, 7 * app.scale);
+  ImGui::SameLine(0, 7 * ui.scale);
   ImGui::PushTextWrapPos(0);
   ImGui::TextColored(verdict.color, "%s", headline.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
-  note_widget(app.widgets, "results/verdict");
+  note_widget(ui.widgets, "results/verdict");
   if (solution.status == Status::converged && solution.stability_reason)
     paragraph(reason_text(*solution.stability_reason), colors.dim);
-  if (const PeriodicState* state = periodic_state(app))
+  if (const PeriodicState* state = periodic_state(session))
     paragraph(state->message, motion ? colors.dim : colors.text);
-  else if (app.study.periodic.search.running())
+  else if (session.study.periodic.search.running())
     paragraph("Looking for a periodic motion…", colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
@@ -76,27 +78,27 @@ void verdict(App& app) {
 }
 
 // Directions that nothing resists.
-void neutral_joints(App& app) {
-  const std::vector<std::string>& neutral = app.answer.solution.neutral;
+void neutral_joints(const Session& session, const Ui& ui) {
+  const std::vector<std::string>& neutral = session.answer.solution.neutral;
   if (neutral.empty()) return;
-  row(app, "Nothing resists", name_list(neutral), "",
+  row(ui, "Nothing resists", name_list(neutral), "",
       "Joints that take part in a direction in which the mechanism stands anywhere.");
 }
 
 // Why there is nothing to tell: the first mistake in large, the others below.
-void refusal(App& app) {
-  const UiColors& colors = colors_of(app);
+void refusal(Session& session, Ui& ui) {
+  const UiColors& colors = colors_of(ui);
   constexpr std::size_t most = 12;
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextColored(colors.warn, "%s", icon::warning);
-  ImGui::SameLine(0, 7 * app.scale);
-  mistake_row(app, "results/mistakes", 0, colors.warn);
+  ImGui::SameLine(0, 7 * ui.scale);
+  mistake_row(session, ui, "results/mistakes", 0, colors.warn);
   ImGui::PopFont();
-  const std::string advice = advice_for(app.mistakes.front());
+  const std::string advice = advice_for(session.mistakes.front());
   paragraph(advice.empty() ? "There is a steady state to look for once this is mended." : advice, colors.dim);
-  if (app.mistakes.size() == 1) return;
-  heading(app, "And");
-  mistake_rows(app, "results/mistakes", 1, most);
+  if (session.mistakes.size() == 1) return;
+  heading(ui, "And");
+  mistake_rows(session, ui, "results/mistakes", 1, most);
 }
 
 // Below an inspector its numbers would be read as part of it: a title of their own stays where it is while
@@ -124,38 +126,42 @@ PanelRect below_title(App& app, const PanelRect& rect) {
   return rest;
 }
 
+void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& tool) {
+  if (session.mechanism().bodies.empty()) {
+    paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",
+              colors_of(ui).dim);
+  } else if (!session.mistakes.empty()) {
+    refusal(session, ui);
+  } else if (session.answer.error) {
+    ImGui::TextColored(colors_of(ui).bad, "%s  Cannot be solved", icon::warning);
+    paragraph(*session.answer.error, colors_of(ui).text);
+  } else if (session.answer.ticket) {
+    verdict(session, ui);
+    remedies(session, ui);
+    periodic_results(session, ui);
+    warning_rows(session, ui, "results/warnings", 3);
+    pull_results(session, ui, tool);
+    neutral_joints(session, ui);
+    coordinate_results(session, ui);
+    friction_results(session, ui);
+    measure_results(session, ui);
+    body_results(session, ui);
+    // What runs away leaves a residual that says nothing: it is small because everything else is large.
+    if (session.answer.solution.unheld.empty()) solver_results(session, ui);
+    load_results(session, ui, panels);
+    eigenvalue_results(session, ui, panels);
+    system_results(session, ui, panels);
+  } else if (solving(session)) {
+    paragraph("Solving…", colors_of(ui).dim);
+  }
+}
+
 } // namespace
 
 void results_panel(App& app, const PanelRect& rect) {
   begin_panel("results", below_title(app, rect));
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
-  if (app.mechanism().bodies.empty()) {
-    paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",
-              colors_of(app).dim);
-  } else if (!app.mistakes.empty()) {
-    refusal(app);
-  } else if (app.answer.error) {
-    ImGui::TextColored(colors_of(app).bad, "%s  Cannot be solved", icon::warning);
-    paragraph(*app.answer.error, colors_of(app).text);
-  } else if (app.answer.ticket) {
-    verdict(app);
-    remedies(app);
-    periodic_results(app);
-    warning_rows(app, "results/warnings", 3);
-    pull_results(app);
-    neutral_joints(app);
-    coordinate_results(app);
-    friction_results(app);
-    measure_results(app);
-    body_results(app);
-    // What runs away leaves a residual that says nothing: it is small because everything else is large.
-    if (app.answer.solution.unheld.empty()) solver_results(app);
-    load_results(app);
-    eigenvalue_results(app);
-    system_results(app);
-  } else if (solving(app)) {
-    paragraph("Solving…", colors_of(app).dim);
-  }
+  contents(app, app, app.panels, app.tool);
   ImGui::PopStyleVar();
   ImGui::End();
 }

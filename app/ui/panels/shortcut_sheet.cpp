@@ -1,3 +1,4 @@
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -34,17 +35,17 @@ constexpr std::array by_keys{
     NavigationLine{"Page Down, Enter", "Tools: next point, place"},
 };
 
-void line(App& app, const std::string& keys, const std::string& does) {
+void line(Ui& ui, const std::string& keys, const std::string& does) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).accent);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).accent);
   ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
   ImGui::TableNextColumn();
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(does.c_str());
   ImGui::PopTextWrapPos();
-  note_widget(app.widgets, "shortcuts/" + keys);
+  note_widget(ui.widgets, "shortcuts/" + keys);
 }
 
 // Keys as wide as they are, and the rest for the words, so that none is cut.
@@ -55,22 +56,22 @@ bool begin_lines(const char* name) {
   return true;
 }
 
-void lines(App& app, const char* title, std::string_view prefix) {
-  heading(app, title);
+void lines(Ui& ui, const char* title, std::string_view prefix) {
+  heading(ui, title);
   if (!begin_lines(title)) return;
   for (const Command& command : commands()) {
     if (!std::string_view(command.id).starts_with(prefix) || command.key.key == 0) continue;
     const std::string also = key_text(command.also);
-    line(app, key_text(command.key) + (also.empty() ? "" : ", " + also), command.title);
+    line(ui, key_text(command.key) + (also.empty() ? "" : ", " + also), command.title);
   }
   ImGui::EndTable();
 }
 
-void fixed_lines(App& app, const char* title, std::span<const NavigationLine> entries) {
-  heading(app, title);
+void fixed_lines(Ui& ui, const char* title, std::span<const NavigationLine> entries) {
+  heading(ui, title);
   if (!begin_lines(title)) return;
   for (const NavigationLine& entry : entries)
-    line(app, entry.keys, entry.does);
+    line(ui, entry.keys, entry.does);
   ImGui::EndTable();
 }
 

@@ -1,5 +1,5 @@
 // How the answer was found: as much of it as a person needs to believe the digits.
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 namespace flyball {
@@ -19,26 +19,26 @@ const char* fallback_text(Fallback fallback) {
 
 } // namespace
 
-void solver_results(App& app) {
-  const Solution& solution = app.answer.solution;
-  const NumberStyle& numbers = app.options.numbers;
+void solver_results(Session& session, Ui& ui) {
+  const Solution& solution = session.answer.solution;
+  const NumberStyle& numbers = session.options.numbers;
   if (solution.history.empty() && solution.iterations == 0) return;
-  heading(app, "How it was found");
+  heading(ui, "How it was found");
   const std::string time = duration_text(solution.run_time_s, numbers);
   const auto space = time.find(' ');
-  row(app, "Time", time.substr(0, space), time.c_str() + space + 1,
+  row(ui, "Time", time.substr(0, space), time.c_str() + space + 1,
       "From the start to the accepted answer, its stability included.");
-  note_widget(app.widgets, "results/time");
-  row(app, "Iterations", std::to_string(solution.iterations), "");
-  row(app, "Scaled residual", magnitude_text(solution.residual, numbers), "",
+  note_widget(ui.widgets, "results/time");
+  row(ui, "Iterations", std::to_string(solution.iterations), "");
+  row(ui, "Scaled residual", magnitude_text(solution.residual, numbers), "",
       "The largest equation of the balance, in units in which its terms are of the order of one.");
   if (solution.condition)
-    row(app, "Condition", short_text(*solution.condition, 2), "",
+    row(ui, "Condition", short_text(*solution.condition, 2), "",
         "Condition number (2-norm) of the scaled equations.");
   if (solution.fallback)
-    row(app, "Fallback", fallback_text(*solution.fallback), "",
+    row(ui, "Fallback", fallback_text(*solution.fallback), "",
         "The method that led to the answer where plain Newton-Raphson steps did not.");
-  if (solution.history.size() > 1) history_plot(app, ImGui::GetContentRegionAvail().x, 84 * app.scale);
+  if (solution.history.size() > 1) history_plot(session, ui, ImGui::GetContentRegionAvail().x, 84 * ui.scale);
 }
 
 } // namespace flyball

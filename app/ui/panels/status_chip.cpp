@@ -19,32 +19,33 @@ struct StatusLine {
   const char* icon = "";
 };
 
-StatusLine status_line(const App& app) {
-  const UiColors& colors = colors_of(app);
-  if (app.mechanism().bodies.empty()) return {};
-  if (!app.mistakes.empty()) {
-    const std::size_t more = app.mistakes.size() - 1;
-    return {words_for(app.mistakes.front()) + (more > 0 ? "  (and " + std::to_string(more) + " more)" : ""),
+StatusLine status_line(const Session& session, const Ui& ui) {
+  const UiColors& colors = colors_of(ui);
+  if (session.mechanism().bodies.empty()) return {};
+  if (!session.mistakes.empty()) {
+    const std::size_t more = session.mistakes.size() - 1;
+    return {words_for(session.mistakes.front()) +
+                (more > 0 ? "  (and " + std::to_string(more) + " more)" : ""),
             colors.warn, icon::warning};
   }
-  if (solving(app) && (app.waited > patience || !app.answer.ticket))
+  if (solving(session) && (session.waited > patience || !session.answer.ticket))
     return {"Solving…", colors.dim, icon::refresh};
-  if (app.answer.error) return {*app.answer.error, colors.bad, icon::warning};
-  if (!app.answer.ticket) return {};
-  const Solution& solution = app.answer.solution;
+  if (session.answer.error) return {*session.answer.error, colors.bad, icon::warning};
+  if (!session.answer.ticket) return {};
+  const Solution& solution = session.answer.solution;
   switch (solution.status) {
   case Status::converged: break;
   case Status::not_converged:
     return {solution.unheld.empty() ? "No steady state found" : unheld_words(solution), colors.bad,
             icon::warning};
   case Status::no_steady_state:
-    if (const PeriodicState* motion = periodic_motion(app))
+    if (const PeriodicState* motion = periodic_motion(session))
       return motion->stable == true ? StatusLine{"Moves periodically, stable", colors.good, icon::check}
              : motion->stable == false
                  ? StatusLine{"Moves periodically, unstable", colors.warn, icon::warning}
                  : StatusLine{"Moves periodically", colors.warn, icon::info};
-    return {app.study.periodic.search.running() ? "No steady state; looking for a periodic motion…"
-                                                : "There is no steady state",
+    return {session.study.periodic.search.running() ? "No steady state; looking for a periodic motion…"
+                                                    : "There is no steady state",
             colors.bad, icon::warning};
   case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
   }
@@ -59,11 +60,11 @@ StatusLine status_line(const App& app) {
 
 } // namespace
 
-void status_chip(App& app, const PanelRect& view) {
-  const StatusLine line = status_line(app);
+void status_chip(const Session& session, Ui& ui, const PanelRect& view) {
+  const StatusLine line = status_line(session, ui);
   if (line.text.empty()) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = 8 * s, room = std::max(view.width - 100 * s, 60 * s);
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, pad = 8 * s, room = std::max(view.width - 100 * s, 60 * s);
   const float icon_width = ImGui::CalcTextSize(line.icon).x + 6 * s;
   const ImVec2 size = ImGui::CalcTextSize(line.text.c_str(), nullptr, false, room - icon_width - 2 * pad);
   const ImVec2 to(view.x + view.width - 10 * s, view.y + view.height - 10 * s);
@@ -72,9 +73,9 @@ void status_chip(App& app, const PanelRect& view) {
   list.AddRectFilled(from, to, packed(colors.panel), 5 * s);
   list.AddRect(from, to, packed(colors.border), 5 * s, 0, std::max(1.f, std::round(s)));
   list.AddText({from.x + pad, from.y + pad / 2}, packed(line.color), line.icon);
-  list.AddText(app.fonts.text, ImGui::GetFontSize(), {from.x + pad + icon_width, from.y + pad / 2},
+  list.AddText(ui.fonts.text, ImGui::GetFontSize(), {from.x + pad + icon_width, from.y + pad / 2},
                packed(colors.text), line.text.c_str(), nullptr, room - icon_width - 2 * pad);
-  app.widgets["status"] = {from, to};
+  ui.widgets["status"] = {from, to};
 }
 
 } // namespace flyball

@@ -1,5 +1,6 @@
 // What was compiled for solving, and what was left out because this scene has no use for it.
-#include "app/ui/panels.hpp"
+#include "app/ui/panel_state.hpp"
+#include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <fmt/format.h>
@@ -19,21 +20,21 @@ void list_of(Ui& ui, const char* title, const std::vector<std::string>& words, c
 
 } // namespace
 
-void system_results(App& app) {
-  const UiColors& colors = colors_of(app);
-  const SystemSummary& summary = app.answer.summary;
-  if (!section(app, "results/system", "System", app.panels.system)) return;
-  row(app, "Bodies", std::to_string(summary.bodies), "");
-  row(app, "Coordinates, free", std::to_string(summary.free_coordinates), "");
-  row(app, "Coordinates, driven", std::to_string(summary.driven_coordinates), "");
+void system_results(Session& session, Ui& ui, PanelState& panels) {
+  const UiColors& colors = colors_of(ui);
+  const SystemSummary& summary = session.answer.summary;
+  if (!section(ui, "results/system", "System", panels.system)) return;
+  row(ui, "Bodies", std::to_string(summary.bodies), "");
+  row(ui, "Coordinates, free", std::to_string(summary.free_coordinates), "");
+  row(ui, "Coordinates, driven", std::to_string(summary.driven_coordinates), "");
   if (summary.constraint_equations > 0)
-    row(app, "Constraint equations", std::to_string(summary.constraint_equations), "");
-  if (!summary.cut_joints.empty()) row(app, "Cut joints", name_list(summary.cut_joints), "");
-  if (!summary.implicit_joints.empty()) row(app, "Added joints", name_list(summary.implicit_joints), "");
+    row(ui, "Constraint equations", std::to_string(summary.constraint_equations), "");
+  if (!summary.cut_joints.empty()) row(ui, "Cut joints", name_list(summary.cut_joints), "");
+  if (!summary.implicit_joints.empty()) row(ui, "Added joints", name_list(summary.implicit_joints), "");
   for (const std::string& note : summary.notes)
     paragraph(note, colors.dim);
-  list_of(app, "In use", summary.in, colors.dim);
-  list_of(app, "Left out", summary.left_out, colors.dim);
+  list_of(ui, "In use", summary.in, colors.dim);
+  list_of(ui, "Left out", summary.left_out, colors.dim);
 }
 
 } // namespace flyball

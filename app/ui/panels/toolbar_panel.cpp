@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/panels.hpp"
@@ -39,18 +40,18 @@ constexpr std::array factors{Factor{10, "10×"},    Factor{5, "5×"},       Fact
                              Factor{0.1, "0.1×"},  Factor{0.05, "0.05×"}, Factor{0.02, "0.02×"},
                              Factor{0.01, "0.01×"}};
 
-void space_between_groups(const App& app) {
-  const float s = app.scale;
+void space_between_groups(const Ui& ui) {
+  const float s = ui.scale;
   ImGui::SameLine(0, 8 * s);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float from = at.y + 5 * s, to = at.y + ImGui::GetFrameHeight() - 3 * s;
-  ImGui::GetWindowDrawList()->AddLine({at.x, from}, {at.x, to}, packed(ui_colors(app.theme).border),
+  ImGui::GetWindowDrawList()->AddLine({at.x, from}, {at.x, to}, packed(ui_colors(ui.theme).border),
                                       std::max(1.f, std::round(s)));
   ImGui::SameLine(0, 9 * s);
 }
 
-void next(const App& app) {
-  ImGui::SameLine(0, 2 * app.scale);
+void next(const Ui& ui) {
+  ImGui::SameLine(0, 2 * ui.scale);
 }
 
 // A command's button; its tooltip is the command's sentence with its key.
@@ -79,46 +80,46 @@ void file_buttons(App& app) {
 }
 
 // Two words, of which one is lit.
-void mode_switch(App& app) {
-  const UiColors& colors = colors_of(app);
+void mode_switch(Session& session, Ui& ui) {
+  const UiColors& colors = colors_of(ui);
   const auto word = [&](const char* name, const char* text, Mode mode, const char* help) {
-    const bool on = app.mode == mode;
+    const bool on = session.mode == mode;
     ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
     ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.pointed);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {10 * app.scale, 5 * app.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {10 * ui.scale, 5 * ui.scale});
     ImGui::PushID(name);
-    if (ImGui::Button(text)) set_mode(app, mode);
+    if (ImGui::Button(text)) set_mode(session, mode);
     ImGui::PopID();
     ImGui::PopStyleVar();
     ImGui::PopStyleColor(3);
-    note_widget(app.widgets, name);
+    note_widget(ui.widgets, name);
     help_on_hover(help);
   };
   word("toolbar/build", "Build", Mode::build,
        "Edit the drawn pose; the steady state is the ghost beside it (Tab)");
   ImGui::SameLine(0, 0);
   word("toolbar/explore", "Explore", Mode::explore, "Move sliders and see where it settles (Tab)");
-  next(app);
+  next(ui);
 }
 
-void play_buttons(App& app) {
-  const bool playing = app.playback.playing;
-  if (icon_button(app, "toolbar/play", playing ? icon::pause : icon::play,
+void play_buttons(Session& session, Ui& ui) {
+  const bool playing = session.playback.playing;
+  if (icon_button(ui, "toolbar/play", playing ? icon::pause : icon::play,
                   playing ? "Stop the drives (Space)" : "Turn at the drives' speed (Space)", playing))
-    play(app, !playing);
-  next(app);
-  if (icon_button(app, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives"))
-    rewind(app);
-  next(app);
-  factor_combo(app, "toolbar/factor", 62 * app.scale);
+    play(session, !playing);
+  next(ui);
+  if (icon_button(ui, "toolbar/rewind", icon::step_backward, "Back to the drawn phase of the drives"))
+    rewind(session);
+  next(ui);
+  factor_combo(session, ui, "toolbar/factor", 62 * ui.scale);
 }
 
 void direction_buttons(App& app) {
   for (const Direction& direction : directions) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
     ImGui::PushID(direction.name);
-    if (ImGui::Button(direction.text)) look_from(app, direction.azimuth, direction.elevation);
+    if (ImGui::Button(direction.text)) look_from(app.view, direction.azimuth, direction.elevation);
     ImGui::PopID();
     ImGui::PopStyleVar();
     note_widget(app.widgets, direction.name);
@@ -129,46 +130,46 @@ void direction_buttons(App& app) {
 }
 
 // Whether these words have room as buttons beside what ends the bar; without it they are in the menu alone.
-bool have_room(const App& app, const PanelRect& rect, std::initializer_list<const char*> words, float more) {
+bool have_room(const Ui& ui, const PanelRect& rect, std::initializer_list<const char*> words, float more) {
   float width = more;
   for (const char* word : words)
-    width += ImGui::CalcTextSize(word).x + (12 + 2) * app.scale;
-  const float end = ImGui::GetFrameHeight() + 2 * app.scale + 8 * app.scale;
+    width += ImGui::CalcTextSize(word).x + (12 + 2) * ui.scale;
+  const float end = ImGui::GetFrameHeight() + 2 * ui.scale + 8 * ui.scale;
   return ImGui::GetCursorPosX() + width <= rect.width - end;
 }
 
-void toggle(App& app, const char* name, const char* text, const char* help, bool& on) {
-  const UiColors& colors = colors_of(app);
+void toggle(Ui& ui, const char* name, const char* text, const char* help, bool& on) {
+  const UiColors& colors = colors_of(ui);
   ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.dim);
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * ui.scale, 5 * ui.scale});
   ImGui::PushID(name);
   if (ImGui::Button(text)) on = !on;
   ImGui::PopID();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   help_on_hover(help);
-  next(app);
+  next(ui);
 }
 
 } // namespace
 
-void factor_combo(App& app, const char* name, float width) {
-  const auto current = std::ranges::find(factors, app.playback.factor, &Factor::value);
+void factor_combo(Session& session, Ui& ui, const char* name, float width) {
+  const auto current = std::ranges::find(factors, session.playback.factor, &Factor::value);
   ImGui::SetNextItemWidth(width);
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ui.scale);
   ImGui::PushID(name);
   if (ImGui::BeginCombo("##factor", current == factors.end() ? "" : current->text,
                         ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLarge)) {
     for (const Factor& factor : factors) {
-      const bool chosen = factor.value == app.playback.factor;
-      if (ImGui::Selectable(factor.text, chosen)) app.playback.factor = factor.value;
-      note_widget(app.widgets, std::string(name) + "/" + factor.text);
-      if (chosen) mark_chosen(app.widgets);
+      const bool chosen = factor.value == session.playback.factor;
+      if (ImGui::Selectable(factor.text, chosen)) session.playback.factor = factor.value;
+      note_widget(ui.widgets, std::string(name) + "/" + factor.text);
+      if (chosen) mark_chosen(ui.widgets);
     }
     ImGui::EndCombo();
   } else {
-    note_widget(app.widgets, name);
+    note_widget(ui.widgets, name);
   }
   ImGui::PopID();
   help_on_hover("Speed of the picture: below 1× is slow motion");
@@ -183,10 +184,10 @@ void toolbar_panel(App& app, const PanelRect& rect) {
   menu_bar(app);
   file_buttons(app);
   space_between_groups(app);
-  mode_switch(app);
+  mode_switch(app, app);
   space_between_groups(app);
   ImGui::BeginDisabled(app.mode != Mode::explore); // what follows stays where it is
-  play_buttons(app);
+  play_buttons(app, app);
   ImGui::EndDisabled();
   space_between_groups(app);
   const float fit = ImGui::GetFrameHeight() + 2 * s + 17 * s; // the button, and the space behind it

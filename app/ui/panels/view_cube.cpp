@@ -1,5 +1,6 @@
 #include "app/ui/panels/view_cube.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -188,9 +189,9 @@ void draw_cube_axes(const CubeDrawing& d, bool behind) {
 
 } // namespace
 
-bool has_view_cube(const App& app, const PanelRect& view) {
-  return !app.view.alone && view.width > 3.2f * cube_side * app.scale &&
-         view.height > 2.6f * cube_side * app.scale;
+bool has_view_cube(const Ui& ui, const ViewState& state, const PanelRect& view) {
+  return !state.alone && view.width > 3.2f * cube_side * ui.scale &&
+         view.height > 2.6f * cube_side * ui.scale;
 }
 
 std::optional<CubeDirection> cube_direction_at(const ViewCamera& camera, double right, double up) {
@@ -217,31 +218,30 @@ std::array<double, 2> cube_angles(const CubeDirection& direction, double azimuth
   return {std::atan2(direction[0], direction[2]), elevation};
 }
 
-void use_view_cube(App& app, const PanelRect& view) {
-  ViewCubeState& cube = app.view.cube;
+void use_view_cube(Ui& ui, ViewState& state, const PanelRect& view) {
+  ViewCubeState& cube = state.cube;
   cube.hovered.reset();
-  if (!has_view_cube(app, view)) return;
+  if (!has_view_cube(ui, state, view)) return;
   const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 middle = cube_middle(app, view), before = ImGui::GetCursorScreenPos();
-  const float edge = cube_half_edge * app.scale, reach = 1.75f * edge;
+  const ImVec2 middle = cube_middle(ui, view), before = ImGui::GetCursorScreenPos();
+  const float edge = cube_half_edge * ui.scale, reach = 1.75f * edge;
   ImGui::SetCursorScreenPos({middle.x - reach, middle.y - reach});
   const bool clicked = ImGui::InvisibleButton("cube", {2 * reach, 2 * reach});
-  note_widget(app.widgets, "view/cube");
+  note_widget(ui.widgets, "view/cube");
   const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
-  const auto under =
-      cube_direction_at(app.view.camera, static_cast<double>((io.MousePos.x - middle.x) / edge),
-                        static_cast<double>((middle.y - io.MousePos.y) / edge));
+  const auto under = cube_direction_at(state.camera, static_cast<double>((io.MousePos.x - middle.x) / edge),
+                                       static_cast<double>((middle.y - io.MousePos.y) / edge));
   constexpr float click_slack = 4; // points
-  const float slack = click_slack * app.scale;
+  const float slack = click_slack * ui.scale;
   const bool dragged = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] >= slack * slack;
   if (hovered && !(active && dragged)) cube.hovered = under;
   if (active && dragged && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-    stop_glide(app);
-    app.view.camera.orbit(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y),
-                          {static_cast<double>(view.width), static_cast<double>(view.height)});
+    stop_glide(state);
+    state.camera.orbit(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y),
+                       {static_cast<double>(view.width), static_cast<double>(view.height)});
   } else if (clicked && !dragged && under) {
-    const auto [azimuth, elevation] = cube_angles(*under, app.view.camera.azimuth);
-    look_from(app, azimuth, elevation);
+    const auto [azimuth, elevation] = cube_angles(*under, state.camera.azimuth);
+    look_from(state, azimuth, elevation);
   }
   help_on_hover("Click a face, an edge or a corner to look from there; drag to orbit. Keys 1 to 4: front, "
                 "right, above, isometric.");
@@ -269,7 +269,7 @@ void draw_cube_gravity(const CubeDrawing& d) {
 } // namespace
 
 void draw_view_cube(const App& app, const PanelRect& view) {
-  if (!has_view_cube(app, view)) return;
+  if (!has_view_cube(app, app.view, view)) return;
   const CubeDrawing d{app, cube_middle(app, view), cube_half_edge * app.scale,
                       seen_cube_axes(app.view.camera), *ImGui::GetWindowDrawList()};
   const bool falls = app.mechanism().gravity.stableNorm() > 0, above = app.view.camera.elevation > 0;

@@ -11,6 +11,8 @@ namespace flyball {
 
 struct App;
 struct PanelRect;
+struct Ui;
+struct ViewState;
 
 // Where to look from: right, up and front of the mechanism, each -1, 0 or 1.
 using CubeDirection = std::array<int, 3>;
@@ -27,9 +29,9 @@ std::optional<CubeDirection> cube_direction_at(const ViewCamera& camera, double 
 std::array<double, 2> cube_angles(const CubeDirection& direction, double azimuth);
 
 // Whether there is room for it.
-bool has_view_cube(const App& app, const PanelRect& view);
+bool has_view_cube(const Ui& ui, const ViewState& state, const PanelRect& view);
 // Before the view's own button, of which it takes its part.
-void use_view_cube(App& app, const PanelRect& view);
+void use_view_cube(Ui& ui, ViewState& state, const PanelRect& view);
 void draw_view_cube(const App& app, const PanelRect& view);
 
 } // namespace flyball

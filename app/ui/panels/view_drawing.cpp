@@ -45,9 +45,9 @@ Color axis_color(Theme theme, int axis) {
   return axis == 0 ? p.axis_x : axis == 1 ? p.axis_y : p.axis_z;
 }
 
-void draw_line(const App& app, ImVec2 from, ImVec2 to, const Color& color, float width, float alpha) {
+void draw_line(const Ui& ui, ImVec2 from, ImVec2 to, const Color& color, float width, float alpha) {
   const std::array points{from, to};
-  draw_lines(app, points, color, width, false, alpha);
+  draw_lines(ui, points, color, width, false, alpha);
 }
 
 void draw_lines(const Ui& ui, std::span<const ImVec2> points, const Color& color, float width, bool closed,

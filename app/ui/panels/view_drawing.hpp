@@ -1,6 +1,7 @@
 // Lines, dots and labels over the 3-D view, in the current window. Lengths in points.
 #pragma once
 
+#include "app/session/units.hpp"
 #include "app/ui/panels/view_input.hpp"
 
 #include <imgui.h>
@@ -17,7 +18,7 @@ ImU32 packed(const Color& color, float alpha = 1);
 Color axis_color(Theme theme, int axis);
 
 // With a margin in the background's colour, so that it is seen before anything.
-void draw_line(const App& app, ImVec2 from, ImVec2 to, const Color& color, float width, float alpha = 1);
+void draw_line(const Ui& ui, ImVec2 from, ImVec2 to, const Color& color, float width, float alpha = 1);
 void draw_lines(const Ui& ui, std::span<const ImVec2> points, const Color& color, float width,
                 bool closed = false, float alpha = 1);
 // A small disc, or a circle in the accent's colour.

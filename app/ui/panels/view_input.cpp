@@ -1,5 +1,6 @@
 #include "app/ui/panels/view_input.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/tools/tools.hpp"
 
 #include <cmath>
@@ -13,20 +14,20 @@ constexpr float click_slack = 4;   // points that the hand may move in a click
 
 } // namespace
 
-ViewInput view_input(const App& app, const PanelRect& rect) {
+ViewInput view_input(const Ui& ui, const ViewState& view, const PanelRect& rect) {
   const ImGuiIO& io = ImGui::GetIO();
   ViewInput input;
   input.rect = rect;
   input.size = {static_cast<double>(rect.width), static_cast<double>(rect.height)};
-  input.camera = app.view.camera;
-  input.point = static_cast<double>(app.scale);
+  input.camera = view.camera;
+  input.point = static_cast<double>(ui.scale);
   input.cursor = {static_cast<double>(io.MousePos.x - rect.x), static_cast<double>(io.MousePos.y - rect.y)};
   input.hovered = ImGui::IsItemHovered();
   input.active = ImGui::IsItemActive();
   input.pressed = ImGui::IsItemActivated() && ImGui::IsMouseClicked(ImGuiMouseButton_Left);
   input.held = input.active && ImGui::IsMouseDown(ImGuiMouseButton_Left);
   input.released = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
-  const float slack = click_slack * app.scale;
+  const float slack = click_slack * ui.scale;
   input.moved = io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] >= slack * slack;
   input.menu = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
                io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Right] < slack * slack;
@@ -38,9 +39,9 @@ ViewInput view_input(const App& app, const PanelRect& rect) {
 
 namespace {
 
-void drag_camera(App& app, const ViewInput& input, CameraDrag drag, Vec2 by, Vec2 from) {
+void drag_camera(ViewState& view, const ViewInput& input, CameraDrag drag, Vec2 by, Vec2 from) {
   constexpr double zoom_by_pixel = 1.006;
-  ViewCamera& camera = app.view.camera;
+  ViewCamera& camera = view.camera;
   if (drag == CameraDrag::orbit) camera.orbit(by.x(), by.y(), input.size);
   if (drag == CameraDrag::pan) camera.pan(by.x(), by.y(), input.size);
   if (drag == CameraDrag::zoom) camera.zoom(std::pow(zoom_by_pixel, -by.y() / input.point), from, input.size);
@@ -53,20 +54,20 @@ void steer(App& app, const ViewInput& input) {
   const Vec2 by(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   // Whoever has taken hold of the camera wants it where he puts it, also while the first answer is awaited.
   if (input.active && by != Vec2::Zero()) {
-    stop_glide(app);
+    stop_glide(app.view);
     for (const int button : {ImGuiMouseButton_Middle, ImGuiMouseButton_Right, ImGuiMouseButton_Left}) {
       if (!ImGui::IsMouseDown(button)) continue;
       if (button == ImGuiMouseButton_Left && (!input.moved || takes_left_drag(app, input))) break;
       const ImVec2& pressed = io.MouseClickedPos[button];
       drag_camera(
-          app, input, camera_drag(app.navigation, button, input.ctrl, input.shift), by,
+          app.view, input, camera_drag(app.navigation, button, input.ctrl, input.shift), by,
           {static_cast<double>(pressed.x - input.rect.x), static_cast<double>(pressed.y - input.rect.y)});
       break;
     }
   }
   if (!input.hovered) return;
   if (io.MouseWheel != 0 && !app.tool.pull) {
-    stop_glide(app);
+    stop_glide(app.view);
     app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }
   const bool on_handle =

@@ -1,12 +1,15 @@
 // What the hand does over the 3-D view in this frame, in pixels of the view.
 #pragma once
 
-#include "app/ui/app.hpp"
 #include "app/ui/layout.hpp"
+#include "app/ui/ui.hpp"
+#include "app/ui/view_state.hpp"
 
 #include <optional>
 
 namespace flyball {
+
+struct App;
 
 struct ViewInput {
   PanelRect rect; // pixels of the window
@@ -34,7 +37,7 @@ struct ViewInput {
 };
 
 // Of the last item, which is the view.
-ViewInput view_input(const App& app, const PanelRect& rect);
+ViewInput view_input(const Ui& ui, const ViewState& view, const PanelRect& rect);
 // Orbits, pans, zooms and fits; after everything that needs the camera of this frame's picture.
 void steer(App& app, const ViewInput& input);
 

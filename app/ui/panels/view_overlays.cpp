@@ -3,6 +3,7 @@
 
 #include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -17,19 +18,19 @@ namespace flyball {
 namespace {
 
 // A line on a plate of its own, above the status, in the middle of the view's width. Returns the plate.
-WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
+WidgetRect draw_line(const Ui& ui, const PanelRect& rect, const std::string& text, ImVec4 color, float& y,
                      float strength = 1) {
   if (text.empty()) return {};
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = 9 * s;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, pad = 9 * s;
   // Clear of the axes in the corner.
   const float margin = std::min(96 * s, rect.width / 8);
   const float room = std::max(rect.width - 2 * margin - 2 * pad, 40 * s);
   const std::string lines = in_lines(text, room);
   const ImVec2 size = ImGui::CalcTextSize(lines.c_str(), nullptr, false, room);
   const float x = std::round(rect.x + (rect.width - size.x) / 2);
-  const auto chip = app.widgets.find("explored"); // what is explored, at the right
-  if (chip != app.widgets.end() && x + size.x + 2 * pad > chip->second.from.x)
+  const auto chip = ui.widgets.find("explored"); // what is explored, at the right
+  if (chip != ui.widgets.end() && x + size.x + 2 * pad > chip->second.from.x)
     y = std::min(y, chip->second.from.y - 10 * s);
   y -= size.y + 8 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -37,7 +38,7 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
   plate.w = 0.9f * strength;
   color.w *= strength;
   list.AddRectFilled({x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}, packed(plate), 5 * s);
-  list.AddText(app.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), lines.c_str(), nullptr, room);
+  list.AddText(ui.fonts.text, ImGui::GetFontSize(), {x, y}, packed(color), lines.c_str(), nullptr, room);
   const WidgetRect drawn{{x - pad, y - 3 * s}, {x + size.x + pad, y + size.y + 3 * s}};
   y -= 4 * s;
   return drawn;
@@ -48,7 +49,7 @@ WidgetRect draw_line(const App& app, const PanelRect& rect, const std::string& t
 void part_label(App& app) {
   const PartId part = app.view.hovered;
   if (places(app.tool.tool)) return;
-  const Mechanism& m = *shown_mechanism(app);
+  const Mechanism& m = *shown_mechanism(app, app.tool);
   const auto i = static_cast<std::size_t>(part.index);
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
@@ -73,19 +74,19 @@ void part_label(App& app) {
   ImGui::EndTooltip();
 }
 
-void caption(App& app, const PanelRect& rect) {
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, x = rect.x + 14 * s;
+void caption(const Session& session, Ui& ui, const PanelRect& rect) {
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, x = rect.x + 14 * s;
   float y = rect.y + 11 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect({rect.x, rect.y}, {rect.x + rect.width - 8 * s, rect.y + rect.height}, true);
-  const float big = app.fonts.strong->FontSize;
-  draw_words(app, app.fonts.strong, {x, y}, colors.text, app.mechanism().name);
+  const float big = ui.fonts.strong->FontSize;
+  draw_words(ui, ui.fonts.strong, {x, y}, colors.text, session.mechanism().name);
   y += big + 4 * s;
-  const bool solved = converged(app);
+  const bool solved = converged(session);
   std::string state; // which pose it is, the legend says
-  if (app.playback.time != 0 && solved)
-    state = "t = " + short_text(std::floor(app.playback.time * 100) / 100, 6) + " s";
+  if (session.playback.time != 0 && solved)
+    state = "t = " + short_text(std::floor(session.playback.time * 100) / 100, 6) + " s";
   if (rect.width > 460 * s && !state.empty()) state += " after the drawn phase"; // beside the legend
   if (!state.empty()) {
     const ImVec2 size = ImGui::CalcTextSize(state.c_str());
@@ -94,41 +95,42 @@ void caption(App& app, const PanelRect& rect) {
     plate.w = 0.9f;
     list.AddRectFilled(from, to, packed(plate), 4 * s);
     list.AddText({x, y}, packed(colors.dim), state.c_str());
-    app.widgets["view/time"] = {from, to};
+    ui.widgets["view/time"] = {from, to};
   }
   list.PopClipRect();
 }
 
-void motion_caption(App& app, const PanelRect& rect) {
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, big = app.fonts.strong->FontSize;
+void motion_caption(const Session& session, const Ui& ui, const PanelRect& rect) {
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, big = ui.fonts.strong->FontSize;
   const ImVec2 at(rect.x + 14 * s, rect.y + 11 * s);
-  draw_words(app, app.fonts.strong, at, colors.text, "Motion");
-  const MotionRun* shown = shown_motion(app);
-  const std::string words = motion_words(app, shown); // "Motion, damped"
+  draw_words(ui, ui.fonts.strong, at, colors.text, "Motion");
+  const MotionRun* shown = shown_motion(session);
+  const std::string words = motion_words(session, shown); // "Motion, damped"
   const std::string what = !shown ? "Computing…" : words.size() > 8 ? words.substr(8) : "";
-  draw_words(app, app.fonts.text, {at.x, at.y + big + 4 * s}, colors.dim, what);
+  draw_words(ui, ui.fonts.text, {at.x, at.y + big + 4 * s}, colors.dim, what);
 }
 
 void view_lines(App& app, const PanelRect& rect) {
   const UiColors& colors = colors_of(app);
   float y = rect.y + rect.height - 42 * app.scale;
-  draw_line(app, rect, tool_hint(app), colors.text, y);
+  draw_line(app, rect, tool_hint(app, app.inspector, app.tool), colors.text, y);
   app.view.lines_top = y;
-  keep_notice(app);
+  keep_notice(app, app.notice_log);
   app.notice_age.pointed = false;
   if (is_error(app) || app.notice.empty()) return;
-  const WidgetRect plate = draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app));
+  const WidgetRect plate =
+      draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app, app.notice_age));
   app.notice_age.pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(plate.from, plate.to);
   app.widgets["notice"] = plate;
 }
 
-void error_line(App& app, const PanelRect& rect) {
-  if (!is_error(app)) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = std::min(560 * s, std::max(rect.width - 2 * 96 * s, 160 * s));
-  ImGui::SetNextWindowPos({std::round(rect.x + rect.width / 2), std::round(app.view.lines_top)},
-                          ImGuiCond_Always, {0.5f, 1});
+void error_line(Session& session, Ui& ui, ViewState& view, const PanelRect& rect) {
+  if (!is_error(session)) return;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, width = std::min(560 * s, std::max(rect.width - 2 * 96 * s, 160 * s));
+  ImGui::SetNextWindowPos({std::round(rect.x + rect.width / 2), std::round(view.lines_top)}, ImGuiCond_Always,
+                          {0.5f, 1});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {9 * s, 5 * s});
@@ -144,11 +146,11 @@ void error_line(App& app, const PanelRect& rect) {
   ImGui::PushTextWrapPos(end);
   ImGui::TextColored(colors.bad, "%s", icon::warning);
   ImGui::SameLine(0, 7 * s);
-  ImGui::TextUnformatted(in_lines(app.notice, end - ImGui::GetCursorPosX()).c_str());
+  ImGui::TextUnformatted(in_lines(session.notice, end - ImGui::GetCursorPosX()).c_str());
   ImGui::PopTextWrapPos();
-  note_widget(app.widgets, "error");
+  note_widget(ui.widgets, "error");
   ImGui::SameLine(width - button - 5 * s);
-  if (text_button(app, "error/close", icon::close)) app.notice.clear();
+  if (text_button(ui, "error/close", icon::close)) session.notice.clear();
   ImGui::End();
 }
 
@@ -166,12 +168,12 @@ std::string tried_text(const Session& session) {
 
 } // namespace
 
-void explored_chip(App& app, const PanelRect& view) {
-  if (app.document.explored().empty() || app.dialog.showing || view.width < 300 * app.scale) return;
-  const float s = app.scale;
-  const auto status = app.widgets.find("status");
+void explored_chip(Session& session, Ui& ui, DialogState& dialog, const PanelRect& view) {
+  if (session.document.explored().empty() || dialog.showing || view.width < 300 * ui.scale) return;
+  const float s = ui.scale;
+  const auto status = ui.widgets.find("status");
   const float bottom =
-      status == app.widgets.end() ? view.y + view.height - 10 * s : status->second.from.y - 6 * s;
+      status == ui.widgets.end() ? view.y + view.height - 10 * s : status->second.from.y - 6 * s;
   ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(bottom)}, ImGuiCond_Always,
                           {1, 1});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
@@ -184,19 +186,19 @@ void explored_chip(App& app, const PanelRect& view) {
                    ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(4);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(tried_text(app).c_str());
-  note_widget(app.widgets, "explored");
-  std::string help = app.mode == Mode::build
+  ImGui::TextUnformatted(tried_text(session).c_str());
+  note_widget(ui.widgets, "explored");
+  std::string help = session.mode == Mode::build
                          ? "Tried while exploring and put aside while building; saving leaves it out."
                          : "Tried, and not part of the document: saving leaves it out.";
-  for (const std::string& each : explored_words(app))
+  for (const std::string& each : explored_words(session))
     help += "\n" + each;
   help_on_hover(help.c_str());
   ImGui::SameLine(0, 8 * s);
-  if (text_button(app, "explored/keep", "Keep")) later(app, [&app] { keep_explored(app); });
+  if (text_button(ui, "explored/keep", "Keep")) later(ui, [&session] { keep_explored(session); });
   help_on_hover("Makes the explored values the document's; an edit that can be undone.");
   ImGui::SameLine(0, 4 * s);
-  if (text_button(app, "explored/back", "Back")) later(app, [&app] { drop_explored(app); });
+  if (text_button(ui, "explored/back", "Back")) later(ui, [&session] { drop_explored(session); });
   help_on_hover("Back to the values that are stored.");
   ImGui::End();
 }

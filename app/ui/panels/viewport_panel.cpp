@@ -1,4 +1,5 @@
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/panels/context_menu.hpp"
 #include "app/ui/panels/legend.hpp"
@@ -35,7 +36,7 @@ void use_tool(App& app, const ViewInput& input) {
   case Tool::torque:
   case Tool::drag:
   case Tool::vane: return use_forces(app, input);
-  case Tool::point: return pick_point(app, input);
+  case Tool::point: return pick_point(app, app.tool, input);
   }
 }
 
@@ -48,13 +49,13 @@ void viewport_panel(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddImage(imgui_compat::texture_id(app.view.texture), {rect.x, rect.y},
                 {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
-  use_view_cube(app, rect);
+  use_view_cube(app, app.view, rect);
   ImGui::InvisibleButton("view", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   note_widget(app.widgets, "view", KeyUse::none);
-  ViewInput input = view_input(app, rect);
-  keep_tool_state(app);
+  ViewInput input = view_input(app, app.view, rect);
+  keep_tool_state(app, app.tool);
   use_tool_cursor(app, input);
   if (use_hand(app, input)) input.pressed = input.released = false;
   use_points(app, input);
@@ -63,20 +64,20 @@ void viewport_panel(App& app, const PanelRect& rect) {
   const std::uint64_t revision = app.document.revision();
   const bool joining = app.tool.joint.has_value();
   use_tool(app, input);
-  follow_tool_cursor(app, revision, joining);
+  follow_tool_cursor(app, app, app.tool, revision, joining);
   steer(app, input);
-  load_labels(app, rect);
+  load_labels(app, app.view, rect);
   draw_view_cube(app, rect);
   context_menu(app, input);
-  caption(app, rect);
-  status_chip(app, rect);
-  explored_chip(app, rect);
+  caption(app, app, rect);
+  status_chip(app, app, rect);
+  explored_chip(app, app, app.dialog, rect);
   view_lines(app, rect); // clear of both
   ImGui::End();
   if (!load_tooltip(app, input)) part_label(app);
   tool_strip(app, rect);
   legend(app, rect);
-  error_line(app, rect);
+  error_line(app, app, app.view, rect);
   joint_card(app, input);
   problem_banner(app, rect);
 }
@@ -92,8 +93,8 @@ void beside_panel(App& app, const PanelRect& rect) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   note_widget(app.widgets, "beside", KeyUse::none);
-  steer(app, view_input(app, rect)); // one camera for both
-  motion_caption(app, rect);
+  steer(app, view_input(app, app.view, rect)); // one camera for both
+  motion_caption(app, app, rect);
   ImGui::End();
 }
 

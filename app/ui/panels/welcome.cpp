@@ -1,4 +1,5 @@
 // What an empty document shows instead of nothing: the first steps.
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"

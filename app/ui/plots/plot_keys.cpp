@@ -1,5 +1,6 @@
 // A plot by keys: arrows move its marker, or where there is none a cursor to read by; plus and minus zoom.
 #include "app/plot/nearest.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 

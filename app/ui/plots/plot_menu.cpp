@@ -63,7 +63,8 @@ void plot_menu(const PlotFrame& frame) {
   save.width = frame.layout.width / frame.layout.scale;
   save.height = frame.layout.height / frame.layout.scale;
   save.ground = frame.pen.ground;
-  show_plot_dialog(frame.app, frame.name.substr(std::string("plot/").size()), std::move(save));
+  show_plot_dialog(frame.app, frame.app.dialog, frame.app.file_dialogs,
+                   frame.name.substr(std::string("plot/").size()), std::move(save));
 }
 
 } // namespace flyball

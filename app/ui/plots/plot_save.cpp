@@ -21,12 +21,12 @@ const char* extension_of(PlotFile kind) {
   return kind == PlotFile::png ? ".png" : kind == PlotFile::svg ? ".svg" : ".csv";
 }
 
-void number(App& app, const char* name, int& value) {
-  ImGui::SetNextItemWidth(84 * app.scale);
+void number(Ui& ui, const char* name, int& value) {
+  ImGui::SetNextItemWidth(84 * ui.scale);
   ImGui::PushID(name);
   ImGui::InputInt("##number", &value, 0);
   ImGui::PopID();
-  note_widget(app.widgets, name, KeyUse::type);
+  note_widget(ui.widgets, name, KeyUse::type);
 }
 
 bool fits(const PlotSave& save) {
@@ -34,25 +34,25 @@ bool fits(const PlotSave& save) {
          (std::ranges::min(save.pixels) >= smallest_plot && std::ranges::max(save.pixels) <= largest_plot);
 }
 
-void size_fields(App& app, PlotSave& save) {
+void size_fields(Ui& ui, PlotSave& save) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Size");
-  ImGui::SameLine(80 * app.scale);
-  number(app, "save_plot/width", save.pixels[0]);
+  ImGui::SameLine(80 * ui.scale);
+  number(ui, "save_plot/width", save.pixels[0]);
   ImGui::SameLine();
   ImGui::TextUnformatted("×");
   ImGui::SameLine();
-  number(app, "save_plot/height", save.pixels[1]);
+  number(ui, "save_plot/height", save.pixels[1]);
   ImGui::SameLine();
   ImGui::TextDisabled("pixels");
-  if (!fits(save)) paragraph("From 160 to 8192 pixels a side.", colors_of(app).bad);
+  if (!fits(save)) paragraph("From 160 to 8192 pixels a side.", colors_of(ui).bad);
 }
 
 // Returns whether the dialog is done with.
 bool save_plot(App& app) {
   const PlotSave& save = *app.dialog.plot;
-  const std::filesystem::path file = typed_file(app, extension_of(save.kind));
-  if (!may_replace(app, file)) return false;
+  const std::filesystem::path file = typed_file(app.file_dialogs, extension_of(save.kind));
+  if (!may_replace(app, app.file_dialogs, file)) return false;
   if (save.kind == PlotFile::png) {
     app.export_request = ExportRequest{
         .file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = app.dialog.plot};
@@ -74,44 +74,45 @@ bool save_plot(App& app) {
   }
 }
 
-void close(App& app) {
-  app.dialog.plot.reset();
+void close(DialogState& dialog) {
+  dialog.plot.reset();
   close_dialog();
 }
 
 } // namespace
 
-void show_plot_dialog(App& app, const std::string& name, PlotSave save) {
-  app.dialog.wanted = Dialog::save_plot;
+void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
+                      const std::string& name, PlotSave save) {
+  dialog.wanted = Dialog::save_plot;
   // Twice as fine as the screen, for print.
   const double finer = save.kind == PlotFile::png ? 2 : 1;
   const auto pixels = [&](double points) {
     return std::clamp(static_cast<int>(finer * points), smallest_plot, largest_plot);
   };
   save.pixels = {pixels(save.width), pixels(save.height)};
-  show_folder(app, usual_folder(app));
-  app.file_dialogs.replacing.clear();
-  const std::filesystem::path& file = app.document.file();
-  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
-  app.file_dialogs.path = stem + "-" + file_stem(name) + extension_of(save.kind);
-  app.dialog.plot = std::make_shared<PlotSave>(std::move(save));
+  show_folder(file_dialogs, usual_folder(session));
+  file_dialogs.replacing.clear();
+  const std::filesystem::path& file = session.document.file();
+  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
+  file_dialogs.path = stem + "-" + file_stem(name) + extension_of(save.kind);
+  dialog.plot = std::make_shared<PlotSave>(std::move(save));
 }
 
 void plot_dialog(App& app) {
-  if (!begin_dialog(app, Dialog::save_plot, "Save the plot", 560)) return;
+  if (!begin_dialog(app, app.dialog, Dialog::save_plot, "Save the plot", 560)) return;
   if (!app.dialog.plot) { // nothing to be saved
-    close(app);
+    close(app.dialog);
     return end_dialog();
   }
   PlotSave& save = *app.dialog.plot;
   const char* extension = extension_of(save.kind);
-  bool accepted = path_field(app, "save_plot", "Name");
-  folder_line(app, "save_plot");
-  if (const auto clicked = file_list(app, "save_plot", extension, false, 160 * app.scale))
+  bool accepted = path_field(app, app.file_dialogs, "save_plot", "Name");
+  folder_line(app, app.file_dialogs, "save_plot");
+  if (const auto clicked = file_list(app, app.file_dialogs, "save_plot", extension, false, 160 * app.scale))
     app.file_dialogs.path = clicked->filename().string();
   if (save.kind != PlotFile::csv) size_fields(app, save);
-  const std::filesystem::path file = typed_file(app, extension);
-  const bool replaces = asks_to_replace(app, file);
+  const std::filesystem::path file = typed_file(app.file_dialogs, extension);
+  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
   if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
   ImGui::Dummy({0, 2 * app.scale});
   const bool usable = fits(save) && !app.file_dialogs.path.empty();
@@ -122,11 +123,11 @@ void plot_dialog(App& app) {
   const bool cancelled = text_button(app, "save_plot/cancel", "Cancel") || escape_pressed();
   std::error_code ignored;
   if (cancelled)
-    close(app);
-  else if (accepted && usable && std::filesystem::is_directory(typed_path(app), ignored))
-    entered_file(app, false); // goes there
+    close(app.dialog);
+  else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored))
+    entered_file(app.file_dialogs, false); // goes there
   else if (accepted && usable && save_plot(app))
-    close(app);
+    close(app.dialog);
   end_dialog();
 }
 

@@ -8,6 +8,11 @@
 
 namespace flyball {
 
+struct App;
+struct DialogState;
+struct FileDialogState;
+struct Session;
+
 // What is being saved. The dialog writes SVG and CSV itself; a PNG becomes an ExportRequest for whoever has
 // OpenGL.
 struct PlotSave {
@@ -20,7 +25,8 @@ struct PlotSave {
 };
 
 // Asks where to. `name` becomes part of the file's name.
-void show_plot_dialog(App& app, const std::string& name, PlotSave save);
+void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
+                      const std::string& name, PlotSave save);
 void plot_dialog(App& app);
 
 } // namespace flyball

@@ -1,5 +1,6 @@
 #include "app/ui/plots/plot_view.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 

@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -31,14 +32,14 @@ constexpr std::array tabs{
 };
 
 // A word with a line below it where it is the one that shows.
-bool tab(App& app, const Tab& wanted) {
-  const UiColors& colors = colors_of(app);
-  const bool on = app.study.open == wanted.study;
-  const float s = app.scale;
+bool tab(const Session& session, Ui& ui, const Tab& wanted) {
+  const UiColors& colors = colors_of(ui);
+  const bool on = session.study.open == wanted.study;
+  const float s = ui.scale;
   const ImVec2 text = ImGui::CalcTextSize(wanted.title), from = ImGui::GetCursorScreenPos();
   const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
   const bool pressed = ImGui::InvisibleButton(wanted.name, size);
-  note_widget(app.widgets, wanted.name);
+  note_widget(ui.widgets, wanted.name);
   help_above(wanted.help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText({from.x + 8 * s, from.y + 4 * s},
@@ -65,12 +66,12 @@ void study_panel(App& app, const PanelRect& rect) {
   StudyKind wanted = StudyKind::none;
   const float top = ImGui::GetCursorPosY();
   for (const Tab& each : tabs)
-    if (tab(app, each) && each.study != app.study.open) wanted = each.study;
+    if (tab(app, app, each) && each.study != app.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
   if (app.study.open == StudyKind::motion && app.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
     ImGui::SetCursorPosX(from);
-    motion_transport(app, rect.width - side - 24 * s - from);
+    motion_transport(app, app, rect.width - side - 24 * s - from);
     ImGui::SameLine();
   }
   ImGui::SetCursorPos({rect.width - side - 8 * s, top});
@@ -80,7 +81,7 @@ void study_panel(App& app, const PanelRect& rect) {
   case StudyKind::motion: motion_panel(app); break;
   case StudyKind::compare: compare_panel(app); break;
   case StudyKind::response: response_panel(app); break;
-  case StudyKind::states: states_panel(app); break;
+  case StudyKind::states: states_panel(app, app); break;
   case StudyKind::modes: modes_panel(app); break;
   case StudyKind::map: map_panel(app); break;
   case StudyKind::spread: spread_panel(app); break;

@@ -1,5 +1,6 @@
 #include "app/ui/tools/aim.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/viewport/picking.hpp"
@@ -88,14 +89,14 @@ Aim find_aim(App& app, const ViewInput& input) {
   const std::span<const Instance> bodies(scene.instances.begin(), last);
   const Ray ray = input.ray();
   const auto hit = pick(bodies, ray, 2 * input.point);
-  const bool snap = snaps(app, input);
+  const bool snap = snaps(app.tool, input);
   const double reach = snap_reach * input.point;
 
   Aim aim;
   aim.step = snap ? grid_step(input) : 0;
   aim.plane = work_plane(input.camera, app.tool.last_point.value_or(Vec3::Zero()));
   if (const SnapPoint* point =
-          snap ? snap_point(cached_snap_points(app), input.camera, input.size, input.cursor, reach)
+          snap ? snap_point(cached_snap_points(app, app.tool), input.camera, input.size, input.cursor, reach)
                : nullptr) {
     aim.plane.through = aim.point = point->point;
     aim.what = point->what;
@@ -144,8 +145,8 @@ void draw_grid(const Ui& ui, const ViewInput& input, const Aim& aim) {
 
 } // namespace
 
-bool snaps(const App& app, const ViewInput& input) {
-  return app.tool.snap != input.ctrl;
+bool snaps(const ToolState& tool, const ViewInput& input) {
+  return tool.snap != input.ctrl;
 }
 
 double grid_step(const ViewInput& input) {
@@ -156,34 +157,35 @@ const Aim& aim_at(App& app, const ViewInput& input) {
   ToolCaches& cache = app.tool.caches;
   const std::uint64_t revision = app.document.revision();
   if (cache.aim_revision != revision || cache.aim_cursor != input.cursor ||
-      cache.aim_camera != input.camera || cache.aim_snaps != snaps(app, input)) {
+      cache.aim_camera != input.camera || cache.aim_snaps != snaps(app.tool, input)) {
     cache.aim = find_aim(app, input);
     cache.aim_revision = revision;
     cache.aim_cursor = input.cursor;
     cache.aim_camera = input.camera;
-    cache.aim_snaps = snaps(app, input);
+    cache.aim_snaps = snaps(app.tool, input);
   }
   return cache.aim;
 }
 
-void draw_aim(App& app, const ViewInput& input, const Aim& aim, const std::string& head) {
+void draw_aim(const Session& session, const Ui& ui, const ViewInput& input, const Aim& aim,
+              const std::string& head) {
   const auto center = input.on_screen(aim.point);
   if (!center) return;
-  draw_grid(app, input, aim);
+  draw_grid(ui, input, aim);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float s = app.scale;
+  const float s = ui.scale;
   const double arm = 16 * input.point * metres_per_pixel(input.camera, aim.point, input.size);
   for (int i = 0; i < 3; ++i) {
     if (i == aim.plane.normal) continue;
     const auto p = input.on_screen(Vec3(aim.point - arm * Vec3::Unit(i)));
     const auto q = input.on_screen(Vec3(aim.point + arm * Vec3::Unit(i)));
-    if (p && q) list.AddLine(*p, *q, packed(axis_color(app.theme, i)), 1.5f * s);
+    if (p && q) list.AddLine(*p, *q, packed(axis_color(ui.theme, i)), 1.5f * s);
   }
-  if (!aim.what.empty()) draw_dot(app, *center, 6, true);
+  if (!aim.what.empty()) draw_dot(ui, *center, 6, true);
   std::string title = head;
   if (title.empty() && !aim.what.empty()) title = aim.what;
   if (title.empty() && aim.body != ground_name) title = "on " + aim.body;
-  draw_tag(app, input, input.cursor, title, place_text(aim.point, aim.step, app.units));
+  draw_tag(ui, input, input.cursor, title, place_text(aim.point, aim.step, session.units));
 }
 
 } // namespace flyball

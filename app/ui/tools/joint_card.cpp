@@ -1,5 +1,6 @@
 // The card beside the point of a joint or bearing to be made: which bodies, which type, which axis.
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/joint_guess.hpp"
@@ -33,8 +34,8 @@ constexpr std::array types{
 };
 
 // A word of several, of which one is lit.
-bool choice(App& app, const std::string& name, const char* text, bool on, const char* help, float width = 0) {
-  const UiColors& colors = colors_of(app);
+bool choice(Ui& ui, const std::string& name, const char* text, bool on, const char* help, float width = 0) {
+  const UiColors& colors = colors_of(ui);
   ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
   ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
@@ -42,7 +43,7 @@ bool choice(App& app, const std::string& name, const char* text, bool on, const 
   const bool pressed = ImGui::Button(text, {width, 0});
   ImGui::PopID();
   ImGui::PopStyleColor(3);
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   help_on_hover(help);
   return pressed;
 }
@@ -62,8 +63,8 @@ bool same_direction(const Vec3& a, const Vec3& b) {
   return (a.normalized() - b.normalized()).norm() < 1e-9;
 }
 
-void set_axis(App& app, const Vec3& axis) {
-  JointDraft& draft = *app.tool.joint;
+void set_axis(ToolState& tool, const Vec3& axis) {
+  JointDraft& draft = *tool.joint;
   draft.axis = axis;
   draft.axis_chosen = true;
   draft.picking_axis = false;
@@ -73,73 +74,73 @@ void set_axis(App& app, const Vec3& axis) {
   }
 }
 
-void set_bodies(App& app, const std::array<std::string, 2>& bodies) {
-  JointDraft& draft = *app.tool.joint;
+void set_bodies(Session& session, ToolState& tool, const std::array<std::string, 2>& bodies) {
+  JointDraft& draft = *tool.joint;
   draft.bodies = bodies;
   draft.bodies_chosen = true;
   Selection selection;
   for (const std::string& body : bodies)
     if (body != ground_name) selection.add({PartKind::body, body});
-  select(app, std::move(selection));
+  select(session, std::move(selection));
 }
 
-void body_rows(App& app) {
-  const std::vector<std::string> choices = body_choices(app.mechanism(), true);
-  const std::array<std::string, 2> bodies = app.tool.joint->bodies;
+void body_rows(Session& session, Ui& ui, ToolState& tool) {
+  const std::vector<std::string> choices = body_choices(session.mechanism(), true);
+  const std::array<std::string, 2> bodies = tool.joint->bodies;
   const auto take = [&](std::size_t end, const std::string& name) {
     std::array<std::string, 2> next = bodies;
     if (name == bodies[1 - end]) next[1 - end] = bodies[end];
     next[end] = name;
-    set_bodies(app, next);
+    set_bodies(session, tool, next);
   };
-  const bool bearing = app.tool.tool == Tool::bearing;
+  const bool bearing = tool.tool == Tool::bearing;
   if (const auto name =
-          name_choice_row(app, "tools/parent", bearing ? "In" : "Parent", choices, bodies[0],
+          name_choice_row(ui, "tools/parent", bearing ? "In" : "Parent", choices, bodies[0],
                           bearing ? bearing_in_help : "The body that coordinates are counted from."))
     take(0, *name);
   if (const auto name =
-          name_choice_row(app, "tools/child", bearing ? "Holds" : "Child", choices, bodies[1],
+          name_choice_row(ui, "tools/child", bearing ? "Holds" : "Child", choices, bodies[1],
                           bearing ? bearing_holds_help : "The body that a positive coordinate moves."))
     take(1, *name);
   ImGui::SameLine(0, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
-  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
   if (ImGui::Button(icon::swap, {ImGui::GetContentRegionAvail().x, 0}))
-    set_bodies(app, {bodies[1], bodies[0]});
+    set_bodies(session, tool, {bodies[1], bodies[0]});
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
-  note_widget(app.widgets, "tools/swap");
+  note_widget(ui.widgets, "tools/swap");
   help_on_hover("Swap the two.");
 }
 
-void type_rows(App& app, const ViewInput& input) {
-  JointDraft& draft = *app.tool.joint;
-  const float gap = 4 * app.scale, width = (ImGui::GetContentRegionAvail().x - gap) / 2;
+void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
+  JointDraft& draft = *tool.joint;
+  const float gap = 4 * ui.scale, width = (ImGui::GetContentRegionAvail().x - gap) / 2;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (i % 2) ImGui::SameLine(0, gap);
     const TypeChoice& type = types[i];
     const std::string name = "tools/type/" + std::string(type_name(type.type));
-    if (!choice(app, name, type.title, app.tool.joint_type == type.type, type.help, width)) continue;
-    app.tool.joint_type = type.type;
+    if (!choice(ui, name, type.title, tool.joint_type == type.type, type.help, width)) continue;
+    tool.joint_type = type.type;
     if (!draft.axis_chosen) {
-      draft.axis = guess_axis(app.mechanism(), type.type, draft.bodies, axis_in_view(input.camera));
+      draft.axis = guess_axis(session.mechanism(), type.type, draft.bodies, axis_in_view(input.camera));
       draft.axis2 = axis_across(draft.axis);
     }
   }
   ImGui::PopStyleVar();
 }
 
-void axis_rows(App& app, const ViewInput& input) {
-  JointDraft& draft = *app.tool.joint;
+void axis_rows(Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
+  JointDraft& draft = *tool.joint;
   const auto offer = [&](const std::string& id, const std::string& label, const Vec3& axis,
                          const char* help) {
     const bool on = !draft.picking_axis && same_direction(axis, draft.axis);
-    if (choice(app, "tools/axis/" + id, label.c_str(), on, help)) set_axis(app, axis);
+    if (choice(ui, "tools/axis/" + id, label.c_str(), on, help)) set_axis(tool, axis);
   };
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * app.scale, 4 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * ui.scale, 4 * ui.scale});
   ImGui::AlignTextToFramePadding();
-  const bool normal = app.tool.tool == Tool::joint && app.tool.joint_type == JointType::planar;
+  const bool normal = tool.tool == Tool::joint && tool.joint_type == JointType::planar;
   ImGui::TextDisabled("%s", normal ? "Normal" : "Axis");
   const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -154,22 +155,22 @@ void axis_rows(App& app, const ViewInput& input) {
   }
   constexpr const char* two_points = "Two points…";
   wrap(button_width(two_points));
-  if (choice(app, "tools/axis/points", two_points, draft.picking_axis,
+  if (choice(ui, "tools/axis/points", two_points, draft.picking_axis,
              "Click two points that it goes through.")) {
     draft.picking_axis = !draft.picking_axis;
     draft.axis_from.reset();
   }
-  for (const BodyAxis& axis : body_axes(app.mechanism(), draft.bodies)) {
+  for (const BodyAxis& axis : body_axes(session.mechanism(), draft.bodies)) {
     wrap(button_width(axis.label.c_str()));
     offer(axis.label, axis.label, axis.axis, "An axis of the body.");
   }
   ImGui::PopStyleVar();
 }
 
-void second_axis_row(App& app) {
-  JointDraft& draft = *app.tool.joint;
+void second_axis_row(Ui& ui, ToolState& tool) {
+  JointDraft& draft = *tool.joint;
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("%s", app.tool.joint_type == JointType::planar ? "First slide" : "Second axis");
+  ImGui::TextDisabled("%s", tool.joint_type == JointType::planar ? "First slide" : "Second axis");
   const std::array<const char*, 3> letters{"X", "Y", "Z"}, ids{"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
     const Vec3 unit = Vec3::Unit(i);
@@ -177,8 +178,8 @@ void second_axis_row(App& app) {
     // At right angles to the first: what slides and crosses are made of.
     const Vec3 across = (unit - draft.axis * draft.axis.dot(unit) / draft.axis.squaredNorm()).normalized();
     const auto k = static_cast<std::size_t>(i);
-    ImGui::SameLine(0, 4 * app.scale);
-    if (!choice(app, std::string("tools/axis2/") + ids[k], letters[k], same_direction(across, draft.axis2),
+    ImGui::SameLine(0, 4 * ui.scale);
+    if (!choice(ui, std::string("tools/axis2/") + ids[k], letters[k], same_direction(across, draft.axis2),
                 "As near to the world axis as it can be, across the first."))
       continue;
     draft.axis2 = across;
@@ -264,18 +265,18 @@ void joint_card(App& app, const ViewInput& input) {
   ImGui::PopStyleVar(2);
   const bool bearing = app.tool.tool == Tool::bearing;
   heading(app, bearing ? "Bearing" : "Join");
-  body_rows(app);
+  body_rows(app, app, app.tool);
   ImGui::Dummy({0, s});
-  if (!bearing) type_rows(app, input);
-  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, input);
-  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app);
+  if (!bearing) type_rows(app, app, app.tool, input);
+  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, app, app.tool, input);
+  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app, app.tool);
   ImGui::Dummy({0, 2 * s});
   // The card stays as tall as it was: fewer rows do not move what is clicked next.
   const float foot =
       app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
   ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
   if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
-    make_joint(app);
+    make_joint(app, app, app.tool);
   } else {
     ImGui::SameLine();
     if (text_button(app, "tools/cancel", "Cancel")) {

@@ -1,5 +1,6 @@
 #include "app/ui/tools/joints_along.hpp"
 
+#include "app/session/session.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -47,23 +48,23 @@ Names stretched_links(const Mechanism& mechanism, const Selection& moved) {
 
 } // namespace
 
-OuterJoints joints_of_moved(const App& app, bool opposite) {
-  return app.inspector.leave_joints != opposite ? OuterJoints::stay : OuterJoints::follow;
+OuterJoints joints_of_moved(const InspectorState& inspector, bool opposite) {
+  return inspector.leave_joints != opposite ? OuterJoints::stay : OuterJoints::follow;
 }
 
-void tell_joints(App& app, const Selection& moved, bool opposite) {
-  const Mechanism& mechanism = app.mechanism();
+void tell_joints(Session& session, InspectorState& inspector, const Selection& moved, bool opposite) {
+  const Mechanism& mechanism = session.mechanism();
   const Names names = outer_joints(mechanism, moved);
   if (names.empty()) return;
   const bool one = names.size() == 1;
   const std::string joints = (one ? "Joint " : "Joints ") + listed(names);
-  if (joints_of_moved(app, opposite) == OuterJoints::follow)
-    app.notice =
+  if (joints_of_moved(inspector, opposite) == OuterJoints::follow)
+    session.notice =
         joints + " went along" +
         clause(staying_bodies(mechanism, moved, names), " stays where it was", " stay where they were") +
         clause(stretched_links(mechanism, moved), " follows with one end", " follow with one end each") + ".";
   else
-    app.notice = joints + (one ? " stays where it was." : " stay where they were.");
+    session.notice = joints + (one ? " stays where it was." : " stay where they were.");
 }
 
 } // namespace flyball

@@ -2,14 +2,16 @@
 #pragma once
 
 #include "app/document/transform.hpp"
-#include "app/ui/app.hpp"
+#include "app/ui/inspector_state.hpp"
 
 namespace flyball {
 
+struct Session;
+
 // As chosen in the inspector; `opposite` while Shift is held in the view.
-OuterJoints joints_of_moved(const App& app, bool opposite);
+OuterJoints joints_of_moved(const InspectorState& inspector, bool opposite);
 // Tells which joints went along with the selected bodies and what they are joined to that stays, or which
 // joints were left. After the edit; nothing where they have none to what stays.
-void tell_joints(App& app, const Selection& moved, bool opposite);
+void tell_joints(Session& session, InspectorState& inspector, const Selection& moved, bool opposite);
 
 } // namespace flyball

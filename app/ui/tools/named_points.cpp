@@ -1,6 +1,7 @@
 #include "app/ui/tools/named_points.hpp"
 
 #include "app/document/formula_edits.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -15,10 +16,10 @@ namespace {
 
 constexpr float dot = 3.5f, lift = 14; // points: of the mark, and how far the name is from it
 
-bool are_shown(const App& app) {
-  const ToolState& tool = app.tool;
-  if (app.mode != Mode::build) return false;
-  return places(tool.tool) || tool.grab || (tool.tool != Tool::pull && app.selection().empty());
+bool are_shown(const Session& session, const ToolState& tool) {
+
+  if (session.mode != Mode::build) return false;
+  return places(tool.tool) || tool.grab || (tool.tool != Tool::pull && session.selection().empty());
 }
 
 struct Mark {
@@ -30,16 +31,16 @@ bool is_in(const WidgetRect& rect, ImVec2 at) {
   return at.x >= rect.from.x && at.y >= rect.from.y && at.x < rect.to.x && at.y < rect.to.y;
 }
 
-Mark mark_of(const App& app, const NamedPoint& point, ImVec2 at) {
-  const float s = app.scale, pad = 4 * s;
+Mark mark_of(const Ui& ui, const NamedPoint& point, ImVec2 at) {
+  const float s = ui.scale, pad = 4 * s;
   const ImVec2 size = ImGui::CalcTextSize(point.name.c_str());
   const ImVec2 from(at.x + lift * s, at.y - lift * s - size.y);
   return {at, {from, {from.x + size.x + 2 * pad, from.y + size.y + pad / 2}}};
 }
 
-void draw_mark(const App& app, const NamedPoint& point, const Mark& mark, bool lit) {
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+void draw_mark(const Ui& ui, const NamedPoint& point, const Mark& mark, bool lit) {
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImU32 ink = packed(lit ? colors.accent : colors.text);
   list.AddLine(mark.at, {mark.name.from.x, mark.name.to.y}, ink, std::max(1.f, s));
@@ -53,15 +54,16 @@ void draw_mark(const App& app, const NamedPoint& point, const Mark& mark, bool l
 }
 
 // Points that coincide are told apart by names one above the other.
-std::vector<std::pair<const NamedPoint*, Mark>> marks(const App& app, const ViewInput& input) {
+std::vector<std::pair<const NamedPoint*, Mark>> marks(const Session& session, const Ui& ui,
+                                                      const ViewInput& input) {
   std::vector<std::pair<const NamedPoint*, Mark>> all;
-  for (const NamedPoint& point : app.mechanism().points) {
+  for (const NamedPoint& point : session.mechanism().points) {
     const auto at = input.on_screen(point.at);
     if (!at) continue;
-    Mark mark = mark_of(app, point, *at);
+    Mark mark = mark_of(ui, point, *at);
     for (const auto& [other, before] : all)
       if (is_in(before.name, {mark.name.from.x + 1, mark.name.from.y + 1})) {
-        const float up = mark.name.to.y - before.name.from.y + 2 * app.scale;
+        const float up = mark.name.to.y - before.name.from.y + 2 * ui.scale;
         mark.name.from.y -= up;
         mark.name.to.y -= up;
       }
@@ -71,32 +73,32 @@ std::vector<std::pair<const NamedPoint*, Mark>> marks(const App& app, const View
 }
 
 // The named point at the cursor, as tools snap.
-const NamedPoint* point_near(const App& app, const ViewInput& input) {
+const NamedPoint* point_near(const Session& session, const ViewInput& input) {
   std::vector<SnapPoint> named;
-  for (const NamedPoint& point : app.mechanism().points)
+  for (const NamedPoint& point : session.mechanism().points)
     named.push_back({point.at, {}, {}, point.name});
   const SnapPoint* near = snap_point(named, input.camera, input.size, input.cursor, snap_reach * input.point);
-  return near ? &app.mechanism().points[static_cast<std::size_t>(near - named.data())] : nullptr;
+  return near ? &session.mechanism().points[static_cast<std::size_t>(near - named.data())] : nullptr;
 }
 
 } // namespace
 
-const NamedPoint* selected_point(const App& app) {
-  if (app.tool.point.empty() || !app.selection().empty()) return nullptr;
-  const int index = point_index(app.mechanism(), app.tool.point);
-  return index < 0 ? nullptr : &app.mechanism().points[static_cast<std::size_t>(index)];
+const NamedPoint* selected_point(const Session& session, const ToolState& tool) {
+  if (tool.point.empty() || !session.selection().empty()) return nullptr;
+  const int index = point_index(session.mechanism(), tool.point);
+  return index < 0 ? nullptr : &session.mechanism().points[static_cast<std::size_t>(index)];
 }
 
-void select_point(App& app, const std::string& name) {
-  select(app, {});
-  app.tool.point = name;
+void select_point(Session& session, ToolState& tool, const std::string& name) {
+  select(session, {});
+  tool.point = name;
 }
 
 void use_points(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
   tool.hovered_name.clear();
-  if (!are_shown(app)) return;
-  const auto all = marks(app, input);
+  if (!are_shown(app, app.tool)) return;
+  const auto all = marks(app, app, input);
   const ImVec2 cursor = input.on_screen(input.cursor);
   const bool can = input.hovered && !tool.grab && (tool.tool == Tool::point || !places(tool.tool)) &&
                    (!input.active || input.pressed || !input.moved);
@@ -120,15 +122,15 @@ void begin_picking(App& app) {
   app.tool.standing = std::exchange(app.fields.picking, {});
 }
 
-void pick_point(App& app, const ViewInput& input) {
-  if (!input.hovered || !input.clicked() || app.tool.spent) return;
-  const std::string name = app.tool.hovered_name, vector = app.tool.standing;
+void pick_point(Session& session, ToolState& tool, const ViewInput& input) {
+  if (!input.hovered || !input.clicked() || tool.spent) return;
+  const std::string name = tool.hovered_name, vector = tool.standing;
   if (name.empty()) {
-    app.notice = "There is no named point here: click a marked one.";
+    session.notice = "There is no named point here: click a marked one.";
     return;
   }
-  app.tool.tool = Tool::select;
-  edit(app, "Stand at " + name,
+  tool.tool = Tool::select;
+  edit(session, "Stand at " + name,
        [&](Mechanism& mechanism, Selection&) { stand_at_point(mechanism, vector, name); });
 }
 

@@ -2,15 +2,17 @@
 // one standing there.
 #pragma once
 
+#include "app/session/session.hpp"
 #include "app/ui/panels/view_input.hpp"
+#include "app/ui/tool_state.hpp"
 
 #include <string>
 
 namespace flyball {
 
 // The one that is selected, while no part is; null: none.
-const NamedPoint* selected_point(const App& app);
-void select_point(App& app, const std::string& name);
+const NamedPoint* selected_point(const Session& session, const ToolState& tool);
+void select_point(Session& session, ToolState& tool, const std::string& name);
 
 // Draws them while building, where nothing is selected or a tool or a drag may snap to them, and finds the
 // one under the cursor: on its name, or on its place where no part is in front.
@@ -18,7 +20,7 @@ void use_points(App& app, const ViewInput& input);
 // After the panels: chooses the tool that picks one, where a field has asked for it (FieldState::picking).
 void begin_picking(App& app);
 // The tool that picks one where app.tool.standing shall stand.
-void pick_point(App& app, const ViewInput& input);
+void pick_point(Session& session, ToolState& tool, const ViewInput& input);
 
 // What was put on a named point refers to it; nothing for an empty name.
 void stand_at(Mechanism& mechanism, const std::string& vector, const std::string& name);

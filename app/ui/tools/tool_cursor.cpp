@@ -1,5 +1,6 @@
 #include "app/ui/tools/tool_cursor.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -51,7 +52,7 @@ std::optional<Vec3> likely_point(App& app) {
       bodies.push_back(i);
   std::optional<Vec3> best;
   std::tuple<double, bool> least{std::numeric_limits<double>::max(), true};
-  for (const SnapPoint& snap : cached_snap_points(app)) {
+  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
     if (snap.part.kind == PartKind::none) continue;
     // Rather a body's own point than that of a joint that is there already.
     const std::tuple<double, bool> worth{distance_to_second(app, bodies, snap.point),
@@ -92,7 +93,7 @@ Vec2 first_place(App& app, ViewSize view) {
 // Left to right and top to bottom, as they are seen.
 std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool back) {
   std::vector<std::pair<double, double>> places;
-  for (const SnapPoint& snap : cached_snap_points(app)) {
+  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
     if (app.tool.tool == Tool::point && snap.named.empty()) continue;
     if (const auto at = app.view.camera.project(snap.point, view))
       if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
@@ -108,13 +109,14 @@ std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool b
 }
 
 // A step of the grid on the screen, a pixel with Shift.
-double arrow_step(const App& app, const KeyPress& key, ViewSize view) {
+double arrow_step(const Ui& ui, const ToolState& tool, const ViewState& state, const KeyPress& key,
+                  ViewSize view) {
   if (key.shift) return 1;
   ViewInput input;
   input.size = view;
-  input.camera = app.view.camera;
-  input.point = static_cast<double>(app.scale);
-  const double step = app.tool.snap ? grid_step(input) / input.metres_per_pixel() : 10 * input.point;
+  input.camera = state.camera;
+  input.point = static_cast<double>(ui.scale);
+  const double step = tool.snap ? grid_step(input) / input.metres_per_pixel() : 10 * input.point;
   return key.ctrl ? 5 * step : step;
 }
 
@@ -123,7 +125,7 @@ double arrow_step(const App& app, const KeyPress& key, ViewSize view) {
 bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
   ToolState& tool = app.tool;
   const Vec2 now = tool.cursor.value_or(app.keyboard.in_view.value_or(first_place(app, view)));
-  const double step = arrow_step(app, key, view);
+  const double step = arrow_step(app, app.tool, app.view, key, view);
   Vec2 by = Vec2::Zero();
   switch (key.key) {
   case keys::right: by.x() = step; break;
@@ -161,11 +163,12 @@ void use_tool_cursor(App& app, ViewInput& input) {
   input.active = input.held = input.moved = false;
 }
 
-void follow_tool_cursor(App& app, std::uint64_t revision_before, bool joining_before) {
-  if (!app.keyboard.by_key) return;
-  if (app.tool.joint && !joining_before) focus_widget(app, "tools/join");
-  if (app.document.revision() != revision_before && app.tool.tool == Tool::select && app.tool.cursor)
-    focus_widget(app, "inspector/name");
+void follow_tool_cursor(Session& session, Ui& ui, ToolState& tool, std::uint64_t revision_before,
+                        bool joining_before) {
+  if (!ui.keyboard.by_key) return;
+  if (tool.joint && !joining_before) focus_widget(ui, "tools/join");
+  if (session.document.revision() != revision_before && tool.tool == Tool::select && tool.cursor)
+    focus_widget(ui, "inspector/name");
 }
 
 } // namespace flyball

@@ -2,7 +2,9 @@
 // point of the mechanism, Enter for a click.
 #pragma once
 
+#include "app/session/session.hpp"
 #include "app/ui/panels/view_input.hpp"
+#include "app/ui/tool_state.hpp"
 
 namespace flyball {
 
@@ -11,6 +13,7 @@ bool take_cursor_key(App& app, const KeyPress& key, ViewSize view);
 // Puts the cursor into the place of the mouse, as long as that rests.
 void use_tool_cursor(App& app, ViewInput& input);
 // After the tool was used: what was made with the cursor has the keys next, or the card that asks how.
-void follow_tool_cursor(App& app, std::uint64_t revision_before, bool joining_before);
+void follow_tool_cursor(Session& session, Ui& ui, ToolState& tool, std::uint64_t revision_before,
+                        bool joining_before);
 
 } // namespace flyball

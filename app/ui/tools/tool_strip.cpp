@@ -1,4 +1,5 @@
 // The tools, as a strip of buttons at the left edge of the view.
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/tool_glyphs.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -42,11 +43,11 @@ constexpr float top = 56, bottom = 92; // points of the view that the caption an
 constexpr float button_side = 26, strip_pad = 4, group_gap = 7;
 
 // What it is and how to call it, beside the strip.
-void tell(const App& app, const char* id) {
+void tell(const Ui& ui, const char* id) {
   if (!ImGui::IsItemHovered() || !pointed_long()) return;
   const Command& wanted = command(id);
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextUnformatted(wanted.title);
   ImGui::PopFont();
   if (const std::string key = key_text(wanted.key); !key.empty()) {
@@ -61,12 +62,12 @@ void tell(const App& app, const char* id) {
 
 // A square with a glyph; returns whether it was pressed.
 template <class Draw>
-bool glyph_button(App& app, const char* name, bool on, const Draw& draw) {
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = button_side * s;
+bool glyph_button(Ui& ui, const char* name, bool on, const Draw& draw) {
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, width = button_side * s;
   const ImVec2 from = ImGui::GetCursorScreenPos(), to(from.x + width, from.y + width);
   const bool pressed = ImGui::InvisibleButton(name, {width, width});
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (on || ImGui::IsItemHovered())
     list.AddRectFilled(from, to, packed(on ? colors.accent : colors.raised), 4 * s);

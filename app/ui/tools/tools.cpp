@@ -1,5 +1,6 @@
 #include "app/ui/tools/tools.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools_hand.hpp"
@@ -24,21 +25,21 @@ void drop_begun(ToolState& tool) {
   tool.hovered_point.reset();
 }
 
-void take_key_while_holding(App& app, const KeyPress& key) {
+void take_key_while_holding(Session& session, ToolState& tool, const KeyPress& key) {
   if (key.key == keys::escape) {
-    step_back(app);
+    step_back(session, tool);
   } else if (key.key == keys::enter) {
-    if (!let_go_hand(app, true)) let_go(app, true);
-    app.tool.spent = true;
-  } else if (app.tool.grab) {
-    take_typed_key(app.tool.grab->typed, key);
+    if (!let_go_hand(session, tool, true)) let_go(session, tool, true);
+    tool.spent = true;
+  } else if (tool.grab) {
+    take_typed_key(tool.grab->typed, key);
   }
 }
 
 // Whether a number that is typed now is the size of what is being placed.
-bool takes_size(const App& app) {
-  const ToolState& tool = app.tool;
-  if (app.mode != Mode::build) return false;
+bool takes_size(const Session& session, const Ui& ui, const ToolState& tool) {
+
+  if (session.mode != Mode::build) return false;
   switch (tool.tool) {
   case Tool::rod:
   case Tool::distance:
@@ -46,13 +47,13 @@ bool takes_size(const App& app) {
   case Tool::damper: return tool.first.has_value();
   case Tool::ball:
   case Tool::block:
-  case Tool::plate: return tool.first || !app.keyboard.focus.in_panel;
+  case Tool::plate: return tool.first || !ui.keyboard.focus.in_panel;
   default: return false;
   }
 }
 
-bool take_size_key(App& app, const KeyPress& key) {
-  ToolState& tool = app.tool;
+bool take_size_key(ToolState& tool, const KeyPress& key) {
+
   if (!tool.typed.empty() && key.key == keys::escape) {
     tool.typed.clear();
     return true;
@@ -61,20 +62,20 @@ bool take_size_key(App& app, const KeyPress& key) {
   return take_typed_key(tool.typed, key);
 }
 
-bool take_key(App& app, const KeyPress& key) {
+bool take_key(Session& session, Ui& ui, ToolState& tool, const KeyPress& key) {
   // What is held is not to be deleted or turned into something else by a shortcut.
-  if (app.tool.grab || app.tool.assembly || app.tool.pull || app.tool.reach) {
-    take_key_while_holding(app, key);
+  if (tool.grab || tool.assembly || tool.pull || tool.reach) {
+    take_key_while_holding(session, tool, key);
     return true;
   }
-  if (takes_size(app) && take_size_key(app, key)) return true;
+  if (takes_size(session, ui, tool) && take_size_key(tool, key)) return true;
   if (key.ctrl || key.shift) return false;
   if (key.key == keys::escape) {
-    if (!step_back(app)) return false;
-    app.keyboard.focus = {};
+    if (!step_back(session, tool)) return false;
+    ui.keyboard.focus = {};
     return true;
   }
-  if (key.key == keys::enter && app.tool.joint) return make_joint(app);
+  if (key.key == keys::enter && tool.joint) return make_joint(session, ui, tool);
   return false;
 }
 
@@ -98,17 +99,17 @@ bool places(Tool tool) {
   return tool != Tool::select && tool != Tool::rotate && tool != Tool::pull && tool != Tool::box;
 }
 
-void keep_tool_state(App& app) {
-  ToolState& tool = app.tool;
+void keep_tool_state(Session& session, ToolState& tool) {
+
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left) && !ImGui::IsMouseReleased(ImGuiMouseButton_Left))
     tool.spent = false;
-  const bool other = tool.begun != tool.tool || (places(tool.tool) && app.mode != Mode::build);
-  if (tool.grab && (other || app.mode != Mode::build)) let_go(app, true);
+  const bool other = tool.begun != tool.tool || (places(tool.tool) && session.mode != Mode::build);
+  if (tool.grab && (other || session.mode != Mode::build)) let_go(session, tool, true);
   if (other) drop_begun(tool);
   tool.begun = tool.tool;
-  if (!selected_point(app)) tool.point.clear();
-  if (tool.first && !has_body(app, tool.first->body)) drop_begun(tool);
-  if (tool.joint && !(has_body(app, tool.joint->bodies[0]) && has_body(app, tool.joint->bodies[1])))
+  if (!selected_point(session, tool)) tool.point.clear();
+  if (tool.first && !has_body(session, tool.first->body)) drop_begun(tool);
+  if (tool.joint && !(has_body(session, tool.joint->bodies[0]) && has_body(session, tool.joint->bodies[1])))
     tool.joint.reset();
 }
 
@@ -118,12 +119,12 @@ bool takes_left_drag(const App& app, const ViewInput& input) {
   return drags(tool.tool) || ((input.ctrl || frames_with_left(app.navigation)) && !places(tool.tool));
 }
 
-bool step_back(App& app) {
-  ToolState& tool = app.tool;
-  if (let_go_hand(app, false)) {
+bool step_back(Session& session, ToolState& tool) {
+
+  if (let_go_hand(session, tool, false)) {
     // It was the hand's.
   } else if (tool.grab) {
-    let_go(app, false);
+    let_go(session, tool, false);
   } else if (tool.frame || tool.first) {
     drop_begun(tool);
   } else if (tool.joint && tool.joint->picking_axis) {
@@ -131,7 +132,7 @@ bool step_back(App& app) {
     tool.joint->axis_from.reset();
     return true;
   } else if (tool.joint) {
-    select(app, tool.joint->before);
+    select(session, tool.joint->before);
     tool.joint.reset();
     return true;
   } else if (tool.tool != Tool::select) {
@@ -149,19 +150,19 @@ bool step_back(App& app) {
 
 void take_tool_keys(App& app) {
   if (ImGui::GetIO().WantTextInput || app.dialog.showing || app.commands.palette_showing) return;
-  std::erase_if(app.keys, [&](const KeyPress& key) { return take_key(app, key); });
+  std::erase_if(app.keys, [&](const KeyPress& key) { return take_key(app, app, app.tool, key); });
 }
 
-void end_tool(App& app, const ViewInput& input) {
-  drop_begun(app.tool);
-  if (!input.shift) app.tool.tool = Tool::select;
+void end_tool(ToolState& tool, const ViewInput& input) {
+  drop_begun(tool);
+  if (!input.shift) tool.tool = Tool::select;
 }
 
 namespace {
 
 // Of what a click or the end of a drag would leave at a named point; empty: nothing.
-std::string standing_hint(const App& app) {
-  const ToolState& tool = app.tool;
+std::string standing_hint(const ToolState& tool) {
+
   const std::string& name = tool.grab ? tool.grab->stands : tool.caches.aim.named;
   const bool takes = tool.grab || (places(tool.tool) && tool.tool != Tool::point && !tool.joint);
   return takes && !name.empty() ? "It stands at " + name + " then, and moves with it. " : "";
@@ -173,15 +174,15 @@ std::string owner_of(const std::string& address) {
   return path.substr(0, path.find('.'));
 }
 
-std::string hint_of_tool(const App& app) {
-  const ToolState& tool = app.tool;
+std::string hint_of_tool(const Session& session, const InspectorState& inspector, const ToolState& tool) {
+
   if (tool.grab)
     return std::string(tool.snap ? "Ctrl drags freely." : "Ctrl snaps.") +
            (outer_joints(*tool.grab->before, tool.grab->selection).empty() ? ""
-            : app.inspector.leave_joints                                   ? " Shift takes joints along."
+            : inspector.leave_joints                                       ? " Shift takes joints along."
                                                                            : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
-  if (const std::string hint = hand_hint(app); !hint.empty()) return hint;
+  if (const std::string hint = hand_hint(tool); !hint.empty()) return hint;
   if (!tool.typed.empty()) return "Enter or a click places it so. Esc drops the number.";
   if (tool.cursor && !tool.joint)
     return std::string(tool.first ? "The other end, or its length, in figures: arrows" : "Arrows") +
@@ -189,9 +190,9 @@ std::string hint_of_tool(const App& app) {
   switch (tool.tool) {
   case Tool::select: return "";
   case Tool::rotate:
-    return app.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
+    return session.selection().empty() ? "Select what is to be turned." : "Drag a ring. Esc ends.";
   case Tool::pull:
-    return app.mode == Mode::build
+    return session.mode == Mode::build
                ? "Drag a body: it moves along its joints. Esc ends."
                : "Drag a body: a spring pulls it; with Shift sliders bring it there. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
@@ -229,15 +230,15 @@ std::string hint_of_tool(const App& app) {
 
 } // namespace
 
-std::string tool_hint(const App& app) {
-  return standing_hint(app) + hint_of_tool(app);
+std::string tool_hint(const Session& session, const InspectorState& inspector, const ToolState& tool) {
+  return standing_hint(tool) + hint_of_tool(session, inspector, tool);
 }
 
-const std::vector<SnapPoint>& cached_snap_points(App& app) {
-  ToolCaches& cache = app.tool.caches;
-  if (cache.snap_revision != app.document.revision()) {
-    cache.snap_points = snap_points(app.mechanism());
-    cache.snap_revision = app.document.revision();
+const std::vector<SnapPoint>& cached_snap_points(const Session& session, ToolState& tool) {
+  ToolCaches& cache = tool.caches;
+  if (cache.snap_revision != session.document.revision()) {
+    cache.snap_points = snap_points(session.mechanism());
+    cache.snap_revision = session.document.revision();
   }
   return cache.snap_points;
 }
@@ -259,16 +260,16 @@ const SceneList& cached_scene(App& app) {
 
 namespace {
 
-void look_at_selection(App& app) {
-  ToolCaches& cache = app.tool.caches;
-  if (cache.selected_revision == app.document.revision() && cache.selected == app.selection()) return;
-  cache.selected_revision = app.document.revision();
-  cache.selected = app.selection();
-  cache.centre = centre_of(app.mechanism(), app.selection());
+void look_at_selection(const Session& session, ToolState& tool) {
+  ToolCaches& cache = tool.caches;
+  if (cache.selected_revision == session.document.revision() && cache.selected == session.selection()) return;
+  cache.selected_revision = session.document.revision();
+  cache.selected = session.selection();
+  cache.centre = centre_of(session.mechanism(), session.selection());
   cache.ends.clear();
-  if (app.selection().parts.size() != 1) return;
+  if (session.selection().parts.size() != 1) return;
   for (const int end : {0, 1})
-    if (const auto point = point_position(app.mechanism(), {app.selection().parts[0], end}))
+    if (const auto point = point_position(session.mechanism(), {session.selection().parts[0], end}))
       cache.ends.push_back(*point);
   // What has one point only is moved by its middle.
   if (cache.ends.size() == 1) cache.ends.clear();
@@ -276,14 +277,14 @@ void look_at_selection(App& app) {
 
 } // namespace
 
-std::optional<Vec3> cached_centre(App& app) {
-  look_at_selection(app);
-  return app.tool.caches.centre;
+std::optional<Vec3> cached_centre(const Session& session, ToolState& tool) {
+  look_at_selection(session, tool);
+  return tool.caches.centre;
 }
 
-const std::vector<Vec3>& cached_ends(App& app) {
-  look_at_selection(app);
-  return app.tool.caches.ends;
+const std::vector<Vec3>& cached_ends(const Session& session, ToolState& tool) {
+  look_at_selection(session, tool);
+  return tool.caches.ends;
 }
 
 } // namespace flyball

@@ -3,26 +3,31 @@
 #pragma once
 
 #include "app/document/create.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/panels/view_input.hpp"
+#include "app/ui/tool_state.hpp"
 #include "app/viewport/picking.hpp"
 
 namespace flyball {
 
+struct InspectorState;
+
 // Drops what was begun of a tool that is no longer chosen, or with parts that are gone.
-void keep_tool_state(App& app);
+void keep_tool_state(Session& session, ToolState& tool);
 // Whether dragging with the left button is the tool's business and does not turn the view.
 bool takes_left_drag(const App& app, const ViewInput& input);
 // Escape: takes back a drag, or else what was begun of the tool, or else ends the tool. False where there is
 // nothing of the kind.
-bool step_back(App& app);
+bool step_back(Session& session, ToolState& tool);
 // Takes the keys that the tools have a use for out of app.keys; before the shortcuts.
 void take_tool_keys(App& app);
 // What to do next, in a line; empty where there is nothing to say.
-std::string tool_hint(const App& app);
+std::string tool_hint(const Session& session, const InspectorState& inspector, const ToolState& tool);
 
 // Moving and turning with the gizmo, and moving the ends of the selected spring or link.
 void use_gizmo(App& app, const ViewInput& input);
-void let_go(App& app, bool keep); // of what is held; otherwise everything is where it was
+void let_go(Session& session, ToolState& tool,
+            bool keep); // of what is held; otherwise everything is where it was
 // Clicking and framing parts.
 std::optional<Hit> part_under_cursor(App& app, const ViewInput& input);
 void use_selecting(App& app, const ViewInput& input);
@@ -30,21 +35,22 @@ void use_placing(App& app, const ViewInput& input);    // ball, block, plate
 void use_connecting(App& app, const ViewInput& input); // rod, link, spring, damper
 void use_forces(App& app, const ViewInput& input);     // force, torque, drag, vane
 void use_joining(App& app, const ViewInput& input);
-bool make_joint(App& app); // or bearing, of app.tool.joint, and ends it; false where it cannot be made
+// Or bearing, of tool.joint, and ends it; false where it cannot be made.
+bool make_joint(Session& session, Ui& ui, ToolState& tool);
 
 void tool_strip(App& app, const PanelRect& view);
 void joint_card(App& app, const ViewInput& input); // what a joint or bearing will be, beside its point
 
 // After a tool has made something: chosen again while Shift is held, else it is time to select.
-void end_tool(App& app, const ViewInput& input);
+void end_tool(ToolState& tool, const ViewInput& input);
 // Whether the tool places something with a click.
 bool places(Tool tool);
 
 // Cached until the mechanism changes.
-const std::vector<SnapPoint>& cached_snap_points(App& app);
-const SceneList& cached_scene(App& app);     // of the drawn pose
-std::optional<Vec3> cached_centre(App& app); // of the selection
+const std::vector<SnapPoint>& cached_snap_points(const Session& session, ToolState& tool);
+const SceneList& cached_scene(App& app);                                    // of the drawn pose
+std::optional<Vec3> cached_centre(const Session& session, ToolState& tool); // of the selection
 // Of the selected spring or link, where it alone is selected; else none. Their indices are those of PointId.
-const std::vector<Vec3>& cached_ends(App& app);
+const std::vector<Vec3>& cached_ends(const Session& session, ToolState& tool);
 
 } // namespace flyball

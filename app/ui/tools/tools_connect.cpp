@@ -1,4 +1,5 @@
 // What has two ends: rods, links, springs and dampers. Two clicks, or a drag from one end to the other.
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -48,11 +49,11 @@ void add_rod(Mechanism& mechanism, Selection& selection, const NewBody& rod, con
   selection.set({PartKind::body, name});
 }
 
-void add(App& app, const ViewInput& input, const Aim& from, const Aim& to) {
+void add(Session& session, const ToolState& state, const ViewInput& input, const Aim& from, const Aim& to) {
   const std::array<std::string, 2> bodies{from.body, to.body};
   const std::array<Vec3, 2> points{from.point, to.point};
-  const Tool tool = app.tool.tool;
-  edit(app, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
+  const Tool tool = state.tool;
+  edit(session, "Add " + word_of(tool), [&](Mechanism& mechanism, Selection& selection) {
     if (tool == Tool::rod)
       return add_rod(mechanism, selection, rod_between(input, points[0], points[1]), from, to);
     Part part;
@@ -89,10 +90,10 @@ Vec3 direction(const ViewInput& input, const Aim& from, const Aim& to) {
 }
 
 // Where the cursor is, or as far away from the first end as is typed.
-Aim second_end(const App& app, const ViewInput& input, const Aim& from, const Aim& seen,
-               std::string& mistake) {
-  if (app.tool.typed.empty()) return seen;
-  const auto length = typed_length(app.tool.typed, app.units, &mistake);
+Aim second_end(const Session& session, const ToolState& tool, const ViewInput& input, const Aim& from,
+               const Aim& seen, std::string& mistake) {
+  if (tool.typed.empty()) return seen;
+  const auto length = typed_length(tool.typed, session.units, &mistake);
   if (!length) return seen;
   Aim end = seen;
   end.named.clear();
@@ -104,14 +105,15 @@ void draw_end(const Ui& ui, const ViewInput& input, const Vec3& at) {
   if (const auto pixel = input.on_screen(at)) draw_dot(ui, *pixel, 4);
 }
 
-void draw_between(const App& app, const ViewInput& input, const Vec3& from, const Vec3& to) {
-  if (app.tool.tool == Tool::rod) {
-    draw_body_outline(app, input, rod_between(input, from, to));
+void draw_between(const Ui& ui, const ToolState& tool, const ViewInput& input, const Vec3& from,
+                  const Vec3& to) {
+  if (tool.tool == Tool::rod) {
+    draw_body_outline(ui, input, rod_between(input, from, to));
   } else {
     const auto p = input.on_screen(from), q = input.on_screen(to);
-    if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
+    if (p && q) draw_line(ui, *p, *q, palette(ui.theme).accent, 2);
   }
-  draw_end(app, input, from);
+  draw_end(ui, input, from);
 }
 
 } // namespace
@@ -124,8 +126,8 @@ void use_connecting(App& app, const ViewInput& input) {
   std::string mistake;
   if (tool.first) {
     const Aim& from = *tool.first;
-    aim = second_end(app, input, from, aim, mistake);
-    draw_between(app, input, from.point, aim.point);
+    aim = second_end(app, app.tool, input, from, aim, mistake);
+    draw_between(app, app.tool, input, from.point, aim.point);
     const ShownUnit unit = shown_unit("m", app.units);
     std::string head =
         "length " + (tool.typed.empty()
@@ -135,9 +137,9 @@ void use_connecting(App& app, const ViewInput& input) {
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)
       head += ", on " + aim.body;
-    draw_aim(app, input, aim, head);
+    draw_aim(app, app, input, aim, head);
   } else {
-    draw_aim(app, input, aim);
+    draw_aim(app, app, input, aim);
   }
   if (tool.spent) return;
   if (input.pressed && !tool.first) tool.first = aim;
@@ -157,10 +159,10 @@ void use_connecting(App& app, const ViewInput& input) {
     if (!tool.first_clicked && !entered) tool.first.reset();
     return;
   }
-  add(app, input, from, aim);
+  add(app, app.tool, input, from, aim);
   tool.last_point = aim.point;
   tool.spent = input.held; // Enter, while the button is down
-  end_tool(app, input);
+  end_tool(app.tool, input);
 }
 
 } // namespace flyball

@@ -1,4 +1,5 @@
 // Forces, torques, drag and vanes: one click on a body.
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
@@ -20,8 +21,8 @@ ForceType type_of(Tool tool) {
 }
 
 // 1 N downwards, 1 N m about the world axis that points at the viewer, a vane square to it.
-Vec3 first_vector(const App& app, const ViewInput& input, const Aim& aim) {
-  if (app.tool.tool == Tool::force) return -up_axis(app.mechanism()).array() + 0.0;
+Vec3 first_vector(const Session& session, const ToolState& tool, const ViewInput& input, const Aim& aim) {
+  if (tool.tool == Tool::force) return -up_axis(session.mechanism()).array() + 0.0;
   const int n = aim.plane.normal;
   return std::copysign(1.0, input.camera.backward()[n]) * Vec3::Unit(n);
 }
@@ -36,10 +37,10 @@ void use_forces(App& app, const ViewInput& input) {
   if (on_body && tool.tool == Tool::force) {
     const double length = 40 * input.point * metres_per_pixel(input.camera, aim.point, input.size);
     const auto from = input.on_screen(aim.point);
-    const auto to = input.on_screen(Vec3(aim.point + length * first_vector(app, input, aim)));
+    const auto to = input.on_screen(Vec3(aim.point + length * first_vector(app, app.tool, input, aim)));
     if (from && to) draw_line(app, *from, *to, palette(app.theme).accent, 2.5f);
   }
-  draw_aim(app, input, aim, on_body && aim.what.empty() ? "on " + aim.body : aim.what);
+  draw_aim(app, app, input, aim, on_body && aim.what.empty() ? "on " + aim.body : aim.what);
   if (!input.clicked() || tool.spent) return;
   if (!on_body) {
     app.notice = "There is no body here: click one.";
@@ -47,12 +48,13 @@ void use_forces(App& app, const ViewInput& input) {
   }
   const ForceType type = type_of(tool.tool);
   edit(app, "Add " + std::string(type_name(type)), [&](Mechanism& mechanism, Selection& selection) {
-    const std::string name = add_force(mechanism, type, aim.body, aim.point, first_vector(app, input, aim));
+    const std::string name =
+        add_force(mechanism, type, aim.body, aim.point, first_vector(app, app.tool, input, aim));
     stand_at(mechanism, "forces." + name + ".at", aim.named);
     selection.set({PartKind::force, name});
   });
   tool.last_point = aim.point;
-  end_tool(app, input);
+  end_tool(app.tool, input);
 }
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 // the state it began with at every movement.
 #include "app/document/formula_edits.hpp"
 #include "app/session/quantity.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/gizmo_drawing.hpp"
@@ -78,71 +79,73 @@ std::string step_name(const Grab& grab) {
   return (is_ring(grab.handle) ? "Rotate " : "Move ") + what;
 }
 
-void take_hold(App& app, const ViewInput& input, const Gizmo& gizmo, Handle handle,
-               std::optional<PointId> point) {
+void take_hold(const Session& session, ToolState& tool, const ViewInput& input, const Gizmo& gizmo,
+               Handle handle, std::optional<PointId> point) {
   Grab grab;
   grab.handle = handle;
   grab.point = std::move(point);
-  if (const NamedPoint* named = selected_point(app)) grab.named = named->name;
+  if (const NamedPoint* named = selected_point(session, tool)) grab.named = named->name;
   grab.normal = gizmo.normal;
-  grab.before = app.document.steps()[app.document.position()].mechanism;
-  grab.selection = app.selection();
+  grab.before = session.document.steps()[session.document.position()].mechanism;
+  grab.selection = session.selection();
   grab.centre = gizmo.centre;
   grab.from = input.ray();
-  grab.gesture = app.gesture;
+  grab.gesture = session.gesture;
   grab.name = step_name(grab);
   if (!is_ring(handle)) grab.targets = targets_of(grab);
-  app.tool.grab = std::move(grab);
+  tool.grab = std::move(grab);
 }
 
 // An edit of the drag, whatever was pressed meanwhile.
-void edit_grabbed(App& app, const std::function<void(Mechanism&)>& change) {
-  const Grab& grab = *app.tool.grab;
-  const std::uint64_t gesture = std::exchange(app.gesture, grab.gesture);
-  edit(app, grab.name, [&](Mechanism& mechanism, Selection& selection) {
+void edit_grabbed(Session& session, ToolState& tool, const std::function<void(Mechanism&)>& change) {
+  const Grab& grab = *tool.grab;
+  const std::uint64_t gesture = std::exchange(session.gesture, grab.gesture);
+  edit(session, grab.name, [&](Mechanism& mechanism, Selection& selection) {
     mechanism = *grab.before;
     selection = grab.selection;
     change(mechanism);
     settle_formulas(*grab.before, mechanism); // not by what an earlier movement has made of it
   });
-  app.gesture = gesture;
+  session.gesture = gesture;
 }
 
-void turn_by_gizmo(App& app, const ViewInput& input, const Gizmo& gizmo) {
-  Grab& grab = *app.tool.grab;
+void turn_by_gizmo(Session& session, InspectorState& inspector, ToolState& tool, const ViewInput& input,
+                   const Gizmo& gizmo) {
+  Grab& grab = *tool.grab;
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
-  double angle = snaps(app, input) ? round_angle(grab.swept) : grab.swept;
-  if (const Quantity typed = parse_quantity(grab.typed, "rad", shown_unit("rad", app.units).text);
+  double angle = snaps(tool, input) ? round_angle(grab.swept) : grab.swept;
+  if (const Quantity typed = parse_quantity(grab.typed, "rad", shown_unit("rad", session.units).text);
       !grab.typed.empty() && typed)
     angle = typed.value;
   if (angle == grab.angle && grab.shift == input.shift) return;
   grab.angle = angle;
   grab.shift = input.shift;
   const Quat rotation(Eigen::AngleAxisd(angle, Vec3::Unit(axis_of(grab.handle))));
-  edit_grabbed(app, [&](Mechanism& mechanism) {
+  edit_grabbed(session, tool, [&](Mechanism& mechanism) {
     if (angle != 0)
-      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(app, input.shift));
+      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(inspector, input.shift));
   });
-  tell_joints(app, grab.selection, input.shift);
+  tell_joints(session, inspector, grab.selection, input.shift);
 }
 
-void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
-  Grab& grab = *app.tool.grab;
+void move(Session& session, InspectorState& inspector, ToolState& tool, const ViewInput& input,
+          const Gizmo& gizmo) {
+  Grab& grab = *tool.grab;
   const auto by = dragged(gizmo, grab.handle, grab.from, input.ray());
   if (!by) return;
   const std::array<bool, 3> free = free_coordinates(grab.handle, grab.normal);
   Vec3 target = grab.centre + *by;
   grab.what.clear();
   grab.stands.clear();
-  const Quantity typed = parse_quantity(grab.typed, "m", shown_unit("m", app.units).text);
+  const Quantity typed = parse_quantity(grab.typed, "m", shown_unit("m", session.units).text);
   const bool arrow = std::ranges::count(free, true) == 1;
   // Along the arrow; else as far from the other end, or from where it was, on the line to where the hand is.
   const Vec3 origin = other_end(grab).value_or(grab.centre);
   const Vec3 along = arrow ? Vec3::Unit(axis_of(grab.handle)) : Vec3((target - origin).stableNormalized());
   if (!grab.typed.empty() && typed && along.norm() > 0) {
     target = origin + typed.value * along;
-  } else if (input.moved && snaps(app, input)) {
+  } else if (input.moved && snaps(tool, input)) {
     const SnapPoint* point =
         snap_point(grab.targets, input.camera, input.size, input.cursor, snap_reach * input.point);
     target = on_grid(target, free, grid_step(input));
@@ -159,69 +162,71 @@ void move(App& app, const ViewInput& input, const Gizmo& gizmo) {
   if (moved == grab.by && grab.shift == input.shift) return;
   grab.by = moved;
   grab.shift = input.shift;
-  edit_grabbed(app, [&](Mechanism& mechanism) {
-    move_grabbed(mechanism, grab, target, joints_of_moved(app, input.shift));
+  edit_grabbed(session, tool, [&](Mechanism& mechanism) {
+    move_grabbed(mechanism, grab, target, joints_of_moved(inspector, input.shift));
     stand_at(mechanism, address_of(mechanism, grab), grab.stands);
   });
-  tell_joints(app, grab.selection, input.shift);
+  tell_joints(session, inspector, grab.selection, input.shift);
 }
 
 void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app);
+    step_back(app, app.tool);
     return;
   }
   if (is_ring(app.tool.grab->handle))
-    turn_by_gizmo(app, input, gizmo);
+    turn_by_gizmo(app, app.inspector, app.tool, input, gizmo);
   else
-    move(app, input, gizmo);
+    move(app, app.inspector, app.tool, input, gizmo);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go(app, true);
+    let_go(app, app.tool, true);
     // Letting go is no click; but a click on a handle means the part behind it, if there is any.
     app.tool.spent = input.moved || !part_under_cursor(app, input);
   }
 }
 
-void draw_ends(App& app, const ViewInput& input) {
-  app.tool.hovered_point.reset();
-  const std::vector<Vec3>& ends = cached_ends(app);
+void draw_ends(const Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
+  tool.hovered_point.reset();
+  const std::vector<Vec3>& ends = cached_ends(session, tool);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const auto at = input.on_screen(ends[i]);
     if (!at) continue;
-    const PointId end{app.selection().parts[0], static_cast<int>(i)};
+    const PointId end{session.selection().parts[0], static_cast<int>(i)};
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const float reach = 8 * app.scale;
-    const bool held = app.tool.grab && app.tool.grab->point == end;
-    const bool lit = held || (!app.tool.grab && input.hovered && (!input.active || input.pressed) &&
+    const float reach = 8 * ui.scale;
+    const bool held = tool.grab && tool.grab->point == end;
+    const bool lit = held || (!tool.grab && input.hovered && (!input.active || input.pressed) &&
                               std::max(std::abs(mouse.x - at->x), std::abs(mouse.y - at->y)) < reach);
-    if (lit) app.tool.hovered_point = end;
-    draw_square(app, *at, 4, lit);
-    app.widgets["gizmo/end" + std::to_string(i)] = {{at->x - reach / 2, at->y - reach / 2},
-                                                    {at->x + reach / 2, at->y + reach / 2}};
+    if (lit) tool.hovered_point = end;
+    draw_square(ui, *at, 4, lit);
+    ui.widgets["gizmo/end" + std::to_string(i)] = {{at->x - reach / 2, at->y - reach / 2},
+                                                   {at->x + reach / 2, at->y + reach / 2}};
   }
 }
 
-void note_handles(App& app, const ViewInput& input, const std::vector<HandleShape>& shapes) {
-  const float half = 3 * app.scale;
+void note_handles(Ui& ui, const ViewInput& input, const std::vector<HandleShape>& shapes) {
+  const float half = 3 * ui.scale;
   for (const HandleShape& shape : shapes) {
     const ImVec2 at = input.on_screen(shape.grip);
-    app.widgets["gizmo/" + std::string(handle_name(shape.handle))] = {{at.x - half, at.y - half},
-                                                                      {at.x + half, at.y + half}};
+    ui.widgets["gizmo/" + std::string(handle_name(shape.handle))] = {{at.x - half, at.y - half},
+                                                                     {at.x + half, at.y + half}};
   }
 }
 
 } // namespace
 
-void let_go(App& app, bool keep) {
-  if (!keep) edit_grabbed(app, [](Mechanism&) {});
-  app.tool.grab.reset();
+void let_go(Session& session, ToolState& tool, bool keep) {
+  if (!keep) edit_grabbed(session, tool, [](Mechanism&) {});
+  tool.grab.reset();
 }
 
 void use_gizmo(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
   const bool wanted = app.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
-  const NamedPoint* named = selected_point(app);
-  const auto centre = !wanted ? std::nullopt : named ? std::optional(named->at) : cached_centre(app);
+  const NamedPoint* named = selected_point(app, app.tool);
+  const auto centre = !wanted ? std::nullopt
+                      : named ? std::optional(named->at)
+                              : cached_centre(app, app.tool);
   const Handle before = std::exchange(tool.hovered, Handle::none);
   if (!centre) {
     tool.hovered_point.reset();
@@ -234,8 +239,8 @@ void use_gizmo(App& app, const ViewInput& input) {
               input.size,
               input.point};
   if (tool.grab) {
-    draw_grabbed(app, input);
-    draw_ends(app, input);
+    draw_grabbed(app, app, app.tool, input);
+    draw_ends(app, app, app.tool, input);
     gizmo.centre = tool.grab->centre;
     gizmo.normal = tool.grab->normal;
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
@@ -249,16 +254,16 @@ void use_gizmo(App& app, const ViewInput& input) {
   if (input.active && !input.pressed && before != Handle::none) tool.hovered = before;
   if (tool.frame) tool.hovered = Handle::none;
   draw_handles(app, input, shapes, tool.hovered);
-  draw_ends(app, input);
+  draw_ends(app, app, app.tool, input);
   note_handles(app, input, shapes);
   if (tool.hovered_point) tool.hovered = Handle::none;
   if (tool.hovered_point || tool.hovered != Handle::none) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (!input.pressed) return;
   if (tool.hovered_point) {
-    gizmo.centre = cached_ends(app)[static_cast<std::size_t>(tool.hovered_point->end)];
-    take_hold(app, input, gizmo, Handle::plane, tool.hovered_point);
+    gizmo.centre = cached_ends(app, app.tool)[static_cast<std::size_t>(tool.hovered_point->end)];
+    take_hold(app, app.tool, input, gizmo, Handle::plane, tool.hovered_point);
   } else if (tool.hovered != Handle::none) {
-    take_hold(app, input, gizmo, tool.hovered, std::nullopt);
+    take_hold(app, app.tool, input, gizmo, tool.hovered, std::nullopt);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "app/ui/tools/tools_hand.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
 
@@ -11,13 +12,13 @@ namespace flyball {
 namespace {
 
 // The tool is chosen, or Alt makes a hand of one that selects.
-bool is_hand(const App& app, const ViewInput& input) {
-  const Tool tool = app.tool.tool;
+bool is_hand(const ToolState& state, const ViewInput& input) {
+  const Tool tool = state.tool;
   return tool == Tool::pull || (input.alt && !places(tool) && tool != Tool::box);
 }
 
-bool holds(const App& app) {
-  return app.tool.assembly || app.tool.reach || (app.tool.pull && !app.tool.pull->released);
+bool holds(const ToolState& tool) {
+  return tool.assembly || tool.reach || (tool.pull && !tool.pull->released);
 }
 
 } // namespace
@@ -42,7 +43,7 @@ std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input) {
                                              [](const Instance& i) { return i.part.kind == PartKind::body; });
   const auto hit = pick(std::span(scene.instances.begin(), last), input.ray(), 4 * input.point);
   if (!hit) return {};
-  return HandHit{part_of(*shown_mechanism(app), hit->part).name, hit->point};
+  return HandHit{part_of(*shown_mechanism(app, app.tool), hit->part).name, hit->point};
 }
 
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
@@ -56,13 +57,13 @@ std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
 
 bool use_hand(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
-  follow_pull(app);
-  follow_reach(app);
-  if (tool.assembly && app.mode != Mode::build) let_go_assembly(app, true);
-  if (tool.pull && app.mode != Mode::explore) let_go_pull(app, true);
-  if (tool.reach && app.mode != Mode::explore) let_go_reach(app, true);
-  if (!holds(app)) {
-    if (!is_hand(app, input) || tool.grab || tool.frame || tool.spent || !input.hovered) return false;
+  follow_pull(app, app.tool);
+  follow_reach(app, app.tool);
+  if (tool.assembly && app.mode != Mode::build) let_go_assembly(app, app.tool, true);
+  if (tool.pull && app.mode != Mode::explore) let_go_pull(app, app.tool, true);
+  if (tool.reach && app.mode != Mode::explore) let_go_reach(app, app.tool, true);
+  if (!holds(app.tool)) {
+    if (!is_hand(app.tool, input) || tool.grab || tool.frame || tool.spent || !input.hovered) return false;
     if (!input.pressed) {
       if (!input.active && app.view.hovered.kind == PartKind::body)
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
@@ -71,47 +72,47 @@ bool use_hand(App& app, const ViewInput& input) {
     const auto hit = body_under_cursor(app, input);
     if (!hit) return false;
     if (app.mode == Mode::build)
-      take_assembly(app, input, *hit);
+      take_assembly(app, app.tool, input, *hit);
     else if (input.shift)
-      take_reach(app, input, *hit);
+      take_reach(app, app.tool, input, *hit);
     else
-      take_pull(app, input, *hit);
-    return holds(app);
+      take_pull(app, app.tool, input, *hit);
+    return holds(app.tool);
   }
   ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app);
+    step_back(app, app.tool);
     return true;
   }
   if (tool.assembly)
-    hold_assembly(app, input);
+    hold_assembly(app, app, app.tool, input);
   else if (tool.reach)
-    hold_reach(app, input);
+    hold_reach(app, app, app.tool, input);
   else
-    hold_pull(app, input);
+    hold_pull(app, app, app.tool, input);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go_hand(app, true);
+    let_go_hand(app, app.tool, true);
     tool.spent = input.moved; // letting go is no click, but a click selects
     return input.moved;
   }
   return true;
 }
 
-bool let_go_hand(App& app, bool keep) {
-  if (!holds(app)) return false;
-  if (app.tool.assembly)
-    let_go_assembly(app, keep);
-  else if (app.tool.reach)
-    let_go_reach(app, keep);
+bool let_go_hand(Session& session, ToolState& tool, bool keep) {
+  if (!holds(tool)) return false;
+  if (tool.assembly)
+    let_go_assembly(session, tool, keep);
+  else if (tool.reach)
+    let_go_reach(session, tool, keep);
   else
-    let_go_pull(app, keep);
+    let_go_pull(session, tool, keep);
   return true;
 }
 
-std::string hand_hint(const App& app) {
-  if (app.tool.assembly) return "Its joints lead the way. Esc takes it back.";
-  if (app.tool.reach) return "Sliders follow. Esc takes it back.";
-  if (holds(app)) return "The wheel makes the spring stiffer or softer. Esc takes it back.";
+std::string hand_hint(const ToolState& tool) {
+  if (tool.assembly) return "Its joints lead the way. Esc takes it back.";
+  if (tool.reach) return "Sliders follow. Esc takes it back.";
+  if (holds(tool)) return "The wheel makes the spring stiffer or softer. Esc takes it back.";
   return "";
 }
 

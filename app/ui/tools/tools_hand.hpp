@@ -2,7 +2,10 @@
 // pulls it (tools_pull.cpp), or sliders bring it where the hand is (tools_reach.cpp).
 #pragma once
 
+#include "app/session/session.hpp"
 #include "app/ui/panels/view_input.hpp"
+#include "app/ui/tool_state.hpp"
+#include "app/ui/tools/hand_state.hpp"
 #include "app/viewport/picking.hpp"
 
 namespace flyball {
@@ -10,9 +13,9 @@ namespace flyball {
 // Before the other tools. Whether the hand has hold of something, so that the button is not theirs.
 bool use_hand(App& app, const ViewInput& input);
 // Lets go of what it has hold of; `keep`: otherwise everything is where it was. False where it had nothing.
-bool let_go_hand(App& app, bool keep);
+bool let_go_hand(Session& session, ToolState& tool, bool keep);
 // What to do next while it has hold of something, in a line; else empty.
-std::string hand_hint(const App& app);
+std::string hand_hint(const ToolState& tool);
 
 // The body under the cursor in what is shown, and where it is met.
 struct HandHit {
@@ -29,21 +32,21 @@ void ask_held(Session& session, std::shared_ptr<const Mechanism> mechanism,
               std::vector<std::pair<std::string, double>> start, std::optional<BodyPoint> grip, bool nearest);
 
 // Of each.
-void take_assembly(App& app, const ViewInput& input, const HandHit& hit);
-void hold_assembly(App& app, const ViewInput& input);
-void let_go_assembly(App& app, bool keep);
-void take_pull(App& app, const ViewInput& input, const HandHit& hit);
-void hold_pull(App& app, const ViewInput& input);
-void let_go_pull(App& app, bool keep);
+void take_assembly(Session& session, ToolState& tool, const ViewInput& input, const HandHit& hit);
+void hold_assembly(Session& session, const Ui& ui, ToolState& tool, const ViewInput& input);
+void let_go_assembly(Session& session, ToolState& tool, bool keep);
+void take_pull(Session& session, ToolState& tool, const ViewInput& input, const HandHit& hit);
+void hold_pull(Session& session, const Ui& ui, ToolState& tool, const ViewInput& input);
+void let_go_pull(Session& session, ToolState& tool, bool keep);
 // Takes what has been found since: how to take hold, and what it settles in once it is let go.
-void follow_pull(App& app);
+void follow_pull(Session& session, ToolState& tool);
 
-void take_reach(App& app, const ViewInput& input, const HandHit& hit);
-void hold_reach(App& app, const ViewInput& input);
-void let_go_reach(App& app, bool keep);
-void follow_reach(App& app);
+void take_reach(Session& session, ToolState& tool, const ViewInput& input, const HandHit& hit);
+void hold_reach(Session& session, const Ui& ui, ToolState& tool, const ViewInput& input);
+void let_go_reach(Session& session, ToolState& tool, bool keep);
+void follow_reach(const Session& session, ToolState& tool);
 
 // N, with which the hand pulls now; nothing where it does not.
-std::optional<double> hand_force(const App& app);
+std::optional<double> hand_force(const Session& session, const ToolState& tool);
 
 } // namespace flyball

@@ -1,4 +1,5 @@
 // Joining two bodies, by a joint or a bearing: a click says where, the card beside the point how.
+#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -15,11 +16,11 @@ namespace flyball {
 
 namespace {
 
-void show_bodies(App& app) {
+void show_bodies(Session& session, const ToolState& tool) {
   Selection selection;
-  for (const std::string& body : app.tool.joint->bodies)
+  for (const std::string& body : tool.joint->bodies)
     if (body != ground_name) selection.add({PartKind::body, body});
-  select(app, std::move(selection));
+  select(session, std::move(selection));
 }
 
 void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
@@ -49,18 +50,18 @@ void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
   draft.axis2 = draft.axis2_chosen ? former.axis2 : axis_across(draft.axis);
   app.tool.joint = std::move(draft);
   app.tool.last_point = aim.point;
-  show_bodies(app);
+  show_bodies(app, app.tool);
 }
 
-void pick_axis(App& app, const Aim& aim) {
-  JointDraft& draft = *app.tool.joint;
+void pick_axis(Session& session, ToolState& tool, const Aim& aim) {
+  JointDraft& draft = *tool.joint;
   if (!draft.axis_from) {
     draft.axis_from = aim.point;
     return;
   }
   const Vec3 axis = (aim.point - *draft.axis_from).stableNormalized();
   if (!(axis.norm() > 0)) {
-    app.notice = "The two points of an axis have to be apart.";
+    session.notice = "The two points of an axis have to be apart.";
     return;
   }
   draft.axis = axis;
@@ -70,33 +71,33 @@ void pick_axis(App& app, const Aim& aim) {
   draft.axis_from.reset();
 }
 
-void draw_axis(const App& app, const ViewInput& input, const Vec3& at, const Vec3& axis, bool main) {
+void draw_axis(const Ui& ui, const ViewInput& input, const Vec3& at, const Vec3& axis, bool main) {
   const double length = (main ? 64 : 40) * input.point * metres_per_pixel(input.camera, at, input.size);
   const Vec3 unit = axis.normalized();
   const auto from = input.on_screen(Vec3(at - length * unit)), to = input.on_screen(Vec3(at + length * unit));
   if (!from || !to) return;
-  const Color& accent = palette(app.theme).accent;
-  draw_line(app, *from, *to, accent, main ? 2.4f : 1.4f, main ? 1.f : 0.8f);
+  const Color& accent = palette(ui.theme).accent;
+  draw_line(ui, *from, *to, accent, main ? 2.4f : 1.4f, main ? 1.f : 0.8f);
   const float dx = to->x - from->x, dy = to->y - from->y, pixels = std::hypot(dx, dy);
-  if (!main || pixels < 12 * app.scale) return;
+  if (!main || pixels < 12 * ui.scale) return;
   // The head tells which way is positive.
   const ImVec2 along(dx / pixels, dy / pixels);
-  const float head = 11 * app.scale, half = 4.5f * app.scale;
+  const float head = 11 * ui.scale, half = 4.5f * ui.scale;
   ImGui::GetWindowDrawList()->AddTriangleFilled(
       {to->x - head * along.x - half * along.y, to->y - head * along.y + half * along.x},
       {to->x + 3 * along.x, to->y + 3 * along.y},
       {to->x - head * along.x + half * along.y, to->y - head * along.y - half * along.x}, packed(accent));
 }
 
-void draw_draft(const App& app, const ViewInput& input) {
-  const JointDraft& draft = *app.tool.joint;
-  const JointType type = app.tool.joint_type;
-  const bool bearing = app.tool.tool == Tool::bearing;
-  if (bearing || has_axis(type)) draw_axis(app, input, draft.at, draft.axis, true);
-  if (!bearing && has_axis2(type)) draw_axis(app, input, draft.at, draft.axis2, false);
+void draw_draft(const Ui& ui, const ToolState& tool, const ViewInput& input) {
+  const JointDraft& draft = *tool.joint;
+  const JointType type = tool.joint_type;
+  const bool bearing = tool.tool == Tool::bearing;
+  if (bearing || has_axis(type)) draw_axis(ui, input, draft.at, draft.axis, true);
+  if (!bearing && has_axis2(type)) draw_axis(ui, input, draft.at, draft.axis2, false);
   if (const auto at = input.on_screen(draft.at)) {
-    draw_dot(app, *at, 4);
-    draw_dot(app, *at, 9, true);
+    draw_dot(ui, *at, 4);
+    draw_dot(ui, *at, 9, true);
   }
 }
 
@@ -104,7 +105,7 @@ void draw_draft(const App& app, const ViewInput& input) {
 
 void use_joining(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
-  if (tool.joint) draw_draft(app, input);
+  if (tool.joint) draw_draft(app, app.tool, input);
   if (!input.hovered) return;
   const Aim aim = aim_at(app, input);
   const bool picking = tool.joint && tool.joint->picking_axis;
@@ -113,31 +114,31 @@ void use_joining(App& app, const ViewInput& input) {
     if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
     if (p) draw_dot(app, *p, 4);
   }
-  if (!tool.joint || picking || input.active) draw_aim(app, input, aim);
+  if (!tool.joint || picking || input.active) draw_aim(app, app, input, aim);
   if (!input.clicked() || tool.spent) return;
   if (picking)
-    pick_axis(app, aim);
+    pick_axis(app, app.tool, aim);
   else
     begin_joint(app, input, aim);
 }
 
-bool make_joint(App& app) {
-  const std::optional<JointDraft> draft = app.tool.joint;
+bool make_joint(Session& session, Ui& ui, ToolState& tool) {
+  const std::optional<JointDraft> draft = tool.joint;
   if (!draft || draft->picking_axis || draft->bodies[0] == draft->bodies[1]) return false;
-  const bool bearing = app.tool.tool == Tool::bearing;
+  const bool bearing = tool.tool == Tool::bearing;
   const std::string between = draft->bodies[0] + " and " + draft->bodies[1];
-  edit(app, (bearing ? "Add bearing between " : "Join ") + between,
+  edit(session, (bearing ? "Add bearing between " : "Join ") + between,
        [&](Mechanism& mechanism, Selection& selection) {
          const Part part =
              bearing ? Part{PartKind::force, add_bearing(mechanism, draft->bodies, draft->at, draft->axis)}
-                     : Part{PartKind::joint, add_joint(mechanism, app.tool.joint_type, draft->bodies,
-                                                       draft->at, draft->axis, draft->axis2)};
+                     : Part{PartKind::joint, add_joint(mechanism, tool.joint_type, draft->bodies, draft->at,
+                                                       draft->axis, draft->axis2)};
          stand_at(mechanism, point_address(mechanism, {part, 0}), draft->named);
          selection.set(part);
        });
-  app.tool.joint.reset();
-  if (!ImGui::GetIO().KeyShift) app.tool.tool = Tool::select;
-  if (app.keyboard.ring) focus_widget(app, "inspector/name"); // for whoever works by keys alone
+  tool.joint.reset();
+  if (!ImGui::GetIO().KeyShift) tool.tool = Tool::select;
+  if (ui.keyboard.ring) focus_widget(ui, "inspector/name"); // for whoever works by keys alone
   return true;
 }
 

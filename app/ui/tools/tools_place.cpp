@@ -1,4 +1,5 @@
 // Placing balls, blocks and plates: a click takes a size that suits the view, a drag draws it out.
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -105,7 +106,7 @@ void use_placing(App& app, const ViewInput& input) {
   else if (drawing)
     draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
   else
-    draw_aim(app, input, from);
+    draw_aim(app, app, input, from);
   if (tool.spent) return;
   if (input.pressed) tool.first = aim;
   if (!entered && (!input.released || !tool.first)) return;
@@ -121,7 +122,7 @@ void use_placing(App& app, const ViewInput& input) {
   });
   tool.last_point = from.point;
   tool.spent = input.held; // Enter, while the button is down
-  end_tool(app, input);
+  end_tool(app.tool, input);
 }
 
 } // namespace flyball

@@ -20,15 +20,15 @@ const Mechanism& mechanism_of(const PullGrab& grab) {
   return *grab.mechanism;
 }
 
-bool fits(const App& app, const PullGrab& grab) {
-  return app.poses.size() == mechanism_of(grab).bodies.size();
+bool fits(const Session& session, const PullGrab& grab) {
+  return session.poses.size() == mechanism_of(grab).bodies.size();
 }
 
 // Where what is pulled at is now (m, world, at the phase shown).
-std::optional<Vec3> pulled_point(const App& app, const PullGrab& grab) {
-  if (!fits(app, grab)) return {};
+std::optional<Vec3> pulled_point(const Session& session, const PullGrab& grab) {
+  if (!fits(session, grab)) return {};
   const int body = body_index(mechanism_of(grab), grab.grabbed.body);
-  return carried_point(mechanism_of(grab), app.poses, body, *grab.grabbed.at);
+  return carried_point(mechanism_of(grab), session.poses, body, *grab.grabbed.at);
 }
 
 // Asks for the steady state of this mechanism, from where the last one is.
@@ -41,24 +41,24 @@ void ask_pulled(Session& session, const PullGrab& grab, std::shared_ptr<const Me
 }
 
 // The spring as the hand stands now; nothing before it is known how to take hold.
-std::optional<Pull> wanted_pull(const App& app, const PullGrab& grab) {
-  if (!grab.grip || !fits(app, grab)) return {};
+std::optional<Pull> wanted_pull(const Session& session, const PullGrab& grab) {
+  if (!grab.grip || !fits(session, grab)) return {};
   const Mechanism& m = mechanism_of(grab);
   return Pull{.body = grab.grabbed.body,
               .at = *grab.grabbed.at,
               .holder = grab.grip->holder,
-              .hand = drawn_point(m, app.poses, body_index(m, grab.grip->holder), grab.hand),
+              .hand = drawn_point(m, session.poses, body_index(m, grab.grip->holder), grab.hand),
               .stiffness = grab.grip->stiffness * grab.strength};
 }
 
-void move_pull(App& app) {
-  PullGrab& grab = *app.tool.pull;
-  std::optional<Pull> next = wanted_pull(app, grab);
+void move_pull(Session& session, ToolState& tool) {
+  PullGrab& grab = *tool.pull;
+  std::optional<Pull> next = wanted_pull(session, grab);
   if (!next || next == grab.pull) return;
   // Nothing to solve for while the hand has not moved.
   if (!grab.pull && (next->hand - next->at).norm() == 0) return;
   grab.pull = std::move(next);
-  ask_pulled(app, grab, pulled(mechanism_of(grab), *grab.pull), {});
+  ask_pulled(session, grab, pulled(mechanism_of(grab), *grab.pull), {});
 }
 
 // Largest distance of a body from where it was, as a part of the mechanism's size.
@@ -98,10 +98,10 @@ void tell_where(Session& session, const PullGrab& grab) {
 }
 
 // A wave between two pixels with straight ends; corners would throw their halo far out.
-void draw_coil(const App& app, ImVec2 from, ImVec2 to) {
+void draw_coil(const Ui& ui, ImVec2 from, ImVec2 to) {
   constexpr int turns = 8, steps = 12; // a turn
-  const float dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy), s = app.scale;
-  if (length < 12 * s) return draw_line(app, from, to, palette(app.theme).accent, 2);
+  const float dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy), s = ui.scale;
+  if (length < 12 * s) return draw_line(ui, from, to, palette(ui.theme).accent, 2);
   const float half = std::min(6 * s, length / 6), end = std::min(10 * s, length / 6);
   const float ux = dx / length, uy = dy / length, wave = length - 2 * end;
   std::array<ImVec2, turns * steps + 3> points;
@@ -115,104 +115,105 @@ void draw_coil(const App& app, ImVec2 from, ImVec2 to) {
     add(end + part * wave, half * std::sin(2 * std::numbers::pi_v<float> * turns * part));
   }
   add(length, 0);
-  draw_lines(app, points, palette(app.theme).accent, 2);
+  draw_lines(ui, points, palette(ui.theme).accent, 2);
 }
 
-void draw_pull(const App& app, const ViewInput& input) {
-  const PullGrab& grab = *app.tool.pull;
-  const auto point = pulled_point(app, grab);
+void draw_pull(const Session& session, const Ui& ui, const ToolState& tool, const ViewInput& input) {
+  const PullGrab& grab = *tool.pull;
+  const auto point = pulled_point(session, grab);
   if (!point) return;
   const auto from = input.on_screen(*point), to = input.on_screen(grab.hand);
   if (!from || !to) return;
-  if (grab.pull) draw_coil(app, *from, *to);
-  draw_dot(app, *from, 4);
-  draw_dot(app, *to, 6, true);
-  const auto force = hand_force(app);
+  if (grab.pull) draw_coil(ui, *from, *to);
+  draw_dot(ui, *from, 4);
+  draw_dot(ui, *to, 6, true);
+  const auto force = hand_force(session, tool);
   if (!force) return;
-  const ShownUnit unit = shown_unit("N/m", app.units);
-  draw_tag(app, input, input.cursor, short_text(*force, 3) + " N",
+  const ShownUnit unit = shown_unit("N/m", session.units);
+  draw_tag(ui, input, input.cursor, short_text(*force, 3) + " N",
            rough_text(unit.shown(grab.pull->stiffness)) + " " + unit.text);
 }
 
 } // namespace
 
-std::optional<double> hand_force(const App& app) {
-  const std::optional<PullGrab>& grab = app.tool.pull;
-  if (!grab || grab->released || !grab->pull || !converged(app) ||
-      app.answer.solution.poses.size() != grab->mechanism->bodies.size())
+std::optional<double> hand_force(const Session& session, const ToolState& tool) {
+  const std::optional<PullGrab>& grab = tool.pull;
+  if (!grab || grab->released || !grab->pull || !converged(session) ||
+      session.answer.solution.poses.size() != grab->mechanism->bodies.size())
     return {};
-  return pulling_force(*grab->mechanism, app.answer.solution.poses, *grab->pull).norm();
+  return pulling_force(*grab->mechanism, session.answer.solution.poses, *grab->pull).norm();
 }
 
-void take_pull(App& app, const ViewInput& input, const HandHit& hit) {
-  app.tool.spent = true;
-  const Mechanism& m = app.mechanism();
-  if (!converged(app) || app.poses.size() != m.bodies.size() || solving(app)) {
-    if (!solving(app)) app.notice = "There is no steady state to pull out of.";
+void take_pull(Session& session, ToolState& tool, const ViewInput& input, const HandHit& hit) {
+  tool.spent = true;
+  const Mechanism& m = session.mechanism();
+  if (!converged(session) || session.poses.size() != m.bodies.size() || solving(session)) {
+    if (!solving(session)) session.notice = "There is no steady state to pull out of.";
     return;
   }
-  app.tool.spent = false;
+  tool.spent = false;
   PullGrab grab;
-  grab.mechanism = app.document.shared();
-  grab.revision = app.document.revision();
-  grab.start = start_values(app.answer.solution.coordinates);
-  grab.stood = app.answer.solution.poses;
-  grab.on_branch = app.on_branch;
-  grab.playing = app.playback.playing;
-  grab.grabbed = {hit.body, drawn_point(m, app.poses, body_index(m, hit.body), hit.point)};
+  grab.mechanism = session.document.shared();
+  grab.revision = session.document.revision();
+  grab.start = start_values(session.answer.solution.coordinates);
+  grab.stood = session.answer.solution.poses;
+  grab.on_branch = session.on_branch;
+  grab.playing = session.playback.playing;
+  grab.grabbed = {hit.body, drawn_point(m, session.poses, body_index(m, hit.body), hit.point)};
   grab.plane = {.through = hit.point, .normal = input.camera.backward()};
   grab.hand = hit.point;
-  app.playback.playing = false;
-  app.notice.clear();
-  app.tool.pull = std::move(grab);
-  ask_pulled(app, *app.tool.pull, app.tool.pull->mechanism, app.tool.pull->grabbed, app.on_branch);
+  session.playback.playing = false;
+  session.notice.clear();
+  tool.pull = std::move(grab);
+  ask_pulled(session, *tool.pull, tool.pull->mechanism, tool.pull->grabbed, session.on_branch);
 }
 
-void hold_pull(App& app, const ViewInput& input) {
-  PullGrab& grab = *app.tool.pull;
+void hold_pull(Session& session, const Ui& ui, ToolState& tool, const ViewInput& input) {
+  PullGrab& grab = *tool.pull;
   if (input.moved)
     if (const auto at = on_plane(grab.plane, input.ray())) grab.hand = *at;
   if (const auto wheel = static_cast<double>(ImGui::GetIO().MouseWheel); wheel != 0)
     grab.strength = std::clamp(grab.strength * std::pow(stiffer, wheel), 1 / strongest, strongest);
-  if (input.moved || grab.pull) move_pull(app);
-  draw_pull(app, input);
+  if (input.moved || grab.pull) move_pull(session, tool);
+  draw_pull(session, ui, tool, input);
 }
 
-void let_go_pull(App& app, bool keep) {
-  PullGrab& grab = *app.tool.pull;
+void let_go_pull(Session& session, ToolState& tool, bool keep) {
+  PullGrab& grab = *tool.pull;
   if (grab.released) return;
   grab.released = true;
   if (!grab.pull) { // nothing has been pulled yet
-    app.playback.playing = grab.playing;
-    app.tool.pull.reset();
+    session.playback.playing = grab.playing;
+    tool.pull.reset();
     return;
   }
   // What is followed by hand is left where it was pulled out of it, unless all is taken back.
-  app.on_branch = !keep && grab.on_branch;
-  ask_pulled(app, grab, grab.mechanism, {}, !keep);
-  grab.ticket = app.awaited;
+  session.on_branch = !keep && grab.on_branch;
+  ask_pulled(session, grab, grab.mechanism, {}, !keep);
+  grab.ticket = session.awaited;
 }
 
-void follow_pull(App& app) {
-  std::optional<PullGrab>& pull = app.tool.pull;
+void follow_pull(Session& session, ToolState& tool) {
+  std::optional<PullGrab>& pull = tool.pull;
   if (!pull) return;
-  if (pull->revision != app.document.revision()) { // another mechanism, which was asked for without the hand
+  if (pull->revision !=
+      session.document.revision()) { // another mechanism, which was asked for without the hand
     pull.reset();
     return;
   }
-  if (!pull->grip && app.answer.grip && app.answer.ticket == app.awaited) {
-    pull->grip = app.answer.grip;
+  if (!pull->grip && session.answer.grip && session.answer.ticket == session.awaited) {
+    pull->grip = session.answer.grip;
     if (pull->grip->holder.empty()) {
-      app.notice = "The drives turn " + pull->grabbed.body + ", and nothing gives way.";
-      app.playback.playing = pull->playing;
-      app.tool.spent = true;
+      session.notice = "The drives turn " + pull->grabbed.body + ", and nothing gives way.";
+      session.playback.playing = pull->playing;
+      tool.spent = true;
       pull.reset();
       return;
     }
   }
-  if (!pull->released || app.answer.ticket < pull->ticket) return;
-  tell_where(app, *pull);
-  app.playback.playing = pull->playing;
+  if (!pull->released || session.answer.ticket < pull->ticket) return;
+  tell_where(session, *pull);
+  session.playback.playing = pull->playing;
   pull.reset();
 }
 

@@ -1,4 +1,5 @@
 // Pointing at parts, picking them, and framing them.
+#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
@@ -52,20 +53,20 @@ void point_at_body(App& app, const ViewInput& input) {
     app.view.hovered = find_part(app.mechanism(), {PartKind::body, aim_at(app, input).body});
 }
 
-void click_part(App& app, const ViewInput& input) {
-  if (!app.tool.hovered_name.empty()) return select_point(app, app.tool.hovered_name);
-  app.tool.point.clear();
-  const Part part = part_of(*shown_mechanism(app), app.view.hovered);
-  Selection selection = app.selection();
+void click_part(Session& session, ToolState& tool, const ViewState& view, const ViewInput& input) {
+  if (!tool.hovered_name.empty()) return select_point(session, tool, tool.hovered_name);
+  tool.point.clear();
+  const Part part = part_of(*shown_mechanism(session, tool), view.hovered);
+  Selection selection = session.selection();
   if (!input.ctrl && !input.shift)
     selection.set(part);
   else
     selection.toggle(part);
-  select(app, std::move(selection));
+  select(session, std::move(selection));
 }
 
 void select_framed(App& app, const ViewInput& input) {
-  const Mechanism& mechanism = *shown_mechanism(app);
+  const Mechanism& mechanism = *shown_mechanism(app, app.tool);
   Selection selection;
   if (input.shift) selection = app.selection();
   std::vector<Part> parts = selection.parts;
@@ -78,13 +79,13 @@ void select_framed(App& app, const ViewInput& input) {
   select(app, std::move(selection));
 }
 
-void draw_frame(const App& app, const ViewInput& input) {
-  const ImVec2 a = input.on_screen(*app.tool.frame), b = input.on_screen(input.cursor);
+void draw_frame(const Ui& ui, const ToolState& tool, const ViewInput& input) {
+  const ImVec2 a = input.on_screen(*tool.frame), b = input.on_screen(input.cursor);
   const ImVec2 from(std::min(a.x, b.x), std::min(a.y, b.y)), to(std::max(a.x, b.x), std::max(a.y, b.y));
-  const Color& accent = palette(app.theme).accent;
+  const Color& accent = palette(ui.theme).accent;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(from, to, packed(accent, 0.12f));
-  list.AddRect(from, to, packed(accent), 0, 0, std::max(1.f, std::round(app.scale)));
+  list.AddRect(from, to, packed(accent), 0, 0, std::max(1.f, std::round(ui.scale)));
 }
 
 } // namespace
@@ -95,7 +96,7 @@ void use_selecting(App& app, const ViewInput& input) {
     point_at_body(app, input);
     return;
   }
-  if (tool.frame && input.moved) draw_frame(app, input);
+  if (tool.frame && input.moved) draw_frame(app, app.tool, input);
   point_at_parts(app, input);
   if (tool.grab || tool.spent) return;
   const bool handle = tool.hovered != Handle::none || tool.hovered_point;
@@ -109,7 +110,7 @@ void use_selecting(App& app, const ViewInput& input) {
     if (tool.tool == Tool::box && !input.shift) tool.tool = Tool::select;
   } else if (input.clicked() && !handle) {
     tool.frame.reset();
-    click_part(app, input);
+    click_part(app, app.tool, app.view, input);
   }
 }
 

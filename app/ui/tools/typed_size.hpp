@@ -2,7 +2,8 @@
 // long, how large.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/units.hpp"
+#include "app/ui/ui.hpp"
 
 #include <string>
 

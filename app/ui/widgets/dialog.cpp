@@ -17,11 +17,11 @@ bool key_pressed(ImGuiKey key) {
 
 } // namespace
 
-bool begin_dialog(App& app, Dialog which, const char* title, float width) {
-  const float s = app.scale;
-  if (app.dialog.wanted == which) {
+bool begin_dialog(Ui& ui, DialogState& dialog, Dialog which, const char* title, float width) {
+  const float s = ui.scale;
+  if (dialog.wanted == which) {
     ImGui::OpenPopup(title);
-    app.dialog.wanted = Dialog::none;
+    dialog.wanted = Dialog::none;
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -35,8 +35,8 @@ bool begin_dialog(App& app, Dialog which, const char* title, float width) {
                                  ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
   if (!begun) return false;
-  app.dialog.showing = true;
-  heading(app, title);
+  dialog.showing = true;
+  heading(ui, title);
   return true;
 }
 

@@ -1,14 +1,16 @@
 // A question in the middle of the window; what lies behind waits.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/ui/dialog_state.hpp"
 
 #include <span>
 
 namespace flyball {
 
+struct Ui;
+
 // Opens the dialog if it was asked for and begins it; where it returns true, end_dialog ends it.
-bool begin_dialog(App& app, Dialog which, const char* title, float width);
+bool begin_dialog(Ui& ui, DialogState& dialog, Dialog which, const char* title, float width);
 void end_dialog();
 void close_dialog();
 // Escape, where no field swallows it.

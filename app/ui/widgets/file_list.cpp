@@ -58,18 +58,18 @@ struct Place {
   fs::path folder;
   std::string filter;
 };
-Place place_of(const App& app) {
-  const fs::path path = typed_path(app);
-  const bool ends_in_folder = app.file_dialogs.path.ends_with('/') || app.file_dialogs.path.ends_with("..");
+Place place_of(const FileDialogState& file_dialogs) {
+  const fs::path path = typed_path(file_dialogs);
+  const bool ends_in_folder = file_dialogs.path.ends_with('/') || file_dialogs.path.ends_with("..");
   if (ends_in_folder && is_folder(path)) return {path, {}};
-  const bool elsewhere = app.file_dialogs.path.find('/') != std::string::npos;
+  const bool elsewhere = file_dialogs.path.find('/') != std::string::npos;
   if (elsewhere && is_folder(path.parent_path())) return {path.parent_path(), path.filename().string()};
-  return {app.file_dialogs.list.shown, app.file_dialogs.path};
+  return {file_dialogs.list.shown, file_dialogs.path};
 }
 
-std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
-  std::vector<FolderEntry> shown = app.file_dialogs.list.entries;
-  const std::string filter = filtered ? lower(place_of(app).filter) : std::string();
+std::vector<FolderEntry> shown_entries(const FileDialogState& file_dialogs, bool filtered) {
+  std::vector<FolderEntry> shown = file_dialogs.list.entries;
+  const std::string filter = filtered ? lower(place_of(file_dialogs).filter) : std::string();
   std::erase_if(shown, [&](const FolderEntry& entry) {
     return lower(entry.path.filename().string()).find(filter) == std::string::npos;
   });
@@ -78,65 +78,65 @@ std::vector<FolderEntry> shown_entries(const App& app, bool filtered) {
 
 } // namespace
 
-fs::path typed_path(const App& app) {
-  std::string typed = app.file_dialogs.path;
+fs::path typed_path(const FileDialogState& file_dialogs) {
+  std::string typed = file_dialogs.path;
   if (typed == "~" || typed.starts_with("~/")) typed = home_folder().string() + typed.substr(1);
-  return resolved(app.file_dialogs.list.shown / typed);
+  return resolved(file_dialogs.list.shown / typed);
 }
 
-fs::path typed_file(const App& app, const std::string& extension) {
-  fs::path path = typed_path(app);
+fs::path typed_file(const FileDialogState& file_dialogs, const std::string& extension) {
+  fs::path path = typed_path(file_dialogs);
   if (path.has_filename() && !is_folder(path) && path.extension() != extension) path += extension;
   return path;
 }
 
-void show_folder(App& app, const fs::path& folder) {
-  app.file_dialogs.list = {};
-  app.file_dialogs.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
-  app.file_dialogs.message.clear();
+void show_folder(FileDialogState& file_dialogs, const fs::path& folder) {
+  file_dialogs.list = {};
+  file_dialogs.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
+  file_dialogs.message.clear();
 }
 
-bool path_field(App& app, const std::string& name, const char* hint) {
+bool path_field(Ui& ui, FileDialogState& file_dialogs, const std::string& name, const char* hint) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const std::string before = app.file_dialogs.path;
+  const std::string before = file_dialogs.path;
   const bool entered =
-      ImGui::InputTextWithHint("##path", hint, &app.file_dialogs.path,
+      ImGui::InputTextWithHint("##path", hint, &file_dialogs.path,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (entered) ImGui::SetKeyboardFocusHere(-1);
-  note_widget(app.widgets, name + "/path", KeyUse::type);
-  if (app.file_dialogs.path != before) {
-    app.file_dialogs.message.clear();
-    app.file_dialogs.list.chosen = -1;
+  note_widget(ui.widgets, name + "/path", KeyUse::type);
+  if (file_dialogs.path != before) {
+    file_dialogs.message.clear();
+    file_dialogs.list.chosen = -1;
   }
   return entered;
 }
 
-void folder_line(App& app, const std::string& name) {
-  const fs::path folder = place_of(app).folder;
+void folder_line(Ui& ui, FileDialogState& file_dialogs, const std::string& name) {
+  const fs::path folder = place_of(file_dialogs).folder;
   const fs::path here = folder.has_filename() ? folder : folder.parent_path();
   ImGui::BeginDisabled(!here.has_relative_path());
-  if (icon_button(app, name + "/up", icon::folder_up, "The folder above")) {
-    show_folder(app, here.parent_path());
-    app.file_dialogs.path = fs::path(app.file_dialogs.path).filename().string();
+  if (icon_button(ui, name + "/up", icon::folder_up, "The folder above")) {
+    show_folder(file_dialogs, here.parent_path());
+    file_dialogs.path = fs::path(file_dialogs.path).filename().string();
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
-  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
   clipped_text(here.string(), ImGui::GetContentRegionAvail().x);
   ImGui::PopStyleColor();
 }
 
-std::optional<fs::path> file_list(App& app, const std::string& name, const std::string& extension,
-                                  bool filtered, float height) {
-  FolderList& list = app.file_dialogs.list;
-  const fs::path folder = place_of(app).folder;
+std::optional<fs::path> file_list(Ui& ui, FileDialogState& file_dialogs, const std::string& name,
+                                  const std::string& extension, bool filtered, float height) {
+  FolderList& list = file_dialogs.list;
+  const fs::path folder = place_of(file_dialogs).folder;
   if (ImGui::IsWindowAppearing() || list.read != folder) {
     list.entries = entries_of(folder, extension);
     list.read = folder;
   }
-  const std::vector<FolderEntry> shown = shown_entries(app, filtered);
+  const std::vector<FolderEntry> shown = shown_entries(file_dialogs, filtered);
   const int count = static_cast<int>(shown.size());
   bool moved = false;
   if (filtered && count > 0) {
@@ -148,65 +148,65 @@ std::optional<fs::path> file_list(App& app, const std::string& name, const std::
   }
 
   std::optional<fs::path> clicked;
-  ImGui::PushStyleColor(ImGuiCol_Header, colors_of(app).raised);
+  ImGui::PushStyleColor(ImGuiCol_Header, colors_of(ui).raised);
   ImGui::BeginChild((name + "/files").c_str(), {0, height});
   for (int i = 0; i < count; ++i) {
     const FolderEntry& entry = shown[static_cast<std::size_t>(i)];
     const std::string file = entry.path.filename().string();
     const std::string text = std::string(entry.folder ? icon::folder : icon::file) + "  " + file;
-    const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(app);
+    const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(file_dialogs);
     if (ImGui::Selectable(text.c_str(), chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = entry.path;
     if (chosen && moved) ImGui::SetScrollHereY();
-    note_widget(app.widgets, name + "/" + file, KeyUse::row);
+    note_widget(ui.widgets, name + "/" + file, KeyUse::row);
   }
   if (shown.empty())
     paragraph(list.entries.empty() ? "Nothing to open here." : "Nothing of that name here.",
-              colors_of(app).dim);
+              colors_of(ui).dim);
   ImGui::EndChild();
   ImGui::PopStyleColor();
   if (!clicked || !is_folder(*clicked)) return clicked;
-  const std::string kept = filtered ? std::string() : fs::path(app.file_dialogs.path).filename().string();
-  show_folder(app, *clicked);
-  app.file_dialogs.path = kept;
+  const std::string kept = filtered ? std::string() : fs::path(file_dialogs.path).filename().string();
+  show_folder(file_dialogs, *clicked);
+  file_dialogs.path = kept;
   return std::nullopt;
 }
 
-std::optional<fs::path> entered_file(App& app, bool filtered) {
-  const std::vector<FolderEntry> shown = shown_entries(app, filtered);
-  const auto chosen = static_cast<std::size_t>(std::max(app.file_dialogs.list.chosen, 0));
+std::optional<fs::path> entered_file(FileDialogState& file_dialogs, bool filtered) {
+  const std::vector<FolderEntry> shown = shown_entries(file_dialogs, filtered);
+  const auto chosen = static_cast<std::size_t>(std::max(file_dialogs.list.chosen, 0));
   std::error_code ignored;
-  fs::path path = typed_path(app);
-  if (filtered && app.file_dialogs.list.chosen >= 0 && chosen < shown.size())
+  fs::path path = typed_path(file_dialogs);
+  if (filtered && file_dialogs.list.chosen >= 0 && chosen < shown.size())
     path = shown[chosen].path;
-  else if (app.file_dialogs.path.empty())
+  else if (file_dialogs.path.empty())
     return std::nullopt;
   else if (filtered && !fs::exists(path, ignored) && !shown.empty())
     path = shown.front().path;
   if (!is_folder(path)) return path;
-  show_folder(app, path);
-  app.file_dialogs.path.clear();
+  show_folder(file_dialogs, path);
+  file_dialogs.path.clear();
   return std::nullopt;
 }
 
-bool asks_to_replace(App& app, const std::filesystem::path& file) {
-  const bool asks = file == app.file_dialogs.replacing;
-  if (asks) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(app).warn);
+bool asks_to_replace(const Ui& ui, const FileDialogState& file_dialogs, const std::filesystem::path& file) {
+  const bool asks = file == file_dialogs.replacing;
+  if (asks) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(ui).warn);
   return asks;
 }
 
-bool may_replace(App& app, const fs::path& file) {
+bool may_replace(const Session& session, FileDialogState& file_dialogs, const fs::path& file) {
   std::error_code ignored;
-  if (!fs::exists(file, ignored) || file == app.file_dialogs.replacing || file == app.document.file())
+  if (!fs::exists(file, ignored) || file == file_dialogs.replacing || file == session.document.file())
     return true;
-  app.file_dialogs.replacing = file;
+  file_dialogs.replacing = file;
   return false;
 }
 
-fs::path usual_folder(const App& app) {
+fs::path usual_folder(const Session& session) {
   std::error_code ignored;
-  std::vector<fs::path> folders{app.document.file().parent_path()};
-  for (const fs::path& recent : app.files.recent)
-    if (recent.parent_path() != app.options.scenes) folders.push_back(recent.parent_path());
+  std::vector<fs::path> folders{session.document.file().parent_path()};
+  for (const fs::path& recent : session.files.recent)
+    if (recent.parent_path() != session.options.scenes) folders.push_back(recent.parent_path());
   folders.push_back(fs::current_path(ignored));
   for (const fs::path& folder : folders)
     if (may_write(folder)) return folder;

@@ -2,11 +2,12 @@
 // click or Enter. The pinned sliders that are not held follow (see session/goals.hpp).
 #pragma once
 
-#include "app/ui/app.hpp"
-
 #include <string>
 
 namespace flyball {
+
+struct Session;
+struct Ui;
 
 struct GoalHandle {
   std::string name;   // of the widget
@@ -17,6 +18,6 @@ struct GoalHandle {
 };
 
 // Over the last item, which shows the number.
-void goal_handle(App& app, const GoalHandle& handle);
+void goal_handle(Session& session, Ui& ui, const GoalHandle& handle);
 
 } // namespace flyball

@@ -53,44 +53,45 @@ std::string advice_for(const SceneError& mistake) {
 
 namespace {
 
-void part_row(App& app, const std::string& widget, const SceneError& about, const ImVec4& color) {
-  const Part part = part_of(app.mechanism(), about);
+void part_row(Session& session, Ui& ui, const std::string& widget, const SceneError& about,
+              const ImVec4& color) {
+  const Part part = part_of(session.mechanism(), about);
   const std::string words = words_for(about);
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
   const ImVec2 from = ImGui::GetCursorScreenPos();
-  const float height = ImGui::CalcTextSize(words.c_str(), nullptr, false, width).y + 4 * app.scale;
+  const float height = ImGui::CalcTextSize(words.c_str(), nullptr, false, width).y + 4 * ui.scale;
   if (ImGui::InvisibleButton(widget.c_str(), {width, height}) && part.kind != PartKind::none)
-    later(app, [&app, part] { select(app, {{part}}); });
-  note_widget(app.widgets, widget, KeyUse::row);
+    later(ui, [&session, part] { select(session, {{part}}); });
+  note_widget(ui.widgets, widget, KeyUse::row);
   const bool lit = ImGui::IsItemHovered() && part.kind != PartKind::none;
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-  ImGui::GetWindowDrawList()->AddText(
-      ImGui::GetFont(), ImGui::GetFontSize(), {from.x, from.y + 2 * app.scale},
-      packed(lit ? colors_of(app).accent : color), words.c_str(), nullptr, width);
+  ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), ImGui::GetFontSize(), {from.x, from.y + 2 * ui.scale},
+                                      packed(lit ? colors_of(ui).accent : color), words.c_str(), nullptr,
+                                      width);
 }
 
 } // namespace
 
-void mistake_row(App& app, const std::string& name, std::size_t index, const ImVec4& color) {
-  part_row(app, name + "/" + std::to_string(index), app.mistakes[index], color);
+void mistake_row(Session& session, Ui& ui, const std::string& name, std::size_t index, const ImVec4& color) {
+  part_row(session, ui, name + "/" + std::to_string(index), session.mistakes[index], color);
 }
 
-void warning_rows(App& app, const std::string& name, std::size_t most) {
-  for (std::size_t i = 0; i < std::min(app.warnings.size(), most); ++i)
-    part_row(app, name + "/" + std::to_string(i), app.warnings[i], colors_of(app).warn);
-  if (app.warnings.size() > most)
-    paragraph("and " + std::to_string(app.warnings.size() - most) + " more like it", colors_of(app).dim);
+void warning_rows(Session& session, Ui& ui, const std::string& name, std::size_t most) {
+  for (std::size_t i = 0; i < std::min(session.warnings.size(), most); ++i)
+    part_row(session, ui, name + "/" + std::to_string(i), session.warnings[i], colors_of(ui).warn);
+  if (session.warnings.size() > most)
+    paragraph("and " + std::to_string(session.warnings.size() - most) + " more like it", colors_of(ui).dim);
 }
 
-void mistake_rows(App& app, const std::string& name, std::size_t first, std::size_t most) {
-  const std::size_t end = std::min(app.mistakes.size(), first + most);
+void mistake_rows(Session& session, Ui& ui, const std::string& name, std::size_t first, std::size_t most) {
+  const std::size_t end = std::min(session.mistakes.size(), first + most);
   for (std::size_t i = first; i < end; ++i) {
-    mistake_row(app, name, i, colors_of(app).text);
-    if (const std::string advice = advice_for(app.mistakes[i]); !advice.empty())
+    mistake_row(session, ui, name, i, colors_of(ui).text);
+    if (const std::string advice = advice_for(session.mistakes[i]); !advice.empty())
       help_on_hover(advice.c_str());
   }
-  if (end < app.mistakes.size())
-    paragraph("and " + std::to_string(app.mistakes.size() - end) + " more", colors_of(app).dim);
+  if (end < session.mistakes.size())
+    paragraph("and " + std::to_string(session.mistakes.size() - end) + " more", colors_of(ui).dim);
 }
 
 } // namespace flyball

@@ -1,7 +1,8 @@
 // What is missing before the mechanism can be solved, in words that lead to the part.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/ui.hpp"
 
 #include <imgui.h>
 
@@ -17,12 +18,12 @@ std::string words_for(const SceneError& mistake);
 std::string advice_for(const SceneError& mistake);
 
 // The mistake in words; selects its part when it is clicked. Named `name`/`index`.
-void mistake_row(App& app, const std::string& name, std::size_t index, const ImVec4& color);
+void mistake_row(Session& session, Ui& ui, const std::string& name, std::size_t index, const ImVec4& color);
 // Rows, each of which selects its part when it is clicked; named `name`/0, `name`/1, ... At most `most`, then
 // how many more there are.
-void mistake_rows(App& app, const std::string& name, std::size_t first, std::size_t most);
+void mistake_rows(Session& session, Ui& ui, const std::string& name, std::size_t first, std::size_t most);
 
 // The same for warnings, from the first on.
-void warning_rows(App& app, const std::string& name, std::size_t most);
+void warning_rows(Session& session, Ui& ui, const std::string& name, std::size_t most);
 
 } // namespace flyball

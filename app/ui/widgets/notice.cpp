@@ -19,42 +19,42 @@ double notice_life(const std::string& notice) {
   return std::clamp(by_letter * static_cast<double>(notice.size()), shortest, longest) + notice_fade;
 }
 
-float notice_strength(const App& app) {
-  if (is_error(app) || app.notice != app.notice_age.of) return 1;
-  const double left = notice_life(app.notice) - app.notice_age.seconds;
+float notice_strength(const Session& session, const NoticeAge& age) {
+  if (is_error(session) || session.notice != age.of) return 1;
+  const double left = notice_life(session.notice) - age.seconds;
   return static_cast<float>(std::clamp(left / notice_fade, 0.0, 1.0));
 }
 
-void keep_notice(App& app) {
-  NoticeLog& log = app.notice_log;
-  if (app.notice == log.last) return;
-  log.last = app.notice;
-  if (app.notice.empty()) return;
-  log.past.push_back({app.notice, is_error(app), std::chrono::system_clock::now()});
+void keep_notice(const Session& session, NoticeLog& log) {
+
+  if (session.notice == log.last) return;
+  log.last = session.notice;
+  if (session.notice.empty()) return;
+  log.past.push_back({session.notice, is_error(session), std::chrono::system_clock::now()});
   if (log.past.size() > most_past_notices) log.past.erase(log.past.begin());
 }
 
-void age_notice(App& app, double seconds) {
-  NoticeAge& age = app.notice_age;
-  if (age.of != app.notice) {
-    age.of = app.notice;
+void age_notice(Session& session, NoticeAge& age, double seconds) {
+
+  if (age.of != session.notice) {
+    age.of = session.notice;
     age.seconds = 0;
     return;
   }
-  if (app.notice.empty() || is_error(app)) return;
+  if (session.notice.empty() || is_error(session)) return;
   age.seconds += seconds;
-  if (age.pointed) age.seconds = std::min(age.seconds, notice_life(app.notice) - notice_fade);
-  if (age.seconds < notice_life(app.notice)) return;
-  app.notice.clear();
-  app.failure.clear();
+  if (age.pointed) age.seconds = std::min(age.seconds, notice_life(session.notice) - notice_fade);
+  if (age.seconds < notice_life(session.notice)) return;
+  session.notice.clear();
+  session.failure.clear();
   age = {};
 }
 
-double next_notice_change(const App& app) {
-  if (app.notice.empty() || is_error(app)) return std::numeric_limits<double>::infinity();
-  if (app.notice != app.notice_age.of) return 0;
-  if (app.notice_age.pointed) return std::numeric_limits<double>::infinity();
-  const double until_fade = notice_life(app.notice) - notice_fade - app.notice_age.seconds;
+double next_notice_change(const Session& session, const NoticeAge& age) {
+  if (session.notice.empty() || is_error(session)) return std::numeric_limits<double>::infinity();
+  if (session.notice != age.of) return 0;
+  if (age.pointed) return std::numeric_limits<double>::infinity();
+  const double until_fade = notice_life(session.notice) - notice_fade - age.seconds;
   return std::max(until_fade, frame);
 }
 

@@ -9,7 +9,7 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
 
 struct NoticeAge {
   std::string of; // the notice that is growing old
@@ -35,13 +35,13 @@ double notice_life(const std::string& notice);
 inline constexpr double notice_fade = 0.4;
 
 // 1, less while it fades.
-float notice_strength(const App& app);
+float notice_strength(const Session& session, const NoticeAge& age);
 
 // Once a frame, wherever it is drawn: the present notice becomes one of the past.
-void keep_notice(App& app);
+void keep_notice(const Session& session, NoticeLog& log);
 // Once a frame, `seconds` after the last.
-void age_notice(App& app, double seconds);
+void age_notice(Session& session, NoticeAge& age, double seconds);
 // s until age_notice() has something to do; infinite while there is nothing that fades.
-double next_notice_change(const App& app);
+double next_notice_change(const Session& session, const NoticeAge& age);
 
 } // namespace flyball

@@ -23,27 +23,31 @@ std::string suggested_name(const Mechanism& mechanism, const std::string& addres
 }
 
 // An entry of the menu; whether it was chosen.
-bool entry(App& app, const QuantityField& field, const char* text, const std::string& name) {
+bool entry(Ui& ui, const QuantityField& field, const char* text, const std::string& name) {
   const bool chosen = ImGui::Selectable(text);
-  note_widget(app.widgets, field.name + "/" + name);
+  note_widget(ui.widgets, field.name + "/" + name);
   return chosen;
 }
 
-void name_it(App& app, const std::string& place) {
-  const std::string name = suggested_name(app.document.stored(), place), phrase = parameter_phrase(place);
-  edit(app, "Name " + phrase, [&](Mechanism& mechanism, Selection&) { name_number(mechanism, place, name); });
-  if (parameter_index(app.mechanism(), name) >= 0)
-    app.notice = "The " + phrase + " is the parameter " + name +
-                 " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
+void name_it(Session& session, const std::string& place) {
+  const std::string name = suggested_name(session.document.stored(), place), phrase = parameter_phrase(place);
+  edit(session, "Name " + phrase,
+       [&](Mechanism& mechanism, Selection&) { name_number(mechanism, place, name); });
+  if (parameter_index(session.mechanism(), name) >= 0)
+    session.notice =
+        "The " + phrase + " is the parameter " + name +
+        " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
 }
 
-void name_the_point(App& app, const std::string& vector) {
-  const std::string name = free_name(app.document.stored(), "A");
-  edit(app, "Name a point", [&](Mechanism& mechanism, Selection&) { name_place(mechanism, vector, name); });
-  if (point_index(app.mechanism(), name) >= 0)
-    app.notice = "The point is called " + name +
-                 " now, and what stands there moves with it. It is renamed in the scene's inspector, where "
-                 "nothing is selected.";
+void name_the_point(Session& session, const std::string& vector) {
+  const std::string name = free_name(session.document.stored(), "A");
+  edit(session, "Name a point",
+       [&](Mechanism& mechanism, Selection&) { name_place(mechanism, vector, name); });
+  if (point_index(session.mechanism(), name) >= 0)
+    session.notice =
+        "The point is called " + name +
+        " now, and what stands there moves with it. It is renamed in the scene's inspector, where "
+        "nothing is selected.";
 }
 
 // The named point that a vector stands at; empty: none.
@@ -58,32 +62,32 @@ std::string named_point_of(const Mechanism& mechanism, const std::string& vector
   return {};
 }
 
-void leave_point(App& app, const std::string& vector, const std::string& point) {
-  edit(app, "Leave " + point, [&](Mechanism& mechanism, Selection&) {
+void leave_point(Session& session, const std::string& vector, const std::string& point) {
+  edit(session, "Leave " + point, [&](Mechanism& mechanism, Selection&) {
     for (const int i : {0, 1, 2})
       set_expression(mechanism, vector + "." + std::to_string(i), "");
   });
 }
 
 // Of a vector that may stand at a point; a named point's own stays where it is.
-void point_entries(App& app, const QuantityField& field) {
+void point_entries(Session& session, Ui& ui, const QuantityField& field) {
   const std::string vector = vector_of(field);
   if (vector.empty() || vector.starts_with("points.")) return;
-  const std::string at = named_point_of(app.mechanism(), vector);
-  if (!at.empty() && entry(app, field, ("Leave " + at).c_str(), "leave point"))
-    later(app, [&app, vector, at] { leave_point(app, vector, at); });
-  if (at.empty() && entry(app, field, "Name this point", "name point"))
-    later(app, [&app, vector] { name_the_point(app, vector); });
-  const std::vector<NamedPoint>& points = app.mechanism().points;
+  const std::string at = named_point_of(session.mechanism(), vector);
+  if (!at.empty() && entry(ui, field, ("Leave " + at).c_str(), "leave point"))
+    later(ui, [&session, vector, at] { leave_point(session, vector, at); });
+  if (at.empty() && entry(ui, field, "Name this point", "name point"))
+    later(ui, [&session, vector] { name_the_point(session, vector); });
+  const std::vector<NamedPoint>& points = session.mechanism().points;
   for (const NamedPoint& point : points)
-    if (point.name != at && entry(app, field, ("Stand at " + point.name).c_str(), "at " + point.name))
-      later(app, [&app, vector, name = point.name] {
-        edit(app, "Stand at " + name,
+    if (point.name != at && entry(ui, field, ("Stand at " + point.name).c_str(), "at " + point.name))
+      later(ui, [&session, vector, name = point.name] {
+        edit(session, "Stand at " + name,
              [&](Mechanism& mechanism, Selection&) { stand_at_point(mechanism, vector, name); });
       });
-  if (points.empty() || app.mode != Mode::build) return;
-  if (entry(app, field, "Pick a named point in the view", "pick"))
-    later(app, [&app, vector] { app.fields.picking = vector; });
+  if (points.empty() || session.mode != Mode::build) return;
+  if (entry(ui, field, "Pick a named point in the view", "pick"))
+    later(ui, [&ui, vector] { ui.fields.picking = vector; });
 }
 
 } // namespace
@@ -97,26 +101,26 @@ std::string vector_of(const QuantityField& field) {
   return field.axis >= 0 && field.unit == "m" ? place.substr(0, place.rfind('.')) : "";
 }
 
-std::optional<std::string> formula_of(const App& app, const QuantityField& field) {
+std::optional<std::string> formula_of(const Session& session, const QuantityField& field) {
   if (place_of(field).empty() || !field.various.empty()) return {};
-  return expression_at(app.mechanism(), place_of(field));
+  return expression_at(session.mechanism(), place_of(field));
 }
 
-void number_menu(App& app, const QuantityField& field, bool asked) {
+void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked) {
   const std::string& place = place_of(field);
   if (place.empty() || !field.various.empty() || field.name.starts_with("parameters/")) return;
   ImGui::PushID(field.name.c_str());
-  if (asked || takes_menu_key(app, field.name)) ImGui::OpenPopup("number");
+  if (asked || takes_menu_key(ui, field.name)) ImGui::OpenPopup("number");
   if (ImGui::BeginPopup("number")) {
-    if (!place.starts_with("parameters.") && entry(app, field, "Name this number", "name it"))
-      later(app, [&app, place] { name_it(app, place); });
-    if (formula_of(app, field) && entry(app, field, "Leave the value without its expression", "take off"))
-      later(app, [&app, place] {
-        edit(app, "Take the expression off " + parameter_phrase(place),
+    if (!place.starts_with("parameters.") && entry(ui, field, "Name this number", "name it"))
+      later(ui, [&session, place] { name_it(session, place); });
+    if (formula_of(session, field) && entry(ui, field, "Leave the value without its expression", "take off"))
+      later(ui, [&session, place] {
+        edit(session, "Take the expression off " + parameter_phrase(place),
              [&](Mechanism& mechanism, Selection&) { set_expression(mechanism, place, ""); });
       });
-    point_entries(app, field);
-    if (!field.address.empty() && entry(app, field, "Copy the address", "copy address"))
+    point_entries(session, ui, field);
+    if (!field.address.empty() && entry(ui, field, "Copy the address", "copy address"))
       ImGui::SetClipboardText(field.address.c_str());
     ImGui::EndPopup();
   }

@@ -10,9 +10,9 @@ const std::string& place_of(const QuantityField& field);
 // The vector of which the field shows one of three coordinates; empty: of none that could stand at a point.
 std::string vector_of(const QuantityField& field);
 // The expression that gives the number, or nothing.
-std::optional<std::string> formula_of(const App& app, const QuantityField& field);
+std::optional<std::string> formula_of(const Session& session, const QuantityField& field);
 
 // `asked` for by the right button, or by the menu key.
-void number_menu(App& app, const QuantityField& field, bool asked);
+void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked);
 
 } // namespace flyball

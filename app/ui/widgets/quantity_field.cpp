@@ -40,8 +40,8 @@ struct ShownNumber {
   ShownUnit unit;
   double value = 0;
 
-  ShownNumber(const App& app, const QuantityField& field)
-      : unit(shown_unit(field.unit, app.units)), value(unit.shown(field.value)) {}
+  ShownNumber(const Session& session, const QuantityField& field)
+      : unit(shown_unit(field.unit, session.units)), value(unit.shown(field.value)) {}
 };
 
 // A double click selects the number alone, and whoever types another with its unit over it leaves the former
@@ -53,8 +53,8 @@ Quantity typed_quantity(std::string_view text, const std::string& unit, const st
   return without ? without : typed;
 }
 
-Quantity typed_quantity(const App& app, const std::string& text, const QuantityField& field) {
-  return typed_quantity(text, field.unit, shown_unit(field.unit, app.units).text);
+Quantity typed_quantity(const Session& session, const std::string& text, const QuantityField& field) {
+  return typed_quantity(text, field.unit, shown_unit(field.unit, session.units).text);
 }
 
 bool is_expression(const QuantityField& field, std::string_view text) {
@@ -70,10 +70,10 @@ void set_typed_expression(Mechanism& mechanism, const QuantityField& field, cons
     set_expression(mechanism, place_of(field), text);
 }
 
-std::string mistake_in(const App& app, const std::string& text, const QuantityField& field) {
+std::string mistake_in(const Session& session, const std::string& text, const QuantityField& field) {
   if (is_expression(field, text)) {
     try {
-      Mechanism copy = app.document.stored();
+      Mechanism copy = session.document.stored();
       set_typed_expression(copy, field, text.substr(1));
       if (field.least == Least::any) return {}; // a law may stand in the number's place
       return too_small(expressed_value(copy, place_of(field)), field.least);
@@ -81,7 +81,7 @@ std::string mistake_in(const App& app, const std::string& text, const QuantityFi
       return error.expected();
     }
   }
-  const Quantity typed = typed_quantity(app, text, field);
+  const Quantity typed = typed_quantity(session, text, field);
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
 
@@ -91,36 +91,36 @@ double rounded(double value) {
 }
 
 // What was typed: an expression, or a number by itself.
-void take_typed(App& app, const QuantityField& field, const std::string& typed) {
+void take_typed(Session& session, const QuantityField& field, const std::string& typed) {
   const std::string step = "Set " + parameter_phrase(place_of(field));
   const auto follow = [&](Mechanism& mechanism) {
-    if (field.follow) field.follow(app.document.stored(), mechanism);
+    if (field.follow) field.follow(session.document.stored(), mechanism);
   };
   if (is_expression(field, typed))
-    return edit(app, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
+    return edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
       set_typed_expression(mechanism, field, typed.substr(1));
       follow(mechanism);
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
     });
-  const double value = typed_quantity(app, typed, field).value;
-  if (formula_of(app, field))
-    return edit(app, step, [&](Mechanism& mechanism, Selection&) {
+  const double value = typed_quantity(session, typed, field).value;
+  if (formula_of(session, field))
+    return edit(session, step, [&](Mechanism& mechanism, Selection&) {
       const std::optional<Unit> unit = parse_unit(field.unit); // SI, or degrees
       set_by_itself(mechanism, place_of(field), unit ? times_unit(value, unit->factor) : value);
       follow(mechanism);
     });
   if (field.set) return field.set(value);
-  set_number(app, field.address, value);
+  set_number(session, field.address, value);
 }
 
-void set(App& app, const QuantityField& field, double value) {
+void set(Session& session, Ui& ui, const QuantityField& field, double value) {
   if (field.at_once) return field.set(value);
-  later(app, [&app, set = field.set, address = field.address, value] {
+  later(ui, [&session, set = field.set, address = field.address, value] {
     if (set)
       set(value);
     else
-      set_number(app, address, value);
+      set_number(session, address, value);
   });
 }
 
@@ -166,33 +166,33 @@ int step_typed(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-float digits_width(const App& app, const std::string& text) {
-  const ImFont* digits = app.fonts.digits;
+float digits_width(const Ui& ui, const std::string& text) {
+  const ImFont* digits = ui.fonts.digits;
   return digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, text.c_str()).x;
 }
 
 // As many digits as there is room for, nine at most.
-std::string fitting_text(const App& app, double value, float room) {
+std::string fitting_text(const Ui& ui, double value, float room) {
   std::string text;
   for (int digits = 9; digits >= 3; --digits) {
     text = short_text(value, digits);
-    if (digits_width(app, text) <= room) break;
+    if (digits_width(ui, text) <= room) break;
   }
   return text;
 }
 
 // The number over the field at rest.
-void draw_resting(const App& app, const QuantityField& field, const ShownNumber& shown, float padding,
+void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& shown, float padding,
                   bool given) {
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(ui);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  const float right = to.x - padding, gap = 5 * app.scale;
+  const float right = to.x - padding, gap = 5 * ui.scale;
   const float unit_width = shown.unit.text.empty() ? 0 : ImGui::CalcTextSize(shown.unit.text.c_str()).x + gap;
   const float sign = given ? ImGui::CalcTextSize("=").x + gap : 0; // of an expression
   const float room = right - from.x - padding - unit_width - sign;
-  const std::string text = field.various.empty() ? fitting_text(app, shown.value, room) : std::string();
+  const std::string text = field.various.empty() ? fitting_text(ui, shown.value, room) : std::string();
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
-  const float x = field.framed ? from.x + padding + sign : right - unit_width - digits_width(app, text);
+  const float x = field.framed ? from.x + padding + sign : right - unit_width - digits_width(ui, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
@@ -200,9 +200,9 @@ void draw_resting(const App& app, const QuantityField& field, const ShownNumber&
   if (!field.various.empty())
     list.AddText({x, y}, packed(colors.dim), field.various.c_str());
   else
-    list.AddText(app.fonts.digits, app.fonts.digits->FontSize, {x, y + digits_drop(app)}, packed(color),
+    list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {x, y + digits_drop(ui)}, packed(color),
                  text.c_str());
-  if (unit_width > 0 && (!field.framed || digits_width(app, text) <= room))
+  if (unit_width > 0 && (!field.framed || digits_width(ui, text) <= room))
     list.AddText({right - unit_width + gap, y}, packed(colors.dim), shown.unit.text.c_str());
   list.PopClipRect();
 }
@@ -227,22 +227,22 @@ std::string tooltip(const QuantityField& field, const ShownNumber& shown,
   return text;
 }
 
-void pin_button(App& app, const QuantityField& field, bool row_hovered) {
+void pin_button(Session& session, Ui& ui, const QuantityField& field, bool row_hovered) {
   if (field.address.empty()) return;
-  const float side = ImGui::GetFrameHeight(), width = margin_width(app);
-  if (formula_of(app, field)) return ImGui::Dummy({width, side}); // what it rests on has the slider
-  const bool pinned = is_pinned(app.mechanism(), field.address);
-  const UiColors& colors = colors_of(app);
+  const float side = ImGui::GetFrameHeight(), width = margin_width(ui);
+  if (formula_of(session, field)) return ImGui::Dummy({width, side}); // what it rests on has the slider
+  const bool pinned = is_pinned(session.mechanism(), field.address);
+  const UiColors& colors = colors_of(ui);
   const std::string name = "inspector/pin/" + field.address;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::PushID(name.c_str());
   const bool pressed = ImGui::InvisibleButton("pin", {width, side});
   ImGui::PopID();
-  note_widget(app.widgets, name, KeyUse::aside);
-  const bool hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
+  note_widget(ui.widgets, name, KeyUse::aside);
+  const bool hovered = ImGui::IsItemHovered() || has_keyboard(ui, name);
   help_on_hover(pinned ? "Pinned as a slider; click to take it off the sliders."
                        : "Pin this number as a slider.");
-  if (pressed) later(app, [&app, address = field.address, pinned] { pin(app, address, !pinned); });
+  if (pressed) later(ui, [&session, address = field.address, pinned] { pin(session, address, !pinned); });
   if (!pinned && !hovered && !row_hovered) return;
   const ImVec2 size = ImGui::CalcTextSize(icon::pin);
   const ImVec4& color = pinned ? colors.accent : hovered ? colors.text : colors.dim;
@@ -251,31 +251,32 @@ void pin_button(App& app, const QuantityField& field, bool row_hovered) {
 }
 
 // The label, by which the number can be dragged.
-void scrub_label(App& app, const std::string& label, const QuantityField& field, float width) {
+void scrub_label(Session& session, Ui& ui, const std::string& label, const QuantityField& field,
+                 float width) {
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetFrameHeight();
   const std::string name = field.name + "/label";
   ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
-  note_widget(app.widgets, name, KeyUse::none); // the field does all of it
+  note_widget(ui.widgets, name, KeyUse::none); // the field does all of it
   const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  const ShownNumber shown(app, field);
-  if (!active) help_on_hover(tooltip(field, shown, formula_of(app, field)).c_str());
-  if (const auto dragged = dragged_number(app, name, shown.value, shown.unit.text); dragged && draggable) {
+  const ShownNumber shown(session, field);
+  if (!active) help_on_hover(tooltip(field, shown, formula_of(session, field)).c_str());
+  if (const auto dragged = dragged_number(ui, name, shown.value, shown.unit.text); dragged && draggable) {
     const double next = shown.unit.si(*dragged);
-    if (next != field.value && too_small(next, field.least).empty()) set(app, field, next);
+    if (next != field.value && too_small(next, field.least).empty()) set(session, ui, field, next);
   }
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(ui);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.PushClipRect(from, {from.x + width - 3 * app.scale, from.y + height}, true);
+  list.PushClipRect(from, {from.x + width - 3 * ui.scale, from.y + height}, true);
   list.AddText({from.x, from.y + ImGui::GetStyle().FramePadding.y}, packed(lit ? colors.text : colors.dim),
                label.c_str());
   list.PopClipRect();
 }
 
-void draw_letter(const App& app, int axis, const ImVec2& at) {
-  const Palette& colors = palette(app.theme);
+void draw_letter(const Ui& ui, int axis, const ImVec2& at) {
+  const Palette& colors = palette(ui.theme);
   const std::array letters{colors.axis_x, colors.axis_y, colors.axis_z};
   constexpr std::array names{"x", "y", "z"};
   const auto i = static_cast<std::size_t>(axis);
@@ -285,15 +286,14 @@ void draw_letter(const App& app, int axis, const ImVec2& at) {
 
 } // namespace
 
-std::optional<double> dragged_number(App& app, const std::string& name, double shown,
-                                     const std::string& unit) {
+std::optional<double> dragged_number(Ui& ui, const std::string& name, double shown, const std::string& unit) {
   constexpr float pixels_a_step = 4; // points the hand travels
-  Scrub& scrub = app.fields.scrub;
+  Scrub& scrub = ui.fields.scrub;
   if (ImGui::IsItemActivated()) scrub = {name, shown, hand_step(shown, unit), 0};
   const ImGuiIO& io = ImGui::GetIO();
   if (!ImGui::IsItemActive() || scrub.name != name || io.MouseDelta.x == 0) return {};
   scrub.travelled += io.MouseDelta.x;
-  const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * app.scale)));
+  const double steps = std::round(static_cast<double>(scrub.travelled / (pixels_a_step * ui.scale)));
   return rounded(scrub.start + steps * (io.KeyShift ? scrub.step / 10 : scrub.step));
 }
 
@@ -306,121 +306,123 @@ double hand_step(double value, const std::string& unit) {
   return 0.01;
 }
 
-float margin_width(const App& app) {
-  return 20 * app.scale;
+float margin_width(const Ui& ui) {
+  return 20 * ui.scale;
 }
 
-bool margin_button(App& app, const std::string& name, const char* icon, const char* help) {
+bool margin_button(Ui& ui, const std::string& name, const char* icon, const char* help) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
-  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+  ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
   ImGui::PushID(name.c_str());
-  const bool pressed = ImGui::Button(icon, {margin_width(app), 0});
+  const bool pressed = ImGui::Button(icon, {margin_width(ui), 0});
   ImGui::PopID();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
-  note_widget(app.widgets, name, KeyUse::aside);
+  note_widget(ui.widgets, name, KeyUse::aside);
   help_on_hover(help);
   return pressed;
 }
 
-float label_width(const App& app) {
-  return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * app.scale, 130 * app.scale);
+float label_width(const Ui& ui) {
+  return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * ui.scale, 130 * ui.scale);
 }
 
-void quantity_field(App& app, const QuantityField& field, float width) {
-  const UiColors& colors = colors_of(app);
-  const float height = ImGui::GetFrameHeight(), padding = 6 * app.scale;
-  const ShownNumber shown(app, field);
-  const std::optional<std::string> formula = formula_of(app, field);
-  Stepping stepping{field, shown, app.fields.typing};
-  TextField text{.name = field.name,
-                 .text = formula                 ? "=" + *formula
-                         : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
-                                                 : "",
-                 .check = [&app, field](const std::string& typed) { return mistake_in(app, typed, field); },
-                 .take = [&app, field](const std::string& typed) { take_typed(app, field, typed); },
-                 .at_once = field.at_once,
-                 .drawn_here = false,
-                 .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
-                 .callback = step_typed,
-                 .callback_data = &stepping};
-  const bool bare = !field.framed && !typing_in(app, field.name);
+void quantity_field(Session& session, Ui& ui, const QuantityField& field, float width) {
+  const UiColors& colors = colors_of(ui);
+  const float height = ImGui::GetFrameHeight(), padding = 6 * ui.scale;
+  const ShownNumber shown(session, field);
+  const std::optional<std::string> formula = formula_of(session, field);
+  Stepping stepping{field, shown, ui.fields.typing};
+  TextField text{
+      .name = field.name,
+      .text = formula                 ? "=" + *formula
+              : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
+                                      : "",
+      .check = [&session, field](const std::string& typed) { return mistake_in(session, typed, field); },
+      .take = [&session, field](const std::string& typed) { take_typed(session, field, typed); },
+      .at_once = field.at_once,
+      .drawn_here = false,
+      .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
+      .callback = step_typed,
+      .callback_data = &stepping};
+  const bool bare = !field.framed && !typing_in(ui, field.name);
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBg, ImVec4(0, 0, 0, 0));
   if (bare) ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, colors.raised);
-  ImGui::PushFont(app.fonts.digits);
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding, (height - app.fonts.digits->FontSize) / 2});
-  const bool typing = text_field(app, text, width);
-  if (field.name != "parameters/" + field.address + "/value") note_number(app, field.name, field.address);
+  ImGui::PushFont(ui.fonts.digits);
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding, (height - ui.fonts.digits->FontSize) / 2});
+  const bool typing = text_field(session, ui, text, width);
+  if (field.name != "parameters/" + field.address + "/value") note_number(ui, field.name, field.address);
   ImGui::PopStyleVar();
   ImGui::PopFont();
   if (bare) ImGui::PopStyleColor(2);
   const bool asked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
   if (!typing) {
-    draw_resting(app, field, shown, padding, formula.has_value());
+    draw_resting(ui, field, shown, padding, formula.has_value());
     help_on_hover(tooltip(field, shown, formula).c_str());
   } else if (stepping.stepped) {
-    if (const Quantity typed = typed_quantity(app, app.fields.typing.text, field))
-      set(app, field, typed.value);
+    if (const Quantity typed = typed_quantity(session, ui.fields.typing.text, field))
+      set(session, ui, field, typed.value);
   }
-  number_menu(app, field, asked);
+  number_menu(session, ui, field, asked);
 }
 
-void quantity_row(App& app, const std::string& label, const QuantityField& field,
+void quantity_row(Session& session, Ui& ui, const std::string& label, const QuantityField& field,
                   const std::function<void()>& reset) {
-  const float labels = label_width(app), margin = margin_width(app);
+  const float labels = label_width(ui), margin = margin_width(ui);
   const float width = ImGui::GetContentRegionAvail().x, start = ImGui::GetCursorPosX();
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const bool hovered = ImGui::IsWindowHovered() &&
                        ImGui::IsMouseHoveringRect(from, {from.x + width, from.y + ImGui::GetFrameHeight()});
-  const float letter = field.axis < 0 ? 0 : 14 * app.scale;
-  scrub_label(app, label, field, labels - letter - (reset ? margin : 0));
+  const float letter = field.axis < 0 ? 0 : 14 * ui.scale;
+  scrub_label(session, ui, label, field, labels - letter - (reset ? margin : 0));
   if (reset) {
     ImGui::SameLine(0, 0);
-    if (margin_button(app, field.name + "/reset", icon::undo, "Leave it to the drawn pose."))
-      later(app, reset);
+    if (margin_button(ui, field.name + "/reset", icon::undo, "Leave it to the drawn pose.")) later(ui, reset);
   }
-  if (field.axis >= 0) draw_letter(app, field.axis, {from.x + labels - letter, from.y});
+  if (field.axis >= 0) draw_letter(ui, field.axis, {from.x + labels - letter, from.y});
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + labels);
-  quantity_field(app, field, std::max(width - labels - margin, 20 * app.scale));
+  quantity_field(session, ui, field, std::max(width - labels - margin, 20 * ui.scale));
   if (!field.address.empty()) {
     ImGui::SameLine(0, 0);
-    pin_button(app, field, hovered);
+    pin_button(session, ui, field, hovered);
   }
 }
 
-bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
-                          const char* help, double& value, Least least) {
-  app.fields.plain.reset();
-  quantity_row(app, label,
+bool plain_quantity_field(Session& session, Ui& ui, const std::string& name, const char* label,
+                          const char* unit, const char* help, double& value, Least least) {
+  ui.fields.plain.reset();
+  quantity_row(session, ui, label,
                {.name = name,
                 .value = value,
                 .unit = unit,
                 .help = help,
                 .least = least,
-                .set = [&app](double typed) { app.fields.plain = typed; },
+                .set = [&ui](double typed) { ui.fields.plain = typed; },
                 .at_once = true});
-  if (!app.fields.plain || *app.fields.plain == value) return false;
-  value = *app.fields.plain;
+  if (!ui.fields.plain || *ui.fields.plain == value) return false;
+  value = *ui.fields.plain;
   return true;
 }
 
-void set_number(App& app, const std::string& address, double value) {
-  edit_parameter(app, address, value);
+void set_number(Session& session, const std::string& address, double value) {
+  edit_parameter(session, address, value);
 }
 
 bool is_pinned(const Mechanism& mechanism, const std::string& address) {
   return std::ranges::find(mechanism.sliders, address, &Slider::parameter) != mechanism.sliders.end();
 }
 
-void pin(App& app, const std::string& address, bool pinned) {
-  if (pinned == is_pinned(app.mechanism(), address)) return;
-  edit(app, (pinned ? "Pin " : "Unpin ") + parameter_phrase(address), [&](Mechanism& mechanism, Selection&) {
-    if (pinned)
-      mechanism.sliders.push_back(slider_for(mechanism, address));
-    else
-      std::erase_if(mechanism.sliders, [&](const Slider& slider) { return slider.parameter == address; });
-  });
+void pin(Session& session, const std::string& address, bool pinned) {
+  if (pinned == is_pinned(session.mechanism(), address)) return;
+  edit(session, (pinned ? "Pin " : "Unpin ") + parameter_phrase(address),
+       [&](Mechanism& mechanism, Selection&) {
+         if (pinned)
+           mechanism.sliders.push_back(slider_for(mechanism, address));
+         else
+           std::erase_if(mechanism.sliders,
+                         [&](const Slider& slider) { return slider.parameter == address; });
+       });
 }
 
 } // namespace flyball

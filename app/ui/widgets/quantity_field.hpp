@@ -2,7 +2,8 @@
 // label, and, where it has an address, pinned as a slider.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/ui.hpp"
 
 #include <functional>
 #include <optional>
@@ -31,32 +32,31 @@ struct QuantityField {
 };
 
 // Without a label.
-void quantity_field(App& app, const QuantityField& field, float width);
+void quantity_field(Session& session, Ui& ui, const QuantityField& field, float width);
 // With its label, the pin, and for an optional number that is given a way back: `reset` then makes it absent.
-void quantity_row(App& app, const std::string& label, const QuantityField& field,
+void quantity_row(Session& session, Ui& ui, const std::string& label, const QuantityField& field,
                   const std::function<void()>& reset = {});
 // A number outside the document, in a dialog; returns whether it was changed.
-bool plain_quantity_field(App& app, const std::string& name, const char* label, const char* unit,
-                          const char* help, double& value, Least least = Least::any);
+bool plain_quantity_field(Session& session, Ui& ui, const std::string& name, const char* label,
+                          const char* unit, const char* help, double& value, Least least = Least::any);
 
 // Edits the number at the address, see edit_parameter(): what is typed or dragged in the inspector is meant.
-void set_number(App& app, const std::string& address, double value);
+void set_number(Session& session, const std::string& address, double value);
 // Makes the number a slider, or none.
-void pin(App& app, const std::string& address, bool pinned);
+void pin(Session& session, const std::string& address, bool pinned);
 bool is_pinned(const Mechanism& mechanism, const std::string& address);
 
 // What one step of the hand changes a number by: about a hundredth of it, a power of ten.
 double hand_step(double value, const std::string& unit);
 // What a hand that drags the last item sideways makes of the number it shows, in the shown unit: by such
 // steps, with Shift by tenths. Nothing where it does not drag.
-std::optional<double> dragged_number(App& app, const std::string& name, double shown,
-                                     const std::string& unit);
+std::optional<double> dragged_number(Ui& ui, const std::string& name, double shown, const std::string& unit);
 
 // Pixels that labels take in rows of the present width.
-float label_width(const App& app);
+float label_width(const Ui& ui);
 // Pixels at the right end of rows, for pins and small buttons.
-float margin_width(const App& app);
+float margin_width(const Ui& ui);
 // A small button of an icon as wide as the margin.
-bool margin_button(App& app, const std::string& name, const char* icon, const char* help);
+bool margin_button(Ui& ui, const std::string& name, const char* icon, const char* help);
 
 } // namespace flyball

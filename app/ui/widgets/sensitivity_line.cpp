@@ -43,29 +43,31 @@ std::string signed_text(double value) {
   return (value > 0 ? "+" : "") + short_text(value, 3);
 }
 
-bool has_rates(const App& app) {
-  return converged(app) && (!solving(app) || app.waited <= answer_patience);
+bool has_rates(const Session& session) {
+  return converged(session) && (!solving(session) || session.waited <= answer_patience);
 }
 
-const std::vector<ShownRate>& kept_rates(App& app, const ParameterControl& control) {
-  KeptRates& kept = app.panels.rates[control.address];
-  if (kept.ticket != app.answer.ticket || kept.value != control.value || kept.from != control.from ||
-      kept.to != control.to || kept.units != app.units)
-    kept = {app.answer.ticket, control.value, control.from,
-            control.to,        app.units,     shown_rates(app, control.address)};
+const std::vector<ShownRate>& kept_rates(const Session& session, PanelState& panels,
+                                         const ParameterControl& control) {
+  KeptRates& kept = panels.rates[control.address];
+  if (kept.ticket != session.answer.ticket || kept.value != control.value || kept.from != control.from ||
+      kept.to != control.to || kept.units != session.units)
+    kept = {session.answer.ticket, control.value,
+            control.from,          control.to,
+            session.units,         shown_rates(session, control.address)};
   return kept.rates;
 }
 
 } // namespace
 
-std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
+std::vector<ShownRate> shown_rates(const Session& session, const std::string& address) {
   std::vector<ShownRate> out;
-  if (!has_rates(app)) return out;
-  const Solution& solution = app.answer.solution;
+  if (!has_rates(session)) return out;
+  const Solution& solution = session.answer.solution;
   const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
-  const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
-  if (found == solution.sensitivities.end() || control == app.parameters.end()) return out;
-  const double size = size_of_change(*app.answer.mechanism);
+  const auto control = std::ranges::find(session.parameters, address, &ParameterControl::address);
+  if (found == solution.sensitivities.end() || control == session.parameters.end()) return out;
+  const double size = size_of_change(*session.answer.mechanism);
   // Rates come in the order of the coordinates: each is looked for from where the last was found.
   auto from = solution.coordinates.begin();
   for (const Sensitivity::Rate& rate : found->rates) {
@@ -78,7 +80,8 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
     from = c;
     ShownRate shown;
     shown.name = coordinate_label(rate);
-    const ShownUnit of = coordinate_unit(c->angle, app.units), by = shown_unit(control->unit, app.units);
+    const ShownUnit of = coordinate_unit(c->angle, session.units),
+                    by = shown_unit(control->unit, session.units);
     shown.value = rate.value * of.factor / by.factor;
     shown.unit = per(of.text, by.text);
     shown.share = std::abs(rate.value) / (c->angle ? 1 : size);
@@ -93,36 +96,36 @@ std::vector<ShownRate> shown_rates(const App& app, const std::string& address) {
   return out;
 }
 
-float sensitivity_height(const App& app) {
-  return std::round(small_text * app.fonts.text->FontSize);
+float sensitivity_height(const Ui& ui) {
+  return std::round(small_text * ui.fonts.text->FontSize);
 }
 
-void sensitivity_line(App& app, const ParameterControl& control) {
-  const float width = ImGui::GetContentRegionAvail().x, height = sensitivity_height(app);
+void sensitivity_line(const Session& session, Ui& ui, PanelState& panels, const ParameterControl& control) {
+  const float width = ImGui::GetContentRegionAvail().x, height = sensitivity_height(ui);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({std::max(width, 1.f), height});
-  if (!has_rates(app)) return;
-  const std::vector<ShownRate>& rates = kept_rates(app, control);
+  if (!has_rates(session)) return;
+  const std::vector<ShownRate>& rates = kept_rates(session, panels, control);
   if (rates.empty()) return;
   const std::string name = "parameters/" + control.address + "/rate";
-  note_widget(app.widgets, name);
-  const UiColors& colors = colors_of(app);
+  note_widget(ui.widgets, name);
+  const UiColors& colors = colors_of(ui);
   const ShownRate& most = rates.front();
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  ImFont *text = app.fonts.text, *digits = app.fonts.digits;
+  ImFont *text = ui.fonts.text, *digits = ui.fonts.digits;
   const float size = small_text * text->FontSize, digit_size = small_text * digits->FontSize;
   const std::string number = signed_text(most.value), unit = " " + most.unit;
   const float unit_width = text->CalcTextSizeA(size, 1e9f, 0, unit.c_str()).x;
   const float number_width = digits->CalcTextSizeA(digit_size, 1e9f, 0, number.c_str()).x;
-  const float margin = 28 * app.scale; // in line with the value above
+  const float margin = 28 * ui.scale; // in line with the value above
   float x = from.x + width - margin - unit_width;
   list.PushClipRect(from, {from.x + width, from.y + height}, true);
   list.AddText(text, size, {x, from.y}, packed(colors.dim), unit.c_str());
   x -= number_width;
-  list.AddText(digits, digit_size, {x, from.y + digits_drop(app) * small_text}, packed(colors.dim),
+  list.AddText(digits, digit_size, {x, from.y + digits_drop(ui) * small_text}, packed(colors.dim),
                number.c_str());
   const float label_width = text->CalcTextSizeA(size, 1e9f, 0, most.name.c_str()).x;
-  x = std::max(from.x, x - 6 * app.scale - label_width);
+  x = std::max(from.x, x - 6 * ui.scale - label_width);
   list.AddText(text, size, {x, from.y}, packed(colors.dim), most.name.c_str());
   list.PopClipRect();
   if (!ImGui::IsItemHovered()) return;

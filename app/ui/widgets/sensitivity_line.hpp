@@ -2,17 +2,19 @@
 // slider.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/panel_state.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/shown_rate.hpp"
 
 namespace flyball {
 
 // By how much they move, the most first. Empty without a steady state, at a singular one, and for what is no
 // slider.
-std::vector<ShownRate> shown_rates(const App& app, const std::string& address);
+std::vector<ShownRate> shown_rates(const Session& session, const std::string& address);
 
 // Pixels; the same whether or not there is anything to tell, so that nothing jumps.
-float sensitivity_height(const App& app);
-void sensitivity_line(App& app, const ParameterControl& control);
+float sensitivity_height(const Ui& ui);
+void sensitivity_line(const Session& session, Ui& ui, PanelState& panels, const ParameterControl& control);
 
 } // namespace flyball

@@ -6,31 +6,31 @@ namespace flyball {
 
 namespace {
 
-void number(App& app, const std::string& name, int& value) {
-  ImGui::SetNextItemWidth(84 * app.scale);
+void number(Ui& ui, const std::string& name, int& value) {
+  ImGui::SetNextItemWidth(84 * ui.scale);
   ImGui::PushID(name.c_str());
   ImGui::InputInt("##number", &value, 0);
   ImGui::PopID();
-  note_widget(app.widgets, name, KeyUse::type);
+  note_widget(ui.widgets, name, KeyUse::type);
 }
 
 } // namespace
 
-void size_fields(App& app, const std::string& name, std::span<const PictureSize> usual, float column,
+void size_fields(Ui& ui, const std::string& name, std::span<const PictureSize> usual, float column,
                  int& width, int& height) {
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("Size");
-  ImGui::SameLine(column * app.scale);
-  number(app, name + "/width", width);
+  ImGui::SameLine(column * ui.scale);
+  number(ui, name + "/width", width);
   ImGui::SameLine();
   ImGui::TextUnformatted("×");
   ImGui::SameLine();
-  number(app, name + "/height", height);
+  number(ui, name + "/height", height);
   ImGui::SameLine();
   ImGui::TextDisabled("pixels");
-  ImGui::SetCursorPosX(column * app.scale);
+  ImGui::SetCursorPosX(column * ui.scale);
   for (const PictureSize& size : usual) {
-    if (text_button(app, name + "/" + size.name, size.text)) {
+    if (text_button(ui, name + "/" + size.name, size.text)) {
       width = size.width;
       height = size.height;
     }

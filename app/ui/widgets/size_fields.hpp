@@ -1,11 +1,11 @@
 // The size of a picture in pixels: two numbers, and buttons for usual ones.
 #pragma once
 
-#include "app/ui/app.hpp"
-
 #include <span>
 
 namespace flyball {
+
+struct Ui;
 
 struct PictureSize {
   const char* name; // of the button's widget, after the dialog's
@@ -14,7 +14,7 @@ struct PictureSize {
 };
 
 // Labels stand before `column` (points).
-void size_fields(App& app, const std::string& name, std::span<const PictureSize> usual, float column,
+void size_fields(Ui& ui, const std::string& name, std::span<const PictureSize> usual, float column,
                  int& width, int& height);
 
 } // namespace flyball

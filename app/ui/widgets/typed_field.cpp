@@ -20,20 +20,20 @@ void check(Typing& typing) {
 }
 
 // Takes what was typed, or says why not.
-void leave(App& app, bool at_once) {
-  const Typing typing = std::exchange(app.fields.typing, {});
+void leave(Session& session, Ui& ui, bool at_once) {
+  const Typing typing = std::exchange(ui.fields.typing, {});
   if (typing.text == typing.original || !typing.take) return;
   if (!typing.mistake.empty()) {
-    show_error(app, "“" + typing.text + "” was not taken. " + typing.mistake);
+    show_error(session, "“" + typing.text + "” was not taken. " + typing.mistake);
     return;
   }
   if (at_once) return typing.take(typing.text);
-  later(app, [take = typing.take, text = typing.text] { take(text); });
+  later(ui, [take = typing.take, text = typing.text] { take(text); });
 }
 
-void begin(App& app, const TextField& field, std::string typed) {
-  leave(app, false);
-  app.fields.typing = {
+void begin(Session& session, Ui& ui, const TextField& field, std::string typed) {
+  leave(session, ui, false);
+  ui.fields.typing = {
       .name = field.name, .text = std::move(typed), .original = field.text, .checked = field.text};
 }
 
@@ -57,40 +57,40 @@ bool escape_pressed_now() {
 }
 
 // Of the field that is typed in, after it was drawn.
-void go_on(App& app, const TextField& field, bool entered) {
-  Typing& typing = app.fields.typing;
+void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
+  Typing& typing = ui.fields.typing;
   if (ImGui::IsItemActive()) typing.idle = 0;
   typing.check = field.check;
   typing.take = field.take;
   check(typing);
   if (!ImGui::IsItemDeactivated()) {
-    if (!typing.mistake.empty()) show_mistake(app, typing.mistake);
+    if (!typing.mistake.empty()) show_mistake(ui, typing.mistake);
   } else if (escape_pressed_now()) {
     typing = {};
-    app.keyboard.focus = {};
+    ui.keyboard.focus = {};
   } else if (entered && !typing.mistake.empty()) {
     typing.wants_focus = true;
   } else {
-    leave(app, field.at_once);
+    leave(session, ui, field.at_once);
   }
 }
 
 } // namespace
 
-bool typing_in(const App& app, const std::string& name) {
-  return app.fields.typing.name == name;
+bool typing_in(const Ui& ui, const std::string& name) {
+  return ui.fields.typing.name == name;
 }
 
-void start_typing(App& app, const std::string& name, const std::string& text) {
-  leave(app, false);
-  app.fields.typing = {.name = name, .text = text, .original = text, .checked = text};
-  app.fields.typing.wants_focus = true;
+void start_typing(Session& session, Ui& ui, const std::string& name, const std::string& text) {
+  leave(session, ui, false);
+  ui.fields.typing = {.name = name, .text = text, .original = text, .checked = text};
+  ui.fields.typing.wants_focus = true;
 }
 
-bool text_field(App& app, const TextField& field, float width) {
-  const UiColors& colors = colors_of(app);
-  Typing& typing = app.fields.typing;
-  const bool was_typing = typing_in(app, field.name);
+bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
+  const UiColors& colors = colors_of(ui);
+  Typing& typing = ui.fields.typing;
+  const bool was_typing = typing_in(ui, field.name);
   std::string resting = field.text;
   ImVec4 color = was_typing && !typing.mistake.empty() ? colors.bad : colors.text;
   if (!was_typing && !field.drawn_here) color.w = 0;
@@ -104,12 +104,12 @@ bool text_field(App& app, const TextField& field, float width) {
                                                 flags, field.callback, field.callback_data);
   ImGui::PopID();
   ImGui::PopStyleColor();
-  note_widget(app.widgets, field.name, KeyUse::type);
+  note_widget(ui.widgets, field.name, KeyUse::type);
 
   if (was_typing)
-    go_on(app, field, entered);
+    go_on(session, ui, field, entered);
   else if (ImGui::IsItemActive())
-    begin(app, field, std::move(resting));
+    begin(session, ui, field, std::move(resting));
   return was_typing;
 }
 
@@ -117,11 +117,11 @@ void later(Ui& ui, std::function<void()> edit) {
   ui.fields.later.push_back(std::move(edit));
 }
 
-void settle_fields(App& app) {
-  if (Typing& typing = app.fields.typing; !typing.name.empty() && ++typing.idle > idle_frames)
-    leave(app, false);
-  while (!app.fields.later.empty()) // an edit may put off another
-    for (const auto& edit : std::exchange(app.fields.later, {}))
+void settle_fields(Session& session, Ui& ui) {
+  if (Typing& typing = ui.fields.typing; !typing.name.empty() && ++typing.idle > idle_frames)
+    leave(session, ui, false);
+  while (!ui.fields.later.empty()) // an edit may put off another
+    for (const auto& edit : std::exchange(ui.fields.later, {}))
       edit();
 }
 

@@ -3,7 +3,8 @@
 // field.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/ui.hpp"
 
 #include <string>
 
@@ -23,14 +24,14 @@ struct TextField {
 };
 
 // Whether it is being typed in. In the present font.
-bool text_field(App& app, const TextField& field, float width);
-bool typing_in(const App& app, const std::string& name);
+bool text_field(Session& session, Ui& ui, const TextField& field, float width);
+bool typing_in(const Ui& ui, const std::string& name);
 // As if it had been clicked; for a field that is drawn only while it is typed in.
-void start_typing(App& app, const std::string& name, const std::string& text);
+void start_typing(Session& session, Ui& ui, const std::string& name, const std::string& text);
 
 // To be done after the panels are drawn.
 void later(Ui& ui, std::function<void()> edit);
 // After the panels: leaves a field that is not shown any more and does what was put off.
-void settle_fields(App& app);
+void settle_fields(Session& session, Ui& ui);
 
 } // namespace flyball

@@ -87,25 +87,25 @@ void heading(Ui& ui, const char* text) {
   text_in(ui.fonts.strong, colors_of(ui).text, text);
 }
 
-bool section(App& app, const std::string& name, const char* text, bool& open) {
-  const UiColors& colors = colors_of(app);
-  const float height = ImGui::GetTextLineHeight() + 6 * app.scale;
+bool section(Ui& ui, const std::string& name, const char* text, bool& open) {
+  const UiColors& colors = colors_of(ui);
+  const float height = ImGui::GetTextLineHeight() + 6 * ui.scale;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
   if (ImGui::InvisibleButton(name.c_str(), {width, height})) open = !open;
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (ImGui::IsItemHovered())
-    list.AddRectFilled({from.x - 4 * app.scale, from.y}, {from.x + width, from.y + height},
+    list.AddRectFilled({from.x - 4 * ui.scale, from.y}, {from.x + width, from.y + height},
                        packed(colors.raised), ImGui::GetStyle().FrameRounding);
-  const float r = 3.5f * app.scale, cx = from.x + r, cy = from.y + height / 2;
+  const float r = 3.5f * ui.scale, cx = from.x + r, cy = from.y + height / 2;
   if (open)
     list.AddTriangleFilled({cx - r, cy - r / 2}, {cx + r, cy - r / 2}, {cx, cy + r / 1.5f},
                            packed(colors.dim));
   else
     list.AddTriangleFilled({cx - r / 2, cy - r}, {cx + r / 1.5f, cy}, {cx - r / 2, cy + r},
                            packed(colors.dim));
-  list.AddText(app.fonts.strong, ImGui::GetFontSize(), {from.x + 14 * app.scale, from.y + 3 * app.scale},
+  list.AddText(ui.fonts.strong, ImGui::GetFontSize(), {from.x + 14 * ui.scale, from.y + 3 * ui.scale},
                packed(colors.text), text);
   return open;
 }
@@ -121,25 +121,26 @@ void right_digits(Ui& ui, const std::string& text, const ImVec4& color) {
   text_in(font, color, text);
 }
 
-void row(App& app, const std::string& label, const std::string& value, const char* unit, const char* help) {
-  const UiColors& colors = colors_of(app);
+void row(const Ui& ui, const std::string& label, const std::string& value, const char* unit,
+         const char* help) {
+  const UiColors& colors = colors_of(ui);
   ImGui::BeginGroup();
   const float room = ImGui::GetContentRegionAvail().x;
   const float start = ImGui::GetCursorPosX();
-  const float unit_width = unit && *unit ? ImGui::CalcTextSize(unit).x + 5 * app.scale : 0;
-  const ImFont* digits = app.fonts.digits;
+  const float unit_width = unit && *unit ? ImGui::CalcTextSize(unit).x + 5 * ui.scale : 0;
+  const ImFont* digits = ui.fonts.digits;
   const float value_width = digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, value.c_str()).x;
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
-  clipped_text(label, room - unit_width - value_width - 8 * app.scale);
+  clipped_text(label, room - unit_width - value_width - 8 * ui.scale);
   ImGui::PopStyleColor();
   ImGui::SameLine();
   const ImVec2 at(start + std::max(0.f, room - unit_width - value_width), ImGui::GetCursorPosY());
-  ImGui::SetCursorPos({at.x, at.y + digits_drop(app)});
-  text_in(app.fonts.digits, colors.text, value);
+  ImGui::SetCursorPos({at.x, at.y + digits_drop(ui)});
+  text_in(ui.fonts.digits, colors.text, value);
   if (unit_width > 0) {
     ImGui::SameLine();
-    ImGui::SetCursorPos({at.x + value_width + 5 * app.scale, at.y});
-    text_in(app.fonts.text, colors.dim, unit);
+    ImGui::SetCursorPos({at.x + value_width + 5 * ui.scale, at.y});
+    text_in(ui.fonts.text, colors.dim, unit);
   }
   ImGui::EndGroup();
   help_on_hover(help);
@@ -204,10 +205,10 @@ constexpr float slack = 3; // points that the hand may move in a click
 
 // What the button on a slider does in this frame; `knob` and `left` are pixels of the window. Returns the
 // place on the track that the knob is to go to.
-std::optional<double> slider_place_wanted(App& app, const std::string& name, double now, float left,
-                                          float span, float radius, bool& type_value) {
+std::optional<double> slider_place_wanted(Ui& ui, const std::string& name, double now, float left, float span,
+                                          float radius, bool& type_value) {
   const ImGuiIO& io = ImGui::GetIO();
-  SliderPress& press = app.slider_press;
+  SliderPress& press = ui.slider_press;
   const float at = io.MousePos.x, knob = left + span * static_cast<float>(now);
   if (ImGui::IsItemActivated()) {
     type_value = io.KeyCtrl || (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && press.name == name);
@@ -220,7 +221,7 @@ std::optional<double> slider_place_wanted(App& app, const std::string& name, dou
   if (press.name != name || press.typing) return std::nullopt;
   if (ImGui::IsItemActive()) {
     if (!press.on_knob) press.grip = 0;
-    press.dragging = press.dragging || std::abs(at - press.from) > slack * app.scale;
+    press.dragging = press.dragging || std::abs(at - press.from) > slack * ui.scale;
     if (!press.dragging || io.MouseDelta.x == 0) return std::nullopt;
     // With Shift the knob follows at a tenth of the hand's speed.
     if (io.KeyShift) return now + static_cast<double>(io.MouseDelta.x / span) / 10;
@@ -256,30 +257,30 @@ ParameterControl shown_control(ParameterControl control, const ShownUnit& unit) 
 
 } // namespace
 
-bool slider(App& app, const std::string& name, const ParameterControl& si_control, double& si_value,
-            bool& type_value) {
-  const ShownUnit unit = shown_unit(si_control.unit, app.units);
+bool slider(const Session& session, Ui& ui, const std::string& name, const ParameterControl& si_control,
+            double& si_value, bool& type_value) {
+  const ShownUnit unit = shown_unit(si_control.unit, session.units);
   const ParameterControl control = shown_control(si_control, unit);
   double value = unit.shown(si_value);
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, height = 18 * s, radius = 6.5f * s;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, height = 18 * s, radius = 6.5f * s;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 4 * radius);
   ImGui::InvisibleButton(name.c_str(), {width, height});
-  note_widget(app.widgets, name, KeyUse::slide);
-  note_number(app, name, si_control.address);
-  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered() || has_keyboard(app, name);
+  note_widget(ui.widgets, name, KeyUse::slide);
+  note_number(ui, name, si_control.address);
+  const bool active = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered() || has_keyboard(ui, name);
   const float left = from.x + radius, span = width - 2 * radius, middle = from.y + height / 2;
 
   bool moved = false;
   if (const auto place =
-          slider_place_wanted(app, name, slider_place(control, value), left, span, radius, type_value)) {
+          slider_place_wanted(ui, name, slider_place(control, value), left, span, radius, type_value)) {
     const double next = slider_value(control, *place, ImGui::GetIO().KeyShift);
     moved = next != value;
     value = next;
     if (moved) si_value = unit.si(next);
   }
-  if (const KeyNudge* nudge = nudge_of(app, name)) {
+  if (const KeyNudge* nudge = nudge_of(ui, name)) {
     const double next = nudged_value(control, value, *nudge);
     moved = moved || next != value;
     value = next;

@@ -1,7 +1,8 @@
 // The few kinds of widget that the panels are made of. Names are for the widget map and unique in the window.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
 #include <string>
@@ -25,14 +26,14 @@ bool text_button(Ui& ui, const std::string& name, const char* text, bool primary
 // What a panel's part is called.
 void heading(Ui& ui, const char* text);
 // The same, that opens and closes; returns whether it is open.
-bool section(App& app, const std::string& name, const char* text, bool& open);
+bool section(Ui& ui, const std::string& name, const char* text, bool& open);
 
 // Digits from here to the right edge, ending there.
 void right_digits(Ui& ui, const std::string& text, const ImVec4& color);
 // How much lower digits must begin than words to stand on the same line (pixels).
 float digits_drop(const Ui& ui);
 // "label            value unit": the value in digits. Help appears over the row.
-void row(App& app, const std::string& label, const std::string& value, const char* unit,
+void row(const Ui& ui, const std::string& label, const std::string& value, const char* unit,
          const char* help = nullptr);
 // Draws those of so many rows of one height that are in sight.
 template <class Draw>
@@ -55,8 +56,8 @@ void clipped_text(const std::string& text, float width);
 
 // A slim slider over the control's range; returns whether the value was moved. A double click, or one with
 // Ctrl, asks for typing and moves nothing.
-bool slider(App& app, const std::string& name, const ParameterControl& control, double& value,
-            bool& type_value);
+bool slider(const Session& session, Ui& ui, const std::string& name, const ParameterControl& control,
+            double& value, bool& type_value);
 
 void help_on_hover(const char* help);
 // The same above the item, where what lies below it is reached for next.

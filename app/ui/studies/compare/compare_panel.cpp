@@ -1,5 +1,6 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
 #include "app/plot/comparison_plot.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
@@ -16,63 +17,63 @@ namespace {
 
 constexpr float words_width = 292; // points
 
-void found(App& app, const Comparison& c) {
-  const UiColors& colors = colors_of(app);
-  const NumberStyle& numbers = app.options.numbers;
+void found(const Session& session, Ui& ui, const Comparison& c) {
+  const UiColors& colors = colors_of(ui);
+  const NumberStyle& numbers = session.options.numbers;
   if (c.status != Status::converged) return paragraph(c.message, colors.bad);
-  row(app, "Direct solution", duration_text(c.answer.run_time_s, numbers), "",
+  row(ui, "Direct solution", duration_text(c.answer.run_time_s, numbers), "",
       "From the drawn pose to the accepted answer, existence and stability included.");
-  row(app, "its error", magnitude_text(c.answer.error, numbers), "",
+  row(ui, "its error", magnitude_text(c.answer.error, numbers), "",
       "The largest of all coordinates, in radians "
       "or relative to the mechanism's reach.");
-  row(app, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
+  row(ui, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
       "The reference is the direct solution iterated in extended precision; so far its last correction moved "
       "it.");
   if (!c.best) return paragraph("No damped motion came to an end.", colors.dim);
-  row(app, "Motion at its best", duration_text(c.best->motion_s, numbers), "",
+  row(ui, "Motion at its best", duration_text(c.best->motion_s, numbers), "",
       "The run whose end comes nearest to the reference.");
-  row(app, "its error", magnitude_text(c.best->error, numbers), "");
-  ImGui::PushFont(app.fonts.strong);
+  row(ui, "its error", magnitude_text(c.best->error, numbers), "");
+  ImGui::PushFont(ui.fonts.strong);
   paragraph("The direct solution is as near " + std::to_string(std::lround(c.best->ratio())) +
                 " times sooner.",
             colors.good);
   ImGui::PopFont();
-  note_widget(app.widgets, "compare/ratio");
+  note_widget(ui.widgets, "compare/ratio");
 }
 
 constexpr const char* all_coordinates = "all coordinates";
 
 // Which errors are shown: of the coordinates, or of a measure where there are some.
-void shown_choice(App& app, const Comparison& c) {
+void shown_choice(Session& session, Ui& ui, const Comparison& c) {
   if (c.measures.empty()) return;
   std::vector<std::string> names{all_coordinates};
   for (const MeasureSolution& measure : c.measures)
     names.push_back(measure.name);
-  std::string& shown = app.study.compare.shown;
+  std::string& shown = session.study.compare.shown;
   if (const auto other =
-          name_choice_row(app, "compare/shown", "Show", names, shown.empty() ? all_coordinates : shown,
+          name_choice_row(ui, "compare/shown", "Show", names, shown.empty() ? all_coordinates : shown,
                           "The coordinates, of which the largest error counts, or a measure."))
     shown = *other == all_coordinates ? "" : *other;
 }
 
 // The measure that is shown; nothing: the coordinates.
-std::optional<std::size_t> shown_measure(const App& app, const Comparison& c) {
-  const auto found = std::ranges::find(c.measures, app.study.compare.shown, &MeasureSolution::name);
+std::optional<std::size_t> shown_measure(const Session& session, const Comparison& c) {
+  const auto found = std::ranges::find(c.measures, session.study.compare.shown, &MeasureSolution::name);
   if (found == c.measures.end()) return {};
   return static_cast<std::size_t>(found - c.measures.begin());
 }
 
-void words(App& app) {
-  auto& measured = app.study.compare.measured;
-  const UiColors& colors = colors_of(app);
-  if (comparing(app)) {
-    task_bar(app, "compare/progress", measured.progress(), measured.seconds());
-    if (text_button(app, "compare/cancel", "Cancel")) measured.stop();
+void words(Session& session, Ui& ui) {
+  auto& measured = session.study.compare.measured;
+  const UiColors& colors = colors_of(ui);
+  if (comparing(session)) {
+    task_bar(ui, "compare/progress", measured.progress(), measured.seconds());
+    if (text_button(ui, "compare/cancel", "Cancel")) measured.stop();
     return;
   }
-  ImGui::BeginDisabled(!app.mistakes.empty() || app.mechanism().bodies.empty());
-  if (text_button(app, "compare/run", measured.found ? "Measure again" : "Measure", true))
-    begin_comparison(app);
+  ImGui::BeginDisabled(!session.mistakes.empty() || session.mechanism().bodies.empty());
+  if (text_button(ui, "compare/run", measured.found ? "Measure again" : "Measure", true))
+    begin_comparison(session);
   ImGui::EndDisabled();
   if (!measured.problem.empty()) paragraph(measured.problem, colors.bad);
   if (!measured.found) {
@@ -83,13 +84,13 @@ void words(App& app) {
     return;
   }
   ImGui::SameLine();
-  if (text_button(app, "compare/copy", "Copy the table")) {
+  if (text_button(ui, "compare/copy", "Copy the table")) {
     ImGui::SetClipboardText(comparison_csv(measured.found->result).c_str());
-    app.notice = "The measurements are on the clipboard, as CSV.";
+    session.notice = "The measurements are on the clipboard, as CSV.";
   }
-  if (!comparison_is_current(app)) paragraph("Measured before the last changes.", colors.warn);
-  shown_choice(app, measured.found->result);
-  found(app, measured.found->result);
+  if (!comparison_is_current(session)) paragraph("Measured before the last changes.", colors.warn);
+  shown_choice(session, ui, measured.found->result);
+  found(session, ui, measured.found->result);
 }
 
 } // namespace
@@ -97,7 +98,7 @@ void words(App& app) {
 void compare_panel(App& app) {
   const float s = app.scale;
   ImGui::BeginChild("words", {words_width * s, 0});
-  words(app);
+  words(app, app);
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);

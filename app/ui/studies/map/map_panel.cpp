@@ -1,4 +1,5 @@
 // The map of two parameters: what is wanted of it, and the plot.
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/map/map_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -21,95 +22,95 @@ constexpr float map_choices_width = 320; // points
 constexpr int fewest_cells = 2, most_cells = 401;
 
 // Two fields side by side after one label.
-void two_fields(App& app, const std::string& label, const char* help, QuantityField first,
+void two_fields(Session& session, Ui& ui, const std::string& label, const char* help, QuantityField first,
                 QuantityField second) {
-  const float gap = 6 * app.scale;
-  const float width = std::floor((row_label(app, label, help) - gap) / 2);
-  quantity_field(app, first, width);
+  const float gap = 6 * ui.scale;
+  const float width = std::floor((row_label(ui, label, help) - gap) / 2);
+  quantity_field(session, ui, first, width);
   ImGui::SameLine(0, gap);
-  quantity_field(app, second, width);
+  quantity_field(session, ui, second, width);
 }
 
-void axis_choice(App& app, std::size_t which) {
-  MapState& map = app.study.map;
+void axis_choice(Session& session, Ui& ui, MapView& drawn, std::size_t which) {
+  MapState& map = session.study.map;
   const MapAxis& axis = map.choice.axes[which];
   const std::string name = which == 0 ? "map/x" : "map/y";
   std::vector<std::string> phrases, addresses;
   std::set<std::string> taken;
-  for (std::string& address : map_addresses(app)) {
+  for (std::string& address : map_addresses(session)) {
     if (address == map.choice.axes[1 - which].address) continue;
     // Numbers that would be called the same go by their address.
     std::string phrase = parameter_phrase(address);
     phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
     addresses.push_back(std::move(address));
   }
-  if (const auto chosen = name_choice_row(app, name, which == 0 ? "Across" : "Up", phrases,
+  if (const auto chosen = name_choice_row(ui, name, which == 0 ? "Across" : "Up", phrases,
                                           parameter_phrase(axis.address), "The number along this axis.")) {
     const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *chosen) - phrases.begin());
-    later(app, [&app, which, address = addresses[i]] {
-      app.study.map.choice.axes[which] = map_axis(app, address);
-      fit_plot(app.plots.map.view);
+    later(ui, [&session, &drawn, which, address = addresses[i]] {
+      session.study.map.choice.axes[which] = map_axis(session, address);
+      fit_plot(drawn.view);
     });
   }
-  if (!has_number(app.mechanism(), axis.address)) return; // gone in this frame, by an undo
+  if (!has_number(session.mechanism(), axis.address)) return; // gone in this frame, by an undo
   const auto end = [&](const char* key, double value, bool upper) {
     return QuantityField{.name = name + "/" + key,
                          .value = value,
-                         .unit = parameter_unit(app.mechanism(), axis.address),
+                         .unit = parameter_unit(session.mechanism(), axis.address),
                          .help = upper ? "Where the axis ends." : "Where the axis begins.",
-                         .set = [&app, which, upper](double typed) {
-                           MapAxis& changed = app.study.map.choice.axes[which];
+                         .set = [&session, &drawn, which, upper](double typed) {
+                           MapAxis& changed = session.study.map.choice.axes[which];
                            (upper ? changed.to : changed.from) = typed;
                            if (changed.from > changed.to) std::swap(changed.from, changed.to);
                            if (changed.from == changed.to) changed.to = changed.from + 1;
-                           fit_plot(app.plots.map.view);
+                           fit_plot(drawn.view);
                          }};
   };
-  two_fields(app, "from, to", "The range of this axis.", end("from", axis.from, false),
+  two_fields(session, ui, "from, to", "The range of this axis.", end("from", axis.from, false),
              end("to", axis.to, true));
 }
 
-void point_counts(App& app) {
+void point_counts(Session& session, Ui& ui) {
   const auto field = [&](const char* name, std::size_t which) {
     return QuantityField{.name = name,
-                         .value = static_cast<double>(app.study.map.choice.axes[which].count),
+                         .value = static_cast<double>(session.study.map.choice.axes[which].count),
                          .unit = "",
                          .help = "Values along the axis, 2 to 401. Each place is a solve of its own.",
                          .least = Least::above_zero,
-                         .set = [&app, which](double typed) {
-                           app.study.map.choice.axes[which].count = static_cast<int>(
+                         .set = [&session, which](double typed) {
+                           session.study.map.choice.axes[which].count = static_cast<int>(
                                std::clamp(std::round(typed), double{fewest_cells}, double{most_cells}));
                          }};
   };
-  two_fields(app, "Points", "How many values across, and up.", field("map/x/count", 0),
+  two_fields(session, ui, "Points", "How many values across, and up.", field("map/x/count", 0),
              field("map/y/count", 1));
 }
 
-void quantity_choice(App& app) {
-  MapChoice& choice = app.study.map.choice;
+void quantity_choice(Session& session, Ui& ui) {
+  MapChoice& choice = session.study.map.choice;
   std::vector<std::string> names;
-  for (const MapQuantity& quantity : map_quantities(app))
+  for (const MapQuantity& quantity : map_quantities(session))
     names.push_back(quantity.name);
-  if (const auto chosen = name_choice_row(app, "map/shown", "Colour", names, choice.shown,
+  if (const auto chosen = name_choice_row(ui, "map/shown", "Colour", names, choice.shown,
                                           "The coordinate or measure that the colours tell.")) {
     choice.shown = *chosen;
     choice.level.reset();
   }
 }
 
-void curve_choices(App& app) {
-  MapChoice& choice = app.study.map.choice;
-  if (check_row(app, "map/folds", "Folds and crossings", choice.folds,
+void curve_choices(Session& session, Ui& ui) {
+  MapChoice& choice = session.study.map.choice;
+  if (check_row(ui, "map/folds", "Folds and crossings", choice.folds,
                 "The curves on which equilibria meet and vanish, or branches cross."))
     choice.folds = !choice.folds;
   if (check_row(
-          app, "map/hunting", "Boundary of hunting", choice.hunting,
+          ui, "map/hunting", "Boundary of hunting", choice.hunting,
           "The curves on which a steady state begins to hunt, softly or hard: a damped pair of eigenvalues "
           "crosses the imaginary axis (Hopf). Dampers can be varied, too."))
     choice.hunting = !choice.hunting;
-  const std::optional<MapQuantity> shown = map_quantity(app);
+  const std::optional<MapQuantity> shown = map_quantity(session);
   if (shown && !shown->followed) return; // what follows from the others cannot be asked for
-  if (check_row(app, "map/level", "Curve of a constant value", choice.level.has_value(),
+  if (check_row(ui, "map/level", "Curve of a constant value", choice.level.has_value(),
                 "The curve on which it keeps a value.")) {
     if (choice.level)
       choice.level.reset();
@@ -118,28 +119,28 @@ void curve_choices(App& app) {
   }
   if (!choice.level || !shown) return;
   double value = *choice.level;
-  if (plain_quantity_field(app, "map/level/value", "Value", shown->unit.c_str(), "What it is on the curve.",
-                           value))
+  if (plain_quantity_field(session, ui, "map/level/value", "Value", shown->unit.c_str(),
+                           "What it is on the curve.", value))
     choice.level = value;
 }
 
-void map_words(App& app) {
-  MapState& map = app.study.map;
-  const UiColors& colors = colors_of(app);
-  const std::string problem = map_problem(app);
+void map_words(Session& session, Ui& ui) {
+  MapState& map = session.study.map;
+  const UiColors& colors = colors_of(ui);
+  const std::string problem = map_problem(session);
   if (!problem.empty()) paragraph(problem, colors.bad);
-  if (!app.mistakes.empty())
+  if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   if (map.stale) paragraph("Computed before the last changes.", colors.warn);
-  if (computing_map(app)) {
-    if (text_button(app, "map/cancel", "Cancel")) cancel_map(app);
+  if (computing_map(session)) {
+    if (text_button(ui, "map/cancel", "Cancel")) cancel_map(session);
     ImGui::SameLine();
-    task_bar(app, "map/progress", map_progress(app), map_seconds(app),
-             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+    task_bar(ui, "map/progress", map_progress(session), map_seconds(session),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
   } else if (map.stale || !problem.empty()) {
-    if (text_button(app, "map/again", "Compute again", true)) compute_map(app);
+    if (text_button(ui, "map/again", "Compute again", true)) compute_map(session);
   }
-  if (computing_map(app)) return;
+  if (computing_map(session)) return;
   const auto& curves = map.curves.found;
   if (curves && map.choice.folds && curves->result.folds && curves->result.folds->curves.empty())
     paragraph(curves->result.folds->message, colors.dim);
@@ -153,13 +154,28 @@ void map_words(App& app) {
     unstable += cell.stable == false ? 1 : 0;
   }
   std::string text = std::to_string(cells.size()) + " solves";
-  if (app.options.numbers.run_times)
-    text += " in " + duration_text(map.cells.found->run_time, app.options.numbers);
+  if (session.options.numbers.run_times)
+    text += " in " + duration_text(map.cells.found->run_time, session.options.numbers);
   text += unsolved > 0 ? ", " + std::to_string(unsolved) + " without a steady state (left free)" : "";
   text += unstable > 0 ? ", " + std::to_string(unstable) + " unstable (hatched)" : "";
   paragraph(text + ". Each starts from the drawn pose. Click a place, or drag the mark, to go there.",
             colors.dim);
-  note_widget(app.widgets, "map/words");
+  note_widget(ui.widgets, "map/words");
+}
+
+void map_choices(Session& session, Ui& ui, MapView& drawn) {
+  ImGui::BeginChild("choices", {map_choices_width * ui.scale, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
+  if (!session.study.map.choice.shown.empty() && session.mistakes.empty()) {
+    axis_choice(session, ui, drawn, 0);
+    axis_choice(session, ui, drawn, 1);
+    point_counts(session, ui);
+    quantity_choice(session, ui);
+    curve_choices(session, ui);
+  }
+  map_words(session, ui);
+  ImGui::PopStyleVar();
+  ImGui::EndChild();
 }
 
 } // namespace
@@ -168,22 +184,11 @@ void map_panel(App& app) {
   const float s = app.scale;
   MapState& map = app.study.map;
   MapView& drawn = app.plots.map;
-  ImGui::BeginChild("choices", {map_choices_width * s, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  if (!map.choice.shown.empty() && app.mistakes.empty()) {
-    axis_choice(app, 0);
-    axis_choice(app, 1);
-    point_counts(app);
-    quantity_choice(app);
-    curve_choices(app);
-  }
-  map_words(app);
-  ImGui::PopStyleVar();
-  ImGui::EndChild();
+  map_choices(app, app, drawn);
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   if (map.cells.found) {
-    draw_map(app);
+    draw_map(app, drawn);
     const PlotEvents events = plot_view(
         app, "map", drawn.view, drawn.plot,
         {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});

@@ -89,22 +89,22 @@ void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level)
 
 } // namespace
 
-void draw_map(App& app) {
-  const MapState& map = app.study.map;
-  MapView& drawn = app.plots.map;
+void draw_map(const Session& session, MapView& drawn) {
+  const MapState& map = session.study.map;
+
   if (!map.cells.found) return;
-  const MapView::Of of{map.cells.found, map.curves.found, app.units};
+  const MapView::Of of{map.cells.found, map.curves.found, session.units};
   const bool made = drawn.of == of;
-  if (made && drawn.marked == app.answer.ticket) return;
+  if (made && drawn.marked == session.answer.ticket) return;
   const MapChoice& choice = map.cells.found->of.choice;
   const MapCells& cells = map.cells.found->result;
   const std::array<MapAxis, 2>& axes = choice.axes;
   drawn.of = of;
-  drawn.marked = app.answer.ticket;
+  drawn.marked = session.answer.ticket;
   drawn.plot.marker.reset();
-  if (converged(app) && !solving(app)) {
-    const double x = get_parameter(app.mechanism(), axes[0].address);
-    const double y = get_parameter(app.mechanism(), axes[1].address);
+  if (converged(session) && !solving(session)) {
+    const double x = get_parameter(session.mechanism(), axes[0].address);
+    const double y = get_parameter(session.mechanism(), axes[1].address);
     if (x >= axes[0].from && x <= axes[0].to && y >= axes[1].from && y <= axes[1].to)
       drawn.plot.marker = PlotMarker{x, y, ""};
   }
@@ -117,16 +117,16 @@ void draw_map(App& app) {
   Plot plot;
   const auto axis_for = [&](const MapAxis& axis) {
     return PlotAxis{.label = parameter_phrase(axis.address),
-                    .unit = axis_unit(app, axis),
+                    .unit = axis_unit(session, axis),
                     .range = PlotRange{axis.from, axis.to},
                     .room = 0};
   };
   plot.x = axis_for(axes[0]);
   plot.y = axis_for(axes[1]);
-  const std::vector<MapQuantity> quantities = map_quantities(app);
+  const std::vector<MapQuantity> quantities = map_quantities(session);
   const auto shown = std::ranges::find(quantities, choice.shown, &MapQuantity::name);
   const std::string si = shown == quantities.end() ? "" : shown->unit;
-  const ShownUnit unit = shown_unit(si, app.units);
+  const ShownUnit unit = shown_unit(si, session.units);
   PlotHeat heat{
       .x = values_of(axes[0]), .y = values_of(axes[1]), .values = {}, .label = choice.shown, .unit = si};
   heat.values.reserve(cells.size());
@@ -134,7 +134,7 @@ void draw_map(App& app) {
     heat.values.push_back(cell.value);
   if (PlotCurve hatch = hatching(cells, heat.x, heat.y); !hatch.points.empty())
     plot.curves.push_back(std::move(hatch));
-  show_heat(heat, si, app.units);
+  show_heat(heat, si, session.units);
   plot.heat = std::move(heat);
   const auto& curves = map.curves.found;
   if (curves && curves->result.folds) add_curves(plot, *curves->result.folds, "");
@@ -142,8 +142,8 @@ void draw_map(App& app) {
   if (curves && curves->result.level && map.choice.level)
     add_curves(plot, *curves->result.level,
                choice.shown + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
-  show_axis(plot, 0, axis_unit(app, axes[0]), app.units);
-  show_axis(plot, 1, axis_unit(app, axes[1]), app.units);
+  show_axis(plot, 0, axis_unit(session, axes[0]), session.units);
+  show_axis(plot, 1, axis_unit(session, axes[1]), session.units);
   plot.marker = drawn.plot.marker;
   replace_plot(drawn.plot, std::move(plot));
   show_marker();

@@ -1,11 +1,12 @@
 // The map as a plot: colours, hatching where it is unstable, the curves in it and the present place.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/studies/study_views.hpp"
 
 namespace flyball {
 
-// Makes app.plots.map.plot where something of it has changed.
-void draw_map(App& app);
+// Makes the plot where something of it has changed.
+void draw_map(const Session& session, MapView& drawn);
 
 } // namespace flyball

@@ -30,43 +30,44 @@ std::string critical_words(const CampbellDiagram& diagram, std::size_t branch, c
 
 } // namespace
 
-void draw_campbell(App& app) {
-  const CampbellState& campbell = app.study.modes.campbell;
-  CampbellView& drawn = app.plots.campbell;
+void draw_campbell(const Session& session, CampbellView& drawn) {
+  const CampbellState& campbell = session.study.modes.campbell;
+
   const CampbellView::Of shown{campbell.diagram.found,
-                               app.study.modes.list.found,
-                               app.answer.ticket,
-                               app.study.modes.chosen,
+                               session.study.modes.list.found,
+                               session.answer.ticket,
+                               session.study.modes.chosen,
                                drawn.hertz,
-                               app.units};
+                               session.units};
   if (drawn.of == shown) return;
-  if (!campbell.diagram.found || solving(app)) return; // the answer belongs to other numbers
+  if (!campbell.diagram.found || solving(session)) return; // the answer belongs to other numbers
   drawn.of = shown;
   const CampbellRequest& of = campbell.diagram.found->of;
-  const std::string unit = parameter_unit(app.mechanism(), of.drive);
+  const std::string unit = parameter_unit(session.mechanism(), of.drive);
   const PlotRange speeds{std::min(of.from, of.to), std::max(of.from, of.to)};
   Plot plot;
-  if (const std::optional<std::size_t> branch = campbell_branch(app)) {
-    plot = campbell_plot(app.mechanism(), of.drive, campbell.diagram.found->result, *branch, speeds,
+  if (const std::optional<std::size_t> branch = campbell_branch(session)) {
+    plot = campbell_plot(session.mechanism(), of.drive, campbell.diagram.found->result, *branch, speeds,
                          of.orders, drawn.hertz);
     drawn.critical =
-        driven_joint(app.mechanism(), of.drive).empty()
+        driven_joint(session.mechanism(), of.drive).empty()
             ? ""
-            : critical_words(campbell.diagram.found->result, *branch, shown_unit(unit, app.units));
+            : critical_words(campbell.diagram.found->result, *branch, shown_unit(unit, session.units));
   } else {
     plot.x = {.label = {}, .unit = unit, .range = speeds, .room = 0};
     plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
     drawn.critical.clear();
   }
   plot.x.label = parameter_phrase(of.drive);
-  if (converged(app)) {
-    const double speed = get_parameter(app.mechanism(), of.drive);
+  if (converged(session)) {
+    const double speed = get_parameter(session.mechanism(), of.drive);
     plot.references.push_back({.axis = 0, .at = speed, .label = "now", .color = plot_color::blue});
-    if (const VibrationMode* mode = moving_mode(app); mode && modes_are_current(app) && mode->oscillates())
-      plot.marker = PlotMarker{speed * shown_unit(unit, app.units).factor,
+    if (const VibrationMode* mode = moving_mode(session);
+        mode && modes_are_current(session) && mode->oscillates())
+      plot.marker = PlotMarker{speed * shown_unit(unit, session.units).factor,
                                mode->frequency * (drawn.hertz ? 1 / (2 * std::numbers::pi) : 1), ""};
   }
-  show_axis(plot, 0, unit, app.units);
+  show_axis(plot, 0, unit, session.units);
   replace_plot(drawn.plot, std::move(plot));
 }
 

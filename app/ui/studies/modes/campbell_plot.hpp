@@ -1,11 +1,12 @@
 // The Campbell diagram as a plot.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/studies/study_views.hpp"
 
 namespace flyball {
 
-// Makes app.plots.campbell.plot where something of it has changed.
-void draw_campbell(App& app);
+// Makes the plot where something of it has changed.
+void draw_campbell(const Session& session, CampbellView& drawn);
 
 } // namespace flyball

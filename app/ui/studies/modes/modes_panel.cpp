@@ -1,6 +1,7 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
@@ -26,17 +27,17 @@ constexpr double modes_patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
 
-void verdict(App& app, const FoundModes& found) {
-  const UiColors& colors = colors_of(app);
-  const Solution& solution = app.answer.solution;
+void verdict(const Session& session, Ui& ui, const FoundModes& found) {
+  const UiColors& colors = colors_of(ui);
+  const Solution& solution = session.answer.solution;
   const StabilityWords words = stability_words(solution.stable, solution.stability_reason, colors);
   ImGui::TextColored(words.color, "%s", words.icon);
-  ImGui::SameLine(0, 6 * app.scale);
+  ImGui::SameLine(0, 6 * ui.scale);
   const bool disagree = found.evidence && !found.evidence->agree;
   std::string text = std::string("The state is ") + words.word + ". ";
   text += found.evidence ? found.evidence->reason : words.sentence;
   paragraph(text, disagree ? colors.warn : colors.dim);
-  note_widget(app.widgets, "modes/verdict");
+  note_widget(ui.widgets, "modes/verdict");
 }
 
 // A number of the list: four digits of what is not rounding.
@@ -76,10 +77,10 @@ std::string mode_help(const VibrationMode& mode, const std::optional<Whirl>& whi
   return text;
 }
 
-void mode_row(App& app, std::size_t index, const FoundModes& found, double largest) {
+void mode_row(Session& session, Ui& ui, std::size_t index, const FoundModes& found, double largest) {
   const VibrationMode& mode = found.modes[index];
-  const UiColors& colors = colors_of(app);
-  const bool chosen = app.study.modes.chosen == index, bad = grows(mode);
+  const UiColors& colors = colors_of(ui);
+  const bool chosen = session.study.modes.chosen == index, bad = grows(mode);
   ImGui::TableNextRow();
   if (chosen) {
     ImVec4 tint = colors.accent;
@@ -90,9 +91,10 @@ void mode_row(App& app, std::size_t index, const FoundModes& found, double large
   const ImVec2 at = ImGui::GetCursorPos();
   ImGui::PushID(static_cast<int>(index));
   if (ImGui::Selectable("##mode", false, ImGuiSelectableFlags_SpanAllColumns))
-    later(app, [&app, index, chosen] { choose_mode(app, chosen ? std::nullopt : std::optional(index)); });
-  note_widget(app.widgets, "modes/row/" + std::to_string(index + 1), KeyUse::row);
-  if (chosen) mark_chosen(app.widgets);
+    later(ui,
+          [&session, index, chosen] { choose_mode(session, chosen ? std::nullopt : std::optional(index)); });
+  note_widget(ui.widgets, "modes/row/" + std::to_string(index + 1), KeyUse::row);
+  if (chosen) mark_chosen(ui.widgets);
   help_on_hover(mode_help(mode, found.whirls[index]).c_str());
   ImGui::PopID();
   ImGui::SetCursorPos(at);
@@ -110,24 +112,24 @@ void mode_row(App& app, std::size_t index, const FoundModes& found, double large
                                           swings ? four_digits(mode.damping_ratio, 1) : "–",
                                           four_digits(mode.eigenvalue.real(), largest)};
   for (const std::string& value : values)
-    if (ImGui::TableNextColumn()) right_digits(app, value, color);
+    if (ImGui::TableNextColumn()) right_digits(ui, value, color);
 }
 
-void list(App& app, const FoundModes& found, float height) {
-  const UiColors& colors = colors_of(app);
+void list(Session& session, Ui& ui, const FoundModes& found, float height) {
+  const UiColors& colors = colors_of(ui);
   constexpr std::array titles{"", "Natural [Hz]", "[rad/s]", "Damping", "Real part [1/s]"};
   constexpr std::array helps{
       "", "Of the undamped motion with this shape.", "Of the undamped motion with this shape.",
       "The damping ratio: 0 swings for ever, 1 does not swing at all, below 0 it grows.",
       "Of the eigenvalue: disturbances go as e to this times the time. Growing ones are marked."};
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {5 * app.scale, 2 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {5 * ui.scale, 2 * ui.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors.panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
   if (ImGui::BeginTable("modes", 5, table_flags, {0, height})) {
     ImGui::TableSetupScrollFreeze(0, 1);
     constexpr std::array widths{22.f, 88.f, 76.f, 72.f, 100.f};
     for (std::size_t i = 0; i < titles.size(); ++i)
-      ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * app.scale);
+      ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * ui.scale);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (std::size_t i = 1; i < titles.size(); ++i) {
       if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
@@ -143,7 +145,7 @@ void list(App& app, const FoundModes& found, float height) {
     clipper.Begin(static_cast<int>(found.modes.size()));
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        mode_row(app, static_cast<std::size_t>(i), found, largest);
+        mode_row(session, ui, static_cast<std::size_t>(i), found, largest);
     ImGui::EndTable();
   }
   ImGui::PopStyleColor(2);
@@ -221,69 +223,69 @@ void modes_list(App& app) {
     paragraph("Of the state before the last changes.", colors.warn);
     if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
   }
-  verdict(app, found);
+  verdict(app, app, found);
   if (found.modes.empty())
     return paragraph(found.singular_loops ? std::string(singular_loops_message)
                                           : "No coordinate is free to swing.",
                      colors.dim);
   const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
-  list(app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
+  list(app, app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
   transport(app);
 }
 
 // Drive, range and unit, in one line.
-void campbell_choices(App& app, const std::string& drive) {
-  CampbellState& campbell = app.study.modes.campbell;
-  const float s = app.scale;
-  const std::vector<std::string> speeds = drive_speeds(app.mechanism());
+void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::string& drive) {
+  CampbellState& campbell = session.study.modes.campbell;
+  const float s = ui.scale;
+  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
   ImGui::SetNextItemWidth(140 * s);
-  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   if (ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
     for (const std::string& speed : speeds) {
       if (ImGui::Selectable(parameter_phrase(speed).c_str(), speed == drive) && speed != drive) {
         campbell.drive = speed;
         campbell.from = campbell.to = 0;
-        fit_plot(app.plots.campbell.view);
+        fit_plot(drawn.view);
       }
-      note_widget(app.widgets, "campbell/drive/" + speed);
-      if (speed == drive) mark_chosen(app.widgets);
+      note_widget(ui.widgets, "campbell/drive/" + speed);
+      if (speed == drive) mark_chosen(ui.widgets);
     }
     ImGui::EndCombo();
   } else {
-    note_widget(app.widgets, "campbell/drive");
+    note_widget(ui.widgets, "campbell/drive");
   }
   ImGui::PopStyleColor();
   help_on_hover("The drive whose speed is along the axis.");
-  const PlotRange range = campbell_range(app);
-  const std::string unit = parameter_unit(app.mechanism(), drive);
+  const PlotRange range = campbell_range(session);
+  const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
     ImGui::SameLine(0, 10 * s);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(colors_of(app).dim, "%s", word);
+    ImGui::TextColored(colors_of(ui).dim, "%s", word);
     ImGui::SameLine(0, 6 * s);
-    quantity_field(app,
+    quantity_field(session, ui,
                    {.name = name,
                     .value = range[which],
                     .unit = unit,
                     .help = "The end of the axis.",
                     .set =
-                        [&app, range, which](double typed) {
+                        [&session, &drawn, range, which](double typed) {
                           PlotRange ends = range;
                           ends[which] = typed;
                           if (ends[0] == ends[1]) return;
-                          CampbellState& changed = app.study.modes.campbell;
+                          CampbellState& changed = session.study.modes.campbell;
                           changed.from = std::min(ends[0], ends[1]);
                           changed.to = std::max(ends[0], ends[1]);
-                          fit_plot(app.plots.campbell.view);
+                          fit_plot(drawn.view);
                         }},
                    84 * s);
   };
   end("campbell/from", "from", 0);
   end("campbell/to", "to", 1);
-  CampbellView& drawn = app.plots.campbell;
+
   for (const bool hertz : {true, false}) {
     ImGui::SameLine(0, hertz ? 14 * s : 2 * s);
-    if (text_button(app, hertz ? "campbell/hertz" : "campbell/radians", hertz ? "Hz" : "rad/s",
+    if (text_button(ui, hertz ? "campbell/hertz" : "campbell/radians", hertz ? "Hz" : "rad/s",
                     drawn.hertz == hertz)) {
       drawn.hertz = hertz;
       drawn.view.look.range[1].reset();
@@ -291,13 +293,13 @@ void campbell_choices(App& app, const std::string& drive) {
   }
   if (auto& diagram = campbell.diagram; diagram.running()) {
     ImGui::SameLine(0, 14 * s);
-    if (text_button(app, "campbell/cancel", "Cancel")) diagram.stop();
+    if (text_button(ui, "campbell/cancel", "Cancel")) diagram.stop();
     ImGui::SameLine();
-    task_bar(app, "campbell/progress", diagram.progress(), diagram.seconds(),
+    task_bar(ui, "campbell/progress", diagram.progress(), diagram.seconds(),
              std::max(ImGui::GetContentRegionAvail().x, 30 * s));
   } else if (!campbell.current || !campbell.on_branch) {
     ImGui::SameLine(0, 14 * s);
-    if (text_button(app, "campbell/again", "Follow again", true)) follow_campbell(app);
+    if (text_button(ui, "campbell/again", "Follow again", true)) follow_campbell(session);
   }
 }
 
@@ -308,11 +310,11 @@ void show_campbell(App& app) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
-  campbell_choices(app, drive);
+  campbell_choices(app, app, app.plots.campbell, drive);
   const auto& diagram = campbell.diagram;
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
   if (!diagram.found) return;
-  draw_campbell(app);
+  draw_campbell(app, app.plots.campbell);
   if (const std::string& words = app.plots.campbell.critical; !words.empty()) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
     note_widget(app.widgets, "campbell/critical");

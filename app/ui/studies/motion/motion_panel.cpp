@@ -1,5 +1,6 @@
 // The motion's choices, its transport and its plots.
 #include "app/render/icons.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
@@ -26,94 +27,94 @@ constexpr std::array<std::string_view, 4> method_names{"Automatic", "BDF (implic
 constexpr std::array<std::string_view, 2> change_names{"Begins anew", "Goes on"};
 
 // Changes of choices begin a new run, after this frame.
-void anew(App& app) {
-  later(app, [&app] { restart_motion(app); });
+void anew(Session& session, Ui& ui) {
+  later(ui, [&session] { restart_motion(session); });
 }
 
-void start_choice(App& app) {
-  MotionState& motion = app.motion;
+void start_choice(Session& session, Ui& ui) {
+  MotionState& motion = session.motion;
   const bool kept = !motion.saved.coordinates.empty();
   const std::span<const std::string_view> offered(start_names.data(), kept ? 4 : 3);
   if (const auto chosen =
-          choice_row(app, "motion/start", "Start", offered, static_cast<std::size_t>(motion.start),
+          choice_row(ui, "motion/start", "Start", offered, static_cast<std::size_t>(motion.start),
                      "Where the motion begins: the drawn pose carried along by the drives, the drawn "
                      "pose at rest in the world, the steady state pushed, or a state kept before.")) {
     motion.start = static_cast<Start>(*chosen);
-    anew(app);
+    anew(session, ui);
   }
   if (motion.start != Start::equilibrium) return;
-  const std::vector<std::string> names = free_coordinates(app);
+  const std::vector<std::string> names = free_coordinates(session);
   if (names.empty()) return;
   const bool known = std::ranges::find(names, motion.kicked) != names.end();
   const std::string& kicked = known ? motion.kicked : names.front();
   if (const auto chosen =
-          name_choice_row(app, "motion/kicked", "Kick", names, kicked, "The coordinate that gets a speed.")) {
+          name_choice_row(ui, "motion/kicked", "Kick", names, kicked, "The coordinate that gets a speed.")) {
     motion.kicked = *chosen;
-    anew(app);
+    anew(session, ui);
   }
   bool angle = true;
-  for (const CoordinateSolution& c : app.answer.summary.coordinates)
+  for (const CoordinateSolution& c : session.answer.summary.coordinates)
     if (coordinate_label(c) == kicked) angle = c.angle;
-  if (plain_quantity_field(app, "motion/kick", "Speed", angle ? "rad/s" : "m/s", "The speed it gets.",
+  if (plain_quantity_field(session, ui, "motion/kick", "Speed", angle ? "rad/s" : "m/s", "The speed it gets.",
                            motion.kick))
-    anew(app);
+    anew(session, ui);
 }
 
-void integration_choices(App& app) {
-  MotionState& motion = app.motion;
-  if (plain_quantity_field(app, "motion/duration", "Duration", "s", "How long a motion is computed.",
+void integration_choices(Session& session, Ui& ui) {
+  MotionState& motion = session.motion;
+  if (plain_quantity_field(session, ui, "motion/duration", "Duration", "s", "How long a motion is computed.",
                            motion.duration, Least::above_zero))
-    anew(app);
-  if (const auto chosen = choice_row(
-          app, "motion/method", "Integrator", method_names, static_cast<std::size_t>(motion.method),
-          "Implicit steps where fast motions die out early, explicit ones for gentle "
-          "scenes; automatic judges by the linearised motion.")) {
+    anew(session, ui);
+  if (const auto chosen =
+          choice_row(ui, "motion/method", "Integrator", method_names, static_cast<std::size_t>(motion.method),
+                     "Implicit steps where fast motions die out early, explicit ones for gentle "
+                     "scenes; automatic judges by the linearised motion.")) {
     motion.method = static_cast<Integrator>(*chosen);
-    anew(app);
+    anew(session, ui);
   }
   double tolerance = motion.tolerance;
   if (plain_quantity_field(
-          app, "motion/tolerance", "Tolerance", "",
+          session, ui, "motion/tolerance", "Tolerance", "",
           "Of the error of a step, relative to a radian and the mechanism's reach: 1e-3 to 1e-14.", tolerance,
           Least::above_zero)) {
     motion.tolerance = std::clamp(tolerance, 1e-14, 1e-3);
-    anew(app);
+    anew(session, ui);
   }
   if (const auto chosen =
-          choice_row(app, "motion/on_change", "On a change", change_names, motion.go_on ? 1 : 0,
+          choice_row(ui, "motion/on_change", "On a change", change_names, motion.go_on ? 1 : 0,
                      "Whether a change of a number begins the motion anew or goes on from the "
                      "moment that is shown."))
     motion.go_on = *chosen == 1;
 }
 
 // A tick and its word; returns whether it was clicked.
-bool tick(App& app, const char* name, const char* text, bool on, const char* help) {
+bool tick(Ui& ui, const char* name, const char* text, bool on, const char* help) {
   ImGui::PushID(name);
   const bool clicked = ImGui::Checkbox(text, &on);
   ImGui::PopID();
-  note_widget(app.widgets, name);
+  note_widget(ui.widgets, name);
   help_on_hover(help);
   return clicked;
 }
 
-void run_choices(App& app) {
-  MotionState& motion = app.motion;
-  if (has_dampers(app.mechanism())) {
+void run_choices(Session& session, Ui& ui) {
+  MotionState& motion = session.motion;
+  if (has_dampers(session.mechanism())) {
     const std::array<const char*, 2> names{"motion/damped", "motion/undamped"}, labels{"Damped", "Undamped"};
     const std::array<const char*, 2> help{"The motion with the dampers.", "The motion with all dampers off."};
     for (std::size_t i = 0; i < 2; ++i) {
       // One of the two has to be shown.
       const bool last = motion.runs[i].wanted && !motion.runs[1 - i].wanted;
       ImGui::BeginDisabled(last);
-      if (tick(app, names[i], labels[i], motion.runs[i].wanted, help[i])) {
+      if (tick(ui, names[i], labels[i], motion.runs[i].wanted, help[i])) {
         motion.runs[i].wanted = !motion.runs[i].wanted;
-        anew(app);
+        anew(session, ui);
       }
       ImGui::EndDisabled();
       ImGui::SameLine();
     }
   }
-  if (tick(app, "motion/beside", "Beside", motion.beside,
+  if (tick(ui, "motion/beside", "Beside", motion.beside,
            "The motion in a view of its own beside the steady state; or else in the same, in amber."))
     motion.beside = !motion.beside;
 }
@@ -126,67 +127,76 @@ double greatest(const std::vector<double>& values) {
 }
 
 // Whether it has settled, or why it ended.
-void outcome(App& app) {
-  const UiColors& colors = colors_of(app);
-  for (const MotionRun& motion : app.motion.runs)
+void outcome(const Session& session, Ui& ui) {
+  const UiColors& colors = colors_of(ui);
+  for (const MotionRun& motion : session.motion.runs)
     if (motion.wanted && !motion.problem.empty()) paragraph(motion.problem, colors.bad);
-  if (!shown_motion(app)) return;
-  if (app.motion.settled) {
-    paragraph(app.motion.settled->message, app.motion.settled->time ? colors.good : colors.text);
-    note_widget(app.widgets, "motion/settled");
-  } else if (!converged(app) && !solving(app)) {
+  if (!shown_motion(session)) return;
+  if (session.motion.settled) {
+    paragraph(session.motion.settled->message, session.motion.settled->time ? colors.good : colors.text);
+    note_widget(ui.widgets, "motion/settled");
+  } else if (!converged(session) && !solving(session)) {
     paragraph("There is no steady state to settle in.", colors.dim);
   }
 }
 
 // What the run's numbers are worth and what they cost.
-void accuracy(App& app) {
-  const UiColors& colors = colors_of(app);
-  const NumberStyle& numbers = app.options.numbers;
-  const MotionRun* shown = shown_motion(app);
+void accuracy(const Session& session, Ui& ui) {
+  const UiColors& colors = colors_of(ui);
+  const NumberStyle& numbers = session.options.numbers;
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return;
   const Run& run = *shown->run;
-  heading(app, "Accuracy");
+  heading(ui, "Accuracy");
   const EnergyTracks& e = run.energy;
-  row(app, "Energy balance", "± " + magnitude_text(greatest(e.balance), numbers), "J",
+  row(ui, "Energy balance", "± " + magnitude_text(greatest(e.balance), numbers), "J",
       "Stored and dissipated energy less what the drives delivered: what the integrator has lost or made.");
-  row(app, "Largest energy", short_text(std::max(greatest(e.kinetic), greatest(e.delivered)), 2), "J",
+  row(ui, "Largest energy", short_text(std::max(greatest(e.kinetic), greatest(e.delivered)), 2), "J",
       "The largest kinetic or delivered energy, beside which the balance is to be seen.");
-  for (const MotionRun& motion : app.motion.runs)
+  for (const MotionRun& motion : session.motion.runs)
     if (motion.wanted && motion.run && !motion.run->damped && !motion.run->energy.jacobi.empty()) {
       const auto [least, most] = std::ranges::minmax(motion.run->energy.jacobi);
-      row(app, "Jacobi integral", "± " + magnitude_text(most - least, numbers), "J",
+      row(ui, "Jacobi integral", "± " + magnitude_text(most - least, numbers), "J",
           "How far T₂ + V - T₀ of the undamped motion has drifted; it is conserved.");
     }
   const RunStatistics& s = run.statistics;
   if (s.position_drift > 0)
-    row(app, "Loops open by", magnitude_text(s.position_drift, numbers), "",
-        "The worst equation of the loops over all samples: lengths in m, angles in rad, directions as numbers.");
+    row(ui, "Loops open by", magnitude_text(s.position_drift, numbers), "",
+        "The worst equation of the loops over all samples: lengths in m, angles in rad, directions as "
+        "numbers.");
   paragraph(run.method_reason, colors.dim);
   for (const std::string& note : run.notes)
     paragraph(note, colors.dim);
-  row(app, "Steps", std::to_string(s.steps), "");
-  if (numbers.run_times) row(app, "Run time", duration_text(s.run_time_s, numbers), "");
+  row(ui, "Steps", std::to_string(s.steps), "");
+  if (numbers.run_times) row(ui, "Run time", duration_text(s.run_time_s, numbers), "");
 }
 
 // "0.12 of 5 s", in the room beside the buttons.
-void progress_bar(App& app) {
-  const double whole = app.motion.duration, done = computed_motion(app).value_or(0);
+void progress_bar(const Session& session, Ui& ui) {
+  const double whole = session.motion.duration, done = computed_motion(session).value_or(0);
   const std::string words = short_text(done, 2) + " of " + short_text(whole, 4) + " s";
   ImGui::ProgressBar(static_cast<float>(std::clamp(done / whole, 0., 1.)),
                      {std::max(ImGui::GetContentRegionAvail().x, 1.f), 0}, words.c_str());
-  note_widget(app.widgets, "motion/progress");
+  note_widget(ui.widgets, "motion/progress");
   help_on_hover(("Computed so far: " + words + ".").c_str());
+}
+
+void run_settings(Session& session, Ui& ui) {
+  outcome(session, ui);
+  run_choices(session, ui);
+  start_choice(session, ui);
+  integration_choices(session, ui);
+  accuracy(session, ui);
 }
 
 void motion_choices(App& app) {
   const bool computing = computing_motion(app);
-  if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app);
+  if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app, app);
   if (computing) {
     ImGui::SameLine();
     if (text_button(app, "motion/stop", "Stop")) stop_motion(app);
     ImGui::SameLine();
-    progress_bar(app);
+    progress_bar(app, app);
   } else if (shown_motion(app)) {
     ImGui::SameLine();
     if (text_button(app, "motion/keep", "Keep state")) keep_motion_state(app);
@@ -195,20 +205,16 @@ void motion_choices(App& app) {
     if (text_button(app, "motion/export", "Export…")) show_movie_dialog(app);
     help_on_hover("Saves the run as MP4, GIF or numbered pictures.");
   }
-  outcome(app);
-  run_choices(app);
-  start_choice(app);
-  integration_choices(app);
-  accuracy(app);
+  run_settings(app, app);
 }
 
 // The combo above a plot.
-void quantity_choice(App& app, MotionPlot& plot, const std::vector<MotionQuantity>& all,
+void quantity_choice(Ui& ui, MotionPlot& plot, const std::vector<MotionQuantity>& all,
                      const std::string& name, float width) {
   const auto chosen = std::ranges::find(all, plot.quantity, &MotionQuantity::key);
-  ImGui::SetNextItemWidth(std::min(width, 220 * app.scale));
+  ImGui::SetNextItemWidth(std::min(width, 220 * ui.scale));
   ImGui::PushID(name.c_str());
-  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   const bool open = ImGui::BeginCombo("##quantity", chosen == all.end() ? "" : chosen->title.c_str(),
                                       ImGuiComboFlags_HeightLarge);
   ImGui::PopStyleColor();
@@ -222,23 +228,23 @@ void quantity_choice(App& app, MotionPlot& plot, const std::vector<MotionQuantit
         fit_plot(plot.view);
       }
       ImGui::PopID();
-      note_widget(app.widgets, name + "/" + each.key);
-      if (each.key == plot.quantity) mark_chosen(app.widgets);
+      note_widget(ui.widgets, name + "/" + each.key);
+      if (each.key == plot.quantity) mark_chosen(ui.widgets);
     }
     ImGui::EndCombo();
   } else {
-    note_widget(app.widgets, name);
+    note_widget(ui.widgets, name);
   }
   ImGui::PopID();
 }
 
 // Where the play head stands on the first curve that is shown.
-std::optional<PlotMarker> play_head(const App& app, const Plot& plot, const PlotLook& look) {
+std::optional<PlotMarker> play_head(const Session& session, const Plot& plot, const PlotLook& look) {
   const PlotCurve* shown = nullptr;
   for (const PlotCurve& curve : plot.curves)
     if (is_shown(curve, look) && curve.points.size() > 1) shown = &curve; // the last lies on top
   if (!shown) return std::nullopt;
-  const double time = std::clamp(app.playback.time, shown->points.front()[0], shown->points.back()[0]);
+  const double time = std::clamp(session.playback.time, shown->points.front()[0], shown->points.back()[0]);
   auto after = std::ranges::lower_bound(shown->points, time, {}, [](const auto& p) { return p[0]; });
   if (after == shown->points.begin()) ++after;
   const auto &b = *after, &a = *(after - 1);
@@ -298,43 +304,44 @@ void plots(App& app) {
 
 } // namespace
 
-void motion_transport(App& app, float width) {
+void motion_transport(Session& session, Ui& ui, float width) {
   const float right = ImGui::GetCursorPosX() + width, top = ImGui::GetCursorPosY();
-  const MotionRun* shown = shown_motion(app);
+  const MotionRun* shown = shown_motion(session);
   ImGui::BeginDisabled(!shown);
-  const bool playing = app.playback.playing;
-  const auto next = [&] { ImGui::SameLine(0, 2 * app.scale); };
+  const bool playing = session.playback.playing;
+  const auto next = [&] { ImGui::SameLine(0, 2 * ui.scale); };
   const double from = shown ? shown->run->time.front() : 0, last = shown ? shown->run->time.back() : 1;
-  if (icon_button(app, "motion/first", icon::step_backward, "Back to the beginning")) seek_motion(app, from);
+  if (icon_button(ui, "motion/first", icon::step_backward, "Back to the beginning"))
+    seek_motion(session, from);
   next();
-  if (icon_button(app, "motion/back", icon::chevron_left, "One sample back")) step_motion(app, -1);
+  if (icon_button(ui, "motion/back", icon::chevron_left, "One sample back")) step_motion(session, -1);
   next();
-  if (icon_button(app, "motion/play", playing ? icon::pause : icon::play,
+  if (icon_button(ui, "motion/play", playing ? icon::pause : icon::play,
                   playing ? "Pause (Space)" : "Play (Space)", playing))
-    play(app, !playing);
+    play(session, !playing);
   next();
-  if (icon_button(app, "motion/forward", icon::chevron_right, "One sample on")) step_motion(app, 1);
+  if (icon_button(ui, "motion/forward", icon::chevron_right, "One sample on")) step_motion(session, 1);
   next();
-  if (icon_button(app, "motion/loop", icon::refresh, "Begin again at the end", app.motion.loop))
-    app.motion.loop = !app.motion.loop;
+  if (icon_button(ui, "motion/loop", icon::refresh, "Begin again at the end", session.motion.loop))
+    session.motion.loop = !session.motion.loop;
   ImGui::SameLine();
-  factor_combo(app, "motion/factor", 58 * app.scale);
+  factor_combo(session, ui, "motion/factor", 58 * ui.scale);
   ImGui::SameLine();
-  double time = app.playback.time;
-  const double end = std::max(last, from + app.motion.duration);
+  double time = session.playback.time;
+  const double end = std::max(last, from + session.motion.duration);
   const std::string text = short_text(std::round(time * 1000) / 1000, 6) + " s";
-  const float room = ImGui::CalcTextSize("0000.000 s").x + 8 * app.scale;
+  const float room = ImGui::CalcTextSize("0000.000 s").x + 8 * ui.scale;
   ImGui::SetNextItemWidth(std::max(right - ImGui::GetCursorPosX() - room, 40.f));
-  ImGui::SetCursorPosY(top + app.scale);
+  ImGui::SetCursorPosY(top + ui.scale);
   const bool dragged = ImGui::SliderScalar("##scrub", ImGuiDataType_Double, &time, &from, &end, "");
-  note_widget(app.widgets, "motion/scrub", KeyUse::slide);
-  if (nudge_value(app, "motion/scrub", time, from, end) || dragged) {
-    app.playback.playing = false;
-    seek_motion(app, time);
+  note_widget(ui.widgets, "motion/scrub", KeyUse::slide);
+  if (nudge_value(ui, "motion/scrub", time, from, end) || dragged) {
+    session.playback.playing = false;
+    seek_motion(session, time);
   }
   ImGui::SameLine();
-  ImGui::SetCursorPosY(top + app.scale + digits_drop(app)); // words begin lower beside frames as it is
-  ImGui::PushFont(app.fonts.digits);
+  ImGui::SetCursorPosY(top + ui.scale + digits_drop(ui)); // words begin lower beside frames as it is
+  ImGui::PushFont(ui.fonts.digits);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopFont();
   ImGui::EndDisabled();

@@ -113,9 +113,9 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
 }
 
 // What the quantity is in the steady state, in SI units.
-std::optional<double> steady_value(const App& app, const std::string& key) {
-  if (!converged(app)) return std::nullopt;
-  const Solution& s = app.answer.solution;
+std::optional<double> steady_value(const Session& session, const std::string& key) {
+  if (!converged(session)) return std::nullopt;
+  const Solution& s = session.answer.solution;
   if (key.starts_with("rate ")) return 0;
   for (const CoordinateSolution& c : s.coordinates)
     if (key == "value " + coordinate_label(c) && !c.driven) return c.value;
@@ -163,13 +163,13 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
   return out;
 }
 
-Plot motion_plot(const App& app, const std::string& quantity) {
+Plot motion_plot(const Session& session, const std::string& quantity) {
   Plot plot;
   plot.x = {.label = "time", .unit = "s", .room = 0};
   const bool both =
-      std::ranges::all_of(app.motion.runs, [](const MotionRun& r) { return r.wanted && r.run; });
-  const bool dampers = has_dampers(app.mechanism());
-  for (const MotionRun& motion : app.motion.runs) {
+      std::ranges::all_of(session.motion.runs, [](const MotionRun& r) { return r.wanted && r.run; });
+  const bool dampers = has_dampers(session.mechanism());
+  for (const MotionRun& motion : session.motion.runs) {
     if (!motion.wanted || !motion.run) continue;
     const Run& run = *motion.run;
     const ShownRun shown = shown_quantity(run, quantity);
@@ -196,10 +196,10 @@ Plot motion_plot(const App& app, const std::string& quantity) {
         if (std::isfinite(values[i])) curve.points.push_back({run.time[i], values[i]}); // where it is defined
       plot.curves.push_back(std::move(curve));
     }
-    if (const auto steady = steady_value(app, quantity); steady && plot.references.empty())
+    if (const auto steady = steady_value(session, quantity); steady && plot.references.empty())
       plot.references.push_back({.axis = 1, .at = *steady, .label = "steady", .color = plot_color::blue});
   }
-  show_axis(plot, 1, plot.y.unit, app.units);
+  show_axis(plot, 1, plot.y.unit, session.units);
   // The undamped run lies below the damped one.
   std::ranges::stable_sort(plot.curves, {}, [](const PlotCurve& c) { return c.width; });
   return plot;

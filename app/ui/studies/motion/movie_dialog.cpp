@@ -1,4 +1,5 @@
 // What a film of the run or of a mode is to be, and how far it is.
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels.hpp"
@@ -32,11 +33,15 @@ struct Ending {
 constexpr std::array endings{Ending{"movie/mp4", "MP4", ".mp4"}, Ending{"movie/gif", "GIF", ".gif"},
                              Ending{"movie/png", "Numbered PNG", ".png"}};
 
-MovieRequest request_of(const App& app) {
-  const MovieState& movie = app.movie;
-  MovieRequest request{movie.of,     typed_path(app), movie.width, movie.height, movie.rate,
-                       movie.factor, movie.from,      movie.to,    movie.swings};
-  if (const MotionRun* shown = shown_motion(app); shown && movie.whole) {
+MovieRequest request_of(const Session& session, const FileDialogState& file_dialogs,
+                        const MovieState& movie) {
+
+  MovieRequest request{movie.of,    typed_path(file_dialogs),
+                       movie.width, movie.height,
+                       movie.rate,  movie.factor,
+                       movie.from,  movie.to,
+                       movie.swings};
+  if (const MotionRun* shown = shown_motion(session); shown && movie.whole) {
     request.from = shown->run->time.front();
     request.to = shown->run->time.back();
   }
@@ -50,20 +55,20 @@ std::filesystem::path first_file(const std::filesystem::path& file, std::size_t 
 
 // Buttons that change the name's ending. Those that need ffmpeg are there without it, too, as it can be
 // installed.
-void ending_buttons(App& app) {
-  const std::filesystem::path file = typed_path(app);
+void ending_buttons(Ui& ui, FileDialogState& file_dialogs) {
+  const std::filesystem::path file = typed_path(file_dialogs);
   const bool able = ffmpeg_available();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("As");
-  ImGui::SameLine(fields_column * app.scale);
+  ImGui::SameLine(fields_column * ui.scale);
   for (const Ending& each : endings) {
     const bool now = movie_kind(file) == movie_kind("film" + std::string(each.ending));
     const bool possible = able || movie_kind("film" + std::string(each.ending)) == MovieKind::frames;
     ImGui::BeginDisabled(!possible);
-    if (text_button(app, each.name, each.text, now)) {
-      std::filesystem::path typed = app.file_dialogs.path;
+    if (text_button(ui, each.name, each.text, now)) {
+      std::filesystem::path typed = file_dialogs.path;
       if (movie_kind(typed)) typed.replace_extension();
-      app.file_dialogs.path = typed.string() + each.ending;
+      file_dialogs.path = typed.string() + each.ending;
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
@@ -72,92 +77,93 @@ void ending_buttons(App& app) {
   if (!able)
     paragraph("MP4 and GIF need ffmpeg, which is not installed (package ffmpeg). Numbered PNG pictures do "
               "without it.",
-              colors_of(app).dim);
+              colors_of(ui).dim);
 }
 
-void swing_fields(App& app) {
-  double swings = app.movie.swings;
-  plain_quantity_field(app, "movie/swings", "Swings", "",
+void swing_fields(Session& session, Ui& ui, MovieState& movie) {
+  double swings = movie.swings;
+  plain_quantity_field(session, ui, "movie/swings", "Swings", "",
                        "How often it swings; the film's end goes on with its beginning.", swings,
                        Least::above_zero);
   constexpr double most = 10000;
-  app.movie.swings = static_cast<int>(std::round(std::clamp(swings, 1., most)));
+  movie.swings = static_cast<int>(std::round(std::clamp(swings, 1., most)));
 }
 
-void time_fields(App& app, const Run& run) {
-  MovieState& movie = app.movie;
-  plain_quantity_field(app, "movie/factor", "Speed factor", "",
+void time_fields(Session& session, Ui& ui, MovieState& movie, const Run& run) {
+
+  plain_quantity_field(session, ui, "movie/factor", "Speed factor", "",
                        "Seconds of the run that a second of the film shows: below 1 is slow motion.",
                        movie.factor, Least::above_zero);
-  if (check_row(app, "movie/whole", "Whole run", movie.whole,
+  if (check_row(ui, "movie/whole", "Whole run", movie.whole,
                 "From the beginning to the end, or a part of it.")) {
     movie.whole = !movie.whole;
     movie.from = run.time.front();
     movie.to = run.time.back();
   }
   if (movie.whole) return;
-  plain_quantity_field(app, "movie/from", "From", "s", "The first moment shown.", movie.from);
-  plain_quantity_field(app, "movie/to", "To", "s", "The last moment shown.", movie.to);
+  plain_quantity_field(session, ui, "movie/from", "From", "s", "The first moment shown.", movie.from);
+  plain_quantity_field(session, ui, "movie/to", "To", "s", "The last moment shown.", movie.to);
 }
 
 // Whether what is to be filmed is still shown, and whole.
-bool shown(const App& app) {
-  return app.movie.of == Filmed::mode ? moving_mode(app) != nullptr : shown_motion(app) != nullptr;
+bool shown(const Session& session, const MovieState& movie) {
+  return movie.of == Filmed::mode ? moving_mode(session) != nullptr : shown_motion(session) != nullptr;
 }
-bool complete(const App& app) {
-  return app.movie.of == Filmed::mode ? modes_are_current(app) : shown_motion(app)->finished;
+bool complete(const Session& session, const MovieState& movie) {
+  return movie.of == Filmed::mode ? modes_are_current(session) : shown_motion(session)->finished;
 }
 
 // Why it cannot be made, or "".
-std::string problem_of(const App& app, const MovieRequest& request, std::size_t frames) {
-  if (!complete(app))
-    return app.movie.of == Filmed::mode ? "The modes are of the state before the last changes."
-                                        : "The run is still being computed.";
-  if (request.of == Filmed::run && !(request.from < request.to) && !app.movie.whole)
+std::string problem_of(const Session& session, const MovieState& movie, const MovieRequest& request,
+                       std::size_t frames) {
+  if (!complete(session, movie))
+    return movie.of == Filmed::mode ? "The modes are of the state before the last changes."
+                                    : "The run is still being computed.";
+  if (request.of == Filmed::run && !(request.from < request.to) && !movie.whole)
     return "It ends before it begins.";
   if (std::min(request.width, request.height) < smallest_movie) return "At least 16 pixels a side.";
   return movie_problem(request.file, {request.width, request.height, request.rate, frames});
 }
 
-void progress(App& app, const MovieState::Progress& at) {
+void progress(Ui& ui, MovieState& movie, const MovieState::Progress& at) {
   const std::string text =
       at.drawn < at.frames
           ? "Frame " + std::to_string(at.drawn) + " of " + std::to_string(at.frames)
           : "All " + std::to_string(at.frames) + " frames are drawn; ffmpeg is finishing the file";
-  paragraph(text, colors_of(app).text);
-  const float s = app.scale, width = ImGui::GetContentRegionAvail().x, height = 6 * s;
+  paragraph(text, colors_of(ui).text);
+  const float s = ui.scale, width = ImGui::GetContentRegionAvail().x, height = 6 * s;
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float share = static_cast<float>(at.drawn) / static_cast<float>(std::max<std::size_t>(at.frames, 1));
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors_of(app).raised), height / 2);
+  list.AddRectFilled(from, {from.x + width, from.y + height}, packed(colors_of(ui).raised), height / 2);
   list.AddRectFilled(from, {from.x + std::max(width * share, height), from.y + height},
-                     packed(colors_of(app).accent), height / 2);
+                     packed(colors_of(ui).accent), height / 2);
   ImGui::Dummy({width, height});
-  note_widget(app.widgets, "movie/progress");
+  note_widget(ui.widgets, "movie/progress");
   ImGui::Dummy({0, 2 * s});
-  if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) app.movie.cancel = true;
+  if (text_button(ui, "movie/cancel", "Cancel") || escape_pressed()) movie.cancel = true;
 }
 
 void choices(App& app) {
   MovieState& movie = app.movie;
-  bool accepted = path_field(app, "movie", "Name");
-  ending_buttons(app);
+  bool accepted = path_field(app, app.file_dialogs, "movie", "Name");
+  ending_buttons(app, app.file_dialogs);
   size_fields(app, "movie", movie_sizes, fields_column, movie.width, movie.height);
-  plain_quantity_field(app, "movie/rate", "Frames a second", "",
+  plain_quantity_field(app, app, "movie/rate", "Frames a second", "",
                        "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
                        Least::above_zero);
   if (movie.of == Filmed::mode)
-    swing_fields(app);
+    swing_fields(app, app, app.movie);
   else
-    time_fields(app, *shown_motion(app)->run);
+    time_fields(app, app, app.movie, *shown_motion(app)->run);
 
-  const MovieRequest request = request_of(app);
+  const MovieRequest request = request_of(app, app.file_dialogs, app.movie);
   const std::size_t frames = requested_moments(app, request).size();
-  const std::string problem = problem_of(app, request, frames);
+  const std::string problem = problem_of(app, app.movie, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
   ImGui::Dummy({0, 2 * app.scale});
   if (!problem.empty())
-    paragraph(problem, complete(app) ? colors_of(app).bad : colors_of(app).dim);
+    paragraph(problem, complete(app, app.movie) ? colors_of(app).bad : colors_of(app).dim);
   else
     paragraph(std::to_string(frames) + " frames, " +
                   short_text(static_cast<double>(frames) / request.rate, 4) + " s long" +
@@ -166,12 +172,12 @@ void choices(App& app) {
                                                   short_text(request.to) + " s of the run"),
               colors_of(app).dim);
   if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
-  const bool replaces = asks_to_replace(app, first);
+  const bool replaces = asks_to_replace(app, app.file_dialogs, first);
   ImGui::Dummy({0, 2 * app.scale});
   ImGui::BeginDisabled(!problem.empty());
   accepted = text_button(app, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && problem.empty() && may_replace(app, first)) {
+  if (accepted && problem.empty() && may_replace(app, app.file_dialogs, first)) {
     play(app, false); // all the time there is goes into the film
     movie.request = request;
     movie.problem.clear();
@@ -182,10 +188,10 @@ void choices(App& app) {
 
 void show_dialog_of(App& app, Filmed of) {
   app.movie.of = of;
-  if (!shown(app)) return;
+  if (!shown(app, app.movie)) return;
   app.dialog.wanted = Dialog::export_run;
   std::error_code ignored;
-  show_folder(app, std::filesystem::current_path(ignored));
+  show_folder(app.file_dialogs, std::filesystem::current_path(ignored));
   app.file_dialogs.replacing.clear();
   app.movie.problem.clear();
   app.movie.done = false;
@@ -209,12 +215,12 @@ void show_mode_movie_dialog(App& app) {
 
 void movie_dialog(App& app) {
   MovieState& movie = app.movie;
-  if (!begin_dialog(app, Dialog::export_run, movie.of == Filmed::mode ? "Export the mode" : "Export the run",
-                    480))
+  if (!begin_dialog(app, app.dialog, Dialog::export_run,
+                    movie.of == Filmed::mode ? "Export the mode" : "Export the run", 480))
     return;
   if (movie.request || movie.progress)
-    progress(app, movie.progress.value_or(MovieState::Progress{}));
-  else if (movie.done || !shown(app)) // nothing is: another document
+    progress(app, app.movie, movie.progress.value_or(MovieState::Progress{}));
+  else if (movie.done || !shown(app, app.movie)) // nothing is: another document
     close_dialog();
   else
     choices(app);

@@ -1,5 +1,6 @@
 #include "app/ui/studies/motion/movie_export.hpp"
 
+#include "app/ui/app.hpp"
 #include "app/ui/studies/modes/mode_movie.hpp"
 #include "app/ui/studies/motion/run_movie.hpp"
 
@@ -21,19 +22,19 @@ std::string saved_words(const std::filesystem::path& file, std::size_t frames) {
 }
 
 // Null where none is shown any more.
-std::unique_ptr<FilmedScene> filmed_scene(const App& app, Filmed of) {
+std::unique_ptr<FilmedScene> filmed_scene(const Session& session, Filmed of) {
   const std::shared_ptr<const Mechanism>& mechanism =
-      app.answer.ticket ? app.answer.mechanism : app.document.shared();
+      session.answer.ticket ? session.answer.mechanism : session.document.shared();
   if (of == Filmed::mode) {
-    const VibrationMode* mode = moving_mode(app);
+    const VibrationMode* mode = moving_mode(session);
     if (!mode) return nullptr;
-    return std::make_unique<ModeScene>(mechanism, app.answer.solution, *mode, app.study.modes.amplitude,
-                                       steady_time(app));
+    return std::make_unique<ModeScene>(mechanism, session.answer.solution, *mode,
+                                       session.study.modes.amplitude, steady_time(session));
   }
-  const MotionRun* shown = shown_motion(app);
+  const MotionRun* shown = shown_motion(session);
   if (!shown) return nullptr;
   std::optional<Solution> steady;
-  if (converged(app)) steady = app.answer.solution;
+  if (converged(session)) steady = session.answer.solution;
   return std::make_unique<RunScene>(mechanism, shown->run, steady);
 }
 

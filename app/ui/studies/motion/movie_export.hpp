@@ -2,10 +2,13 @@
 // goes on. Needs a current OpenGL context for its whole life.
 #pragma once
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/studies/film.hpp"
+#include "app/ui/studies/motion/movie_state.hpp"
 
 namespace flyball {
+
+struct App;
 
 // The moments that a film of the request shows: of the run (s), or phases of the mode (rad); none where none
 // is shown.

@@ -132,17 +132,18 @@ std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
 }
 
 // What was found of the band, also while it is found anew for a curve that moves.
-std::shared_ptr<const void> shown_band(const App& app) {
-  const auto& band = app.study.band.computed;
-  const bool fits = band.found && (band.found->of.curve == app.study.response.curve.found || band.running());
-  return fits && app.study.band.wanted ? band.found : nullptr;
+std::shared_ptr<const void> shown_band(const Session& session) {
+  const auto& band = session.study.band.computed;
+  const bool fits =
+      band.found && (band.found->of.curve == session.study.response.curve.found || band.running());
+  return fits && session.study.band.wanted ? band.found : nullptr;
 }
 
 // In SI units. Where samples leave the branch the band is of the others alone, and looks so.
-void add_band(const App& app, Plot& plot) {
-  const std::optional<std::size_t> output = band_output(app);
-  if (!output || !shown_band(app)) return;
-  const FoundBand& found = app.study.band.computed.found->result;
+void add_band(const Session& session, Plot& plot) {
+  const std::optional<std::size_t> output = band_output(session);
+  if (!output || !shown_band(session)) return;
+  const FoundBand& found = session.study.band.computed.found->result;
   for (const BandStretch& stretch : found.stretches) {
     bool joined = false;
     for (std::size_t i = stretch.first; i + 1 < stretch.first + stretch.count; ++i) {
@@ -169,10 +170,10 @@ void add_band(const App& app, Plot& plot) {
 }
 
 // Where friction lets coordinates and measures stand; in SI units.
-void add_friction(const App& app, Plot& plot) {
-  const auto ribbon = shown_ribbon(app);
+void add_friction(const Session& session, Plot& plot) {
+  const auto ribbon = shown_ribbon(session);
   if (!ribbon) return;
-  const std::string& key = app.study.response.choice.quantity;
+  const std::string& key = session.study.response.choice.quantity;
   const std::size_t blank = key.find(' ');
   if (!key.starts_with("value ") && !key.starts_with("measure ")) return;
   const std::span<const RibbonPoint> all = ribbon->result.points;
@@ -209,9 +210,9 @@ Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& qu
   return plot;
 }
 
-void draw_response(App& app) {
-  const ResponseState& state = app.study.response;
-  ResponseView& drawn = app.plots.response;
+void draw_response(const Session& session, ResponseView& drawn) {
+  const ResponseState& state = session.study.response;
+
   ResponseChoice choice = state.choice;
   choice.all = false; // more branches are looked at as before
   if (drawn.fitted != choice) fit_plot(drawn.view);
@@ -222,12 +223,13 @@ void draw_response(App& app) {
   // Until a curve with reactions is there the one before stays.
   const bool told = curve && (curve->of.reactions || !needs_reactions(state.choice.quantity));
   const bool pulled = drawn.view.drag == PlotView::Drag::pull;
-  const ResponseView::Of of{curve,     design, shown_band(app), shown_ribbon(app), state.choice.quantity,
-                            app.units, pulled};
+  const ResponseView::Of of{
+      curve,         design, shown_band(session), shown_ribbon(session), state.choice.quantity,
+      session.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
     const bool same = drawn.plot.y.label == quantity.title;
-    Plot plot = response_plot(*curve, quantity, app.units, drawn.pieces);
+    Plot plot = response_plot(*curve, quantity, session.units, drawn.pieces);
     if (design && "value " + design->of.coordinate == state.choice.quantity &&
         design->of.of.address == curve->of.address) {
       const double wanted = design->of.value * quantity.factor;
@@ -238,39 +240,39 @@ void draw_response(App& app) {
                               .shape = PlotShape::diamond,
                               .color = plot_color::green});
     }
-    add_band(app, plot);
-    add_friction(app, plot);
-    show_axis(plot, 0, plot.x.unit, app.units);
-    show_axis(plot, 1, quantity.unit, app.units);
+    add_band(session, plot);
+    add_friction(session, plot);
+    show_axis(plot, 0, plot.x.unit, session.units);
+    show_axis(plot, 1, quantity.unit, session.units);
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.
     PlotRange range = axis_range(plot, {}, 1);
     // While its point is pulled the axis stays, or the place under the hand would run away.
     if (before && same && pulled)
       range = *before;
-    else if (before && same && drawn.gesture == app.gesture)
+    else if (before && same && drawn.gesture == session.gesture)
       range = {std::min(range[0], (*before)[0]), std::max(range[1], (*before)[1])};
     plot.y.range = range;
     replace_plot(drawn.plot, std::move(plot));
-    drawn.gesture = app.gesture;
+    drawn.gesture = session.gesture;
     drawn.of = of;
   }
   drawn.plot.marker.reset();
-  if (!curve || !converged(app)) return;
-  const std::optional<ResponsePoint> now = present_point(app, curve->of.address);
+  if (!curve || !converged(session)) return;
+  const std::optional<ResponsePoint> now = present_point(session, curve->of.address);
   if (!now) return;
   const auto y = quantity_mark(*now, state.choice.quantity);
   if (!y) return;
   drawn.plot.marker =
       PlotMarker{now->parameter * drawn.plot.x.factor, *y * quantity.factor * drawn.plot.y.factor, ""};
-  if (pulled_goal(app).empty()) return;
-  drawn.plot.marker->pull = pull_words(app);
-  if (const GoalAnswer* answer = sought(app); pulled && answer && !answer->reached)
+  if (pulled_goal(session).empty()) return;
+  drawn.plot.marker->pull = pull_words(session);
+  if (const GoalAnswer* answer = sought(session); pulled && answer && !answer->reached)
     drawn.plot.marker->label = "the nearest";
 }
 
-void go_to_hit(App& app, const PlotHit& hit, bool dragged) {
-  const ResponseState& state = app.study.response;
-  const ResponseView& drawn = app.plots.response;
+void go_to_hit(Session& session, const ResponseView& drawn, const PlotHit& hit, bool dragged) {
+  const ResponseState& state = session.study.response;
+
   if (hit.curve >= drawn.pieces.size()) return;
   const ResponsePiece& piece = drawn.pieces[hit.curve];
   const double span = std::abs(state.choice.to - state.choice.from);
@@ -278,7 +280,7 @@ void go_to_hit(App& app, const PlotHit& hit, bool dragged) {
   // A logarithmic range needs more digits at its lower end.
   if (const double x = hit.x / drawn.plot.x.factor; state.choice.logarithmic && x > 0)
     step = std::pow(10, std::floor(std::log10(x)) - 4);
-  go_to_response(app, piece.line, static_cast<double>(piece.first) + hit.index, step, dragged);
+  go_to_response(session, piece.line, static_cast<double>(piece.first) + hit.index, step, dragged);
 }
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 #include "app/plot/spread_plot.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -27,184 +28,185 @@ const char* width_help(Distribution distribution) {
   return distribution == Distribution::normal ? "Its standard deviation." : "Half of its whole width.";
 }
 
-void distribution_choice(App& app, const std::string& name, ChosenTolerance& chosen, float width) {
+void distribution_choice(Ui& ui, const std::string& name, ChosenTolerance& chosen, float width) {
   ImGui::SetNextItemWidth(width);
-  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(app).raised);
+  ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   const bool open = ImGui::BeginCombo(("##" + name).c_str(), std::string(word(chosen.distribution)).c_str());
   ImGui::PopStyleColor();
   if (!open) {
-    note_widget(app.widgets, name);
+    note_widget(ui.widgets, name);
     help_on_hover("How the number is distributed about its value.");
     return;
   }
   for (const Distribution each : distributions) {
     const std::string text(word(each));
     if (ImGui::Selectable(text.c_str(), each == chosen.distribution)) chosen.distribution = each;
-    note_widget(app.widgets, name + "/" + text);
-    if (each == chosen.distribution) mark_chosen(app.widgets);
+    note_widget(ui.widgets, name + "/" + text);
+    if (each == chosen.distribution) mark_chosen(ui.widgets);
   }
   ImGui::EndCombo();
 }
 
 // "speed of spin   normal   1 %   in rad/s   x".
-void tolerance_row(App& app, std::size_t i) {
-  ChosenTolerance& chosen = app.study.spread.choice.tolerances[i];
-  const float s = app.scale, gap = 5 * s, start = ImGui::GetCursorPosX();
+void tolerance_row(Session& session, Ui& ui, std::size_t i) {
+  ChosenTolerance& chosen = session.study.spread.choice.tolerances[i];
+  const float s = ui.scale, gap = 5 * s, start = ImGui::GetCursorPosX();
   const std::string name = "spread/" + chosen.address;
-  const std::string unit = parameter_unit(app.mechanism(), chosen.address),
-                    shown = shown_unit(unit, app.units).text;
+  const std::string unit = parameter_unit(session.mechanism(), chosen.address),
+                    shown = shown_unit(unit, session.units).text;
   ImGui::AlignTextToFramePadding();
   clipped_text(parameter_phrase(chosen.address), 112 * s);
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + 116 * s);
-  distribution_choice(app, name + "/distribution", chosen, 92 * s);
+  distribution_choice(ui, name + "/distribution", chosen, 92 * s);
   ImGui::SameLine(0, gap);
-  quantity_field(app,
+  quantity_field(session, ui,
                  {.name = name + "/width",
                   .value = chosen.width,
                   .unit = chosen.percent ? "%" : unit,
                   .help = width_help(chosen.distribution),
                   .least = Least::above_zero,
                   .set =
-                      [&app, address = chosen.address](double typed) {
-                        for (ChosenTolerance& each : app.study.spread.choice.tolerances)
+                      [&session, address = chosen.address](double typed) {
+                        for (ChosenTolerance& each : session.study.spread.choice.tolerances)
                           if (each.address == address) each.width = typed;
                       },
                   .at_once = true},
                  76 * s);
   ImGui::SameLine(0, gap);
   const std::string other = chosen.percent ? (shown.empty() ? "plain" : "in " + shown) : "in %";
-  if (text_button(app, name + "/unit", other.c_str())) tell_in_percent(app, i, !chosen.percent);
+  if (text_button(ui, name + "/unit", other.c_str())) tell_in_percent(session, i, !chosen.percent);
   help_on_hover("Tells the width so; it stays what it is.");
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + (spread_choices_width - 34) * s);
-  if (margin_button(app, name + "/remove", icon::close, "No tolerance."))
-    later(app, [&app, address = chosen.address] {
-      std::erase_if(app.study.spread.choice.tolerances,
+  if (margin_button(ui, name + "/remove", icon::close, "No tolerance."))
+    later(ui, [&session, address = chosen.address] {
+      std::erase_if(session.study.spread.choice.tolerances,
                     [&](const ChosenTolerance& each) { return each.address == address; });
     });
-  if (chosen.percent && get_parameter(app.mechanism(), chosen.address) == 0)
-    paragraph("It is zero, of which a part is nothing.", colors_of(app).warn);
+  if (chosen.percent && get_parameter(session.mechanism(), chosen.address) == 0)
+    paragraph("It is zero, of which a part is nothing.", colors_of(ui).warn);
 }
 
-void another_tolerance(App& app) {
-  std::vector<std::string> phrases, addresses = numbers_without_tolerance(app);
+void another_tolerance(Session& session, Ui& ui) {
+  std::vector<std::string> phrases, addresses = numbers_without_tolerance(session);
   std::set<std::string> taken;
   for (const std::string& address : addresses) {
     // Numbers that would be called the same go by their address.
     std::string phrase = parameter_phrase(address);
     phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
   }
-  if (const auto other = name_choice_row(app, "spread/add", "Add", phrases, "another number…",
+  if (const auto other = name_choice_row(ui, "spread/add", "Add", phrases, "another number…",
                                          "A number that is to have a tolerance, too.")) {
     const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin());
-    later(app, [&app, address = addresses[i]] { add_tolerance(app, address); });
+    later(ui, [&session, address = addresses[i]] { add_tolerance(session, address); });
   }
 }
 
-void output_choice(App& app) {
-  const auto& found = app.study.spread.samples.found;
+void output_choice(Session& session, Ui& ui) {
+  const auto& found = session.study.spread.samples.found;
   if (!found) return;
   std::vector<std::string> names;
   for (const SpreadOutput& output : found->result.outputs)
     names.push_back(output.name);
-  if (const auto other = name_choice_row(app, "spread/output", "Show", names, app.study.spread.output,
+  if (const auto other = name_choice_row(ui, "spread/output", "Show", names, session.study.spread.output,
                                          "The coordinate or measure whose samples are shown."))
-    app.study.spread.output = *other;
+    session.study.spread.output = *other;
 }
 
-void samples_field(App& app) {
-  const float width = row_label(app, "Samples", "How many steady states are solved.");
-  quantity_field(app,
+void samples_field(Session& session, Ui& ui) {
+  const float width = row_label(ui, "Samples", "How many steady states are solved.");
+  quantity_field(session, ui,
                  {.name = "spread/samples",
-                  .value = static_cast<double>(app.study.spread.choice.samples),
+                  .value = static_cast<double>(session.study.spread.choice.samples),
                   .unit = "",
                   .help = "How many steady states are solved. What is told by them is as exact as one over "
                           "the root of their number.",
                   .least = Least::above_zero,
                   .set =
-                      [&app](double typed) {
-                        app.study.spread.choice.samples =
+                      [&session](double typed) {
+                        session.study.spread.choice.samples =
                             static_cast<std::size_t>(std::clamp(std::round(typed), 2., most_samples));
                       },
                   .at_once = true},
                  width);
 }
 
-void spread_progress(App& app) {
-  SpreadState& state = app.study.spread;
-  const UiColors& colors = colors_of(app);
+void spread_progress(Session& session, Ui& ui) {
+  SpreadState& state = session.study.spread;
+  const UiColors& colors = colors_of(ui);
   const bool long_wait = state.samples.running() && (state.samples.seconds() > 0.25 || !state.samples.found);
   if (long_wait) {
-    if (text_button(app, "spread/cancel", "Cancel")) state.samples.stop();
+    if (text_button(ui, "spread/cancel", "Cancel")) state.samples.stop();
     ImGui::SameLine();
-    task_bar(app, "spread/progress", state.samples.progress(), state.samples.seconds(),
-             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+    task_bar(ui, "spread/progress", state.samples.progress(), state.samples.seconds(),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
     return;
   }
   if (!state.samples.problem.empty()) paragraph(state.samples.problem, colors.bad);
-  if (!app.mistakes.empty())
+  if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
-  else if (!converged(app) && !solving(app))
+  else if (!converged(session) && !solving(session))
     paragraph("There is no steady state that could scatter.", colors.warn);
-  else if (chosen_tolerances(app).empty())
+  else if (chosen_tolerances(session).empty())
     paragraph("No number has a tolerance.", colors.dim);
   const bool stale = state.stale && !state.samples.quick() && !state.samples.running();
   if (stale && state.samples.found) paragraph("Made before the last changes.", colors.warn);
   if (stale || !state.samples.problem.empty())
-    if (text_button(app, "spread/again", "Make again", true)) sample_spread(app);
+    if (text_button(ui, "spread/again", "Make again", true)) sample_spread(session);
 }
 
-void spread_choices(App& app) {
-  output_choice(app);
-  samples_field(app);
-  heading(app, "Tolerances");
+void spread_choices(Session& session, Ui& ui) {
+  output_choice(session, ui);
+  samples_field(session, ui);
+  heading(ui, "Tolerances");
   // A number may be gone since the session was updated, by an undo in this frame.
-  for (std::size_t i = 0; i < app.study.spread.choice.tolerances.size(); ++i)
-    if (has_number(app.mechanism(), app.study.spread.choice.tolerances[i].address)) tolerance_row(app, i);
-  another_tolerance(app);
-  spread_progress(app);
-  if (!app.study.spread.samples.found) return;
-  if (text_button(app, "spread/copy", "Copy the samples")) {
-    const auto& found = *app.study.spread.samples.found;
+  for (std::size_t i = 0; i < session.study.spread.choice.tolerances.size(); ++i)
+    if (has_number(session.mechanism(), session.study.spread.choice.tolerances[i].address))
+      tolerance_row(session, ui, i);
+  another_tolerance(session, ui);
+  spread_progress(session, ui);
+  if (!session.study.spread.samples.found) return;
+  if (text_button(ui, "spread/copy", "Copy the samples")) {
+    const auto& found = *session.study.spread.samples.found;
     ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
-    app.notice = "The samples are on the clipboard, as CSV.";
+    session.notice = "The samples are on the clipboard, as CSV.";
   }
   ImGui::SameLine();
-  if (text_button(app, "spread/band", "Band on the response"))
-    later(app, [&app] {
-      app.study.band.wanted = true;
-      open_study(app, StudyKind::response);
+  if (text_button(ui, "spread/band", "Band on the response"))
+    later(ui, [&session] {
+      session.study.band.wanted = true;
+      open_study(session, StudyKind::response);
     });
   help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
 }
 
 // With as many digits as its standard error leaves.
-void estimated_row(App& app, const char* label, double value, double error, const ShownUnit& unit,
-                   const char* help) {
-  const NumberStyle& numbers = app.options.numbers;
-  row(app, label,
+void estimated_row(const Session& session, const Ui& ui, const char* label, double value, double error,
+                   const ShownUnit& unit, const char* help) {
+  const NumberStyle& numbers = session.options.numbers;
+  row(ui, label,
       value_text(value * unit.factor, error * unit.factor, numbers) + " ± " +
           magnitude_text(error * unit.factor, numbers),
       unit.text.c_str(), help);
 }
 
-void statistics_rows(App& app, const SpreadOutput& output) {
+void statistics_rows(Session& session, Ui& ui, const SpreadOutput& output) {
   const SpreadStatistics& s = output.followed;
-  const ShownUnit unit = shown_unit(output.unit, app.units);
-  const NumberStyle& numbers = app.options.numbers;
+  const ShownUnit unit = shown_unit(output.unit, session.units);
+  const NumberStyle& numbers = session.options.numbers;
   const auto plain = [&](const char* label, double value, double error, const char* help) {
-    row(app, label, value_text(value * unit.factor, error * unit.factor, numbers), unit.text.c_str(), help);
+    row(ui, label, value_text(value * unit.factor, error * unit.factor, numbers), unit.text.c_str(), help);
   };
-  heading(app, output.name.c_str());
+  heading(ui, output.name.c_str());
   plain("Nominal", output.nominal, s.mean_error > 0 ? s.mean_error / 10 : 0, "The state that is shown.");
   if (s.count > 1) {
-    estimated_row(app, "Mean", s.mean, s.mean_error, unit,
+    estimated_row(session, ui, "Mean", s.mean, s.mean_error, unit,
                   "Of the samples that followed, with its standard error: chance of the samples.");
-    note_widget(app.widgets, "spread/mean");
-    estimated_row(app, "Deviation", s.deviation, s.deviation_error, unit,
+    note_widget(ui.widgets, "spread/mean");
+    estimated_row(session, ui, "Deviation", s.deviation, s.deviation_error, unit,
                   "Standard deviation of the samples that followed, with its standard error.");
-    note_widget(app.widgets, "spread/deviation");
+    note_widget(ui.widgets, "spread/deviation");
   }
   if (!output.linear_shares.empty())
     plain("by the rates", output.linear_deviation, output.linear_deviation / 1000,
@@ -215,13 +217,13 @@ void statistics_rows(App& app, const SpreadOutput& output) {
   }
 }
 
-void fate_rows(App& app, const SpreadAnswer& answer, const SpreadOutput& output) {
-  heading(app, (std::to_string(answer.samples) + " samples").c_str());
+void fate_rows(Session& session, Ui& ui, const SpreadAnswer& answer, const SpreadOutput& output) {
+  heading(ui, (std::to_string(answer.samples) + " samples").c_str());
   const auto count = [&](SampleFate fate, const char* label, const char* help) {
     const std::size_t n = answer.counts[static_cast<std::size_t>(fate)];
     if (n == 0 && fate != SampleFate::followed) return;
-    row(app, label, std::to_string(n), "", help);
-    note_widget(app.widgets, "spread/fate/" + std::string(word(fate)));
+    row(ui, label, std::to_string(n), "", help);
+    note_widget(ui.widgets, "spread/fate/" + std::string(word(fate)));
   };
   count(SampleFate::followed, "followed", "The nominal state's branch leads there.");
   count(SampleFate::unstable, "to an unstable state", "They followed, to a state that is not stable.");
@@ -233,34 +235,33 @@ void fate_rows(App& app, const SpreadAnswer& answer, const SpreadOutput& output)
   count(SampleFate::no_mechanism, "no mechanism",
         "Their numbers make none: a mass below zero, a loop that cannot be closed.");
   if (const SpreadStatistics& e = output.elsewhere; e.count > 0) {
-    const ShownUnit unit = shown_unit(output.unit, app.units);
+    const ShownUnit unit = shown_unit(output.unit, session.units);
     const auto text = [&](double value) { return short_text(unit.shown(value), 5); };
-    row(app, "mean of the others", text(e.mean), unit.text.c_str(),
-        "Of the samples in another steady state.");
-    row(app, "they lie from", text(e.least), unit.text.c_str(), "Of the samples in another steady state.");
-    row(app, "to", text(e.most), unit.text.c_str(), "Of the samples in another steady state.");
+    row(ui, "mean of the others", text(e.mean), unit.text.c_str(), "Of the samples in another steady state.");
+    row(ui, "they lie from", text(e.least), unit.text.c_str(), "Of the samples in another steady state.");
+    row(ui, "to", text(e.most), unit.text.c_str(), "Of the samples in another steady state.");
   }
-  if (app.options.numbers.run_times)
-    row(app, "Run time", duration_text(answer.run_time_s, app.options.numbers), "");
+  if (session.options.numbers.run_times)
+    row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "");
 }
 
 // Digits that end at `right` (pixels of the window's contents).
-void digits_to(App& app, const std::string& text, float right) {
-  ImGui::PushFont(app.fonts.digits);
+void digits_to(const Ui& ui, const std::string& text, float right) {
+  ImGui::PushFont(ui.fonts.digits);
   ImGui::SameLine();
   ImGui::SetCursorPosX(right - ImGui::CalcTextSize(text.c_str()).x);
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopFont();
 }
 
-void share_rows(App& app, const std::vector<Tolerance>& tolerances, const SpreadOutput& output) {
-  heading(app, "Shares of the variance");
+void share_rows(Ui& ui, const std::vector<Tolerance>& tolerances, const SpreadOutput& output) {
+  heading(ui, "Shares of the variance");
   help_on_hover(
       "By the rates of the nominal state, and by a linear regression of the samples. What the latter "
       "leave of 100 % is not linear, or chance.");
-  const float first = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 86 * app.scale,
-              second = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 6 * app.scale;
-  const UiColors& colors = colors_of(app);
+  const float first = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 86 * ui.scale,
+              second = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - 6 * ui.scale;
+  const UiColors& colors = colors_of(ui);
   const auto title = [&](const char* text, float right) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(right - ImGui::CalcTextSize(text).x);
@@ -274,21 +275,21 @@ void share_rows(App& app, const std::vector<Tolerance>& tolerances, const Spread
   };
   for (std::size_t k = 0; k < tolerances.size(); ++k) {
     ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
-    clipped_text(parameter_phrase(tolerances[k].address), first - ImGui::GetCursorPosX() - 56 * app.scale);
+    clipped_text(parameter_phrase(tolerances[k].address), first - ImGui::GetCursorPosX() - 56 * ui.scale);
     ImGui::PopStyleColor();
-    digits_to(app, share(output.linear_shares, k), first);
-    digits_to(app, share(output.sampled_shares, k), second);
-    note_widget(app.widgets, "spread/share/" + tolerances[k].address);
+    digits_to(ui, share(output.linear_shares, k), first);
+    digits_to(ui, share(output.sampled_shares, k), second);
+    note_widget(ui.widgets, "spread/share/" + tolerances[k].address);
   }
 }
 
-void spread_words(App& app) {
-  const SpreadOutput* output = shown_output(app);
+void spread_words(Session& session, Ui& ui) {
+  const SpreadOutput* output = shown_output(session);
   if (!output) return;
-  const auto& found = *app.study.spread.samples.found;
-  statistics_rows(app, *output);
-  share_rows(app, found.of.tolerances, *output);
-  fate_rows(app, found.result, *output);
+  const auto& found = *session.study.spread.samples.found;
+  statistics_rows(session, ui, *output);
+  share_rows(ui, found.of.tolerances, *output);
+  fate_rows(session, ui, found.result, *output);
 }
 
 void draw_histogram(App& app) {
@@ -316,7 +317,7 @@ void spread_panel(App& app) {
   const auto column = [&](const char* name, float width, auto contents) {
     ImGui::BeginChild(name, {width, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-    contents(app);
+    contents(app, app);
     ImGui::PopStyleVar();
     ImGui::EndChild();
     ImGui::SameLine(0, 14 * s);

@@ -26,13 +26,13 @@ std::string number_of(std::size_t count, const char* one, const char* many) {
 }
 
 // "4 equilibria", "2 stable, 2 unstable".
-void summary(App& app, const std::vector<Solution>& all) {
-  const UiColors& colors = colors_of(app);
-  ImGui::PushFont(app.fonts.strong);
+void summary(const Session& session, Ui& ui, const std::vector<Solution>& all) {
+  const UiColors& colors = colors_of(ui);
+  ImGui::PushFont(ui.fonts.strong);
   paragraph(all.empty() ? "No equilibrium was found" : number_of(all.size(), "equilibrium", "equilibria"),
             colors.text);
   ImGui::PopFont();
-  note_widget(app.widgets, "states/count");
+  note_widget(ui.widgets, "states/count");
   const auto stable = static_cast<std::size_t>(std::ranges::count(all, true, [](const Solution& s) {
     return s.stable == true || s.stability_reason == StabilityReason::neutral;
   }));
@@ -46,49 +46,50 @@ void summary(App& app, const std::vector<Solution>& all) {
   add(unstable, "unstable");
   add(all.size() - stable - unstable, "undecided");
   if (!words.empty()) paragraph(words + ". Click one to see it.", colors.dim);
-  if (states_are_current(app) && converged(app) && !solving(app) && !shown_state(app))
+  if (states_are_current(session) && converged(session) && !solving(session) && !shown_state(session))
     paragraph("The state that is shown was not found by this search.", colors.warn);
 }
 
 // Where it was looked, and from how many starts.
-void search_bounds(App& app, const StatesStudy::Found& search) {
+void search_bounds(Session& session, Ui& ui, const StatesStudy::Found& search) {
   const AllSolutions& found = search.result;
-  const UiColors& colors = colors_of(app);
-  heading(app, "How it was searched");
+  const UiColors& colors = colors_of(ui);
+  heading(ui, "How it was searched");
   paragraph(number_of(static_cast<std::size_t>(found.starts), "run", "runs") +
                 " of Newton-Raphson, from starts spread over these ranges and deflated at what was found. No "
                 "such search is complete.",
             colors.dim);
-  note_widget(app.widgets, "states/search");
+  note_widget(ui.widgets, "states/search");
   for (const AllSolutions::Bound& b : found.bounds) {
-    const ShownUnit unit = coordinate_unit(b.angle, app.units);
-    row(app, coordinate_label(b),
+    const ShownUnit unit = coordinate_unit(b.angle, session.units);
+    row(ui, coordinate_label(b),
         short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
         "Where starts lay. What was found a range's width further out was kept, too.");
   }
-  if (app.options.numbers.run_times)
-    row(app, "Run time", duration_text(search.run_time, app.options.numbers), "");
+  if (session.options.numbers.run_times)
+    row(ui, "Run time", duration_text(search.run_time, session.options.numbers), "");
 }
 
-void states_words(App& app) {
-  StatesStudy& states = app.study.states;
-  const UiColors& colors = colors_of(app);
+void states_words(Session& session, Ui& ui) {
+  StatesStudy& states = session.study.states;
+  const UiColors& colors = colors_of(ui);
   if (states.running()) {
-    task_bar(app, "states/progress", states.progress(), states.seconds());
-    if (text_button(app, "states/cancel", "Cancel")) states.stop();
+    task_bar(ui, "states/progress", states.progress(), states.seconds());
+    if (text_button(ui, "states/cancel", "Cancel")) states.stop();
   } else {
-    const bool refused = !app.mistakes.empty() || app.mechanism().bodies.empty();
+    const bool refused = !session.mistakes.empty() || session.mechanism().bodies.empty();
     ImGui::BeginDisabled(refused);
-    if (text_button(app, "states/search_again", "Search again", !states_are_current(app))) search_states(app);
+    if (text_button(ui, "states/search_again", "Search again", !states_are_current(session)))
+      search_states(session);
     ImGui::EndDisabled();
     if (refused) paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   }
   if (!states.problem.empty()) paragraph(states.problem, colors.bad);
   if (!states.found) return;
-  if (!states_are_current(app))
+  if (!states_are_current(session))
     paragraph("Found before the last changes: search again to choose one.", colors.warn);
-  summary(app, states.found->result.equilibria);
-  search_bounds(app, *states.found);
+  summary(session, ui, states.found->result.equilibria);
+  search_bounds(session, ui, *states.found);
 }
 
 struct Column {
@@ -96,8 +97,8 @@ struct Column {
   float width = 0; // pixels
 };
 
-float value_width(const App& app, const std::string& text) {
-  const ImFont* font = app.fonts.digits;
+float value_width(const Ui& ui, const std::string& text) {
+  const ImFont* font = ui.fonts.digits;
   return font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
 }
 
@@ -145,7 +146,7 @@ StateLine line_of(const Solution& solution, const NumberStyle& numbers, const Di
   return line;
 }
 
-void header(App& app, const std::vector<Column>& columns) {
+void header(const Ui& ui, const std::vector<Column>& columns) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
@@ -154,15 +155,16 @@ void header(App& app, const std::vector<Column>& columns) {
       ImGui::SetCursorPosX(
           ImGui::GetCursorPosX() +
           std::max(0.f, ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(columns[i].title.c_str()).x));
-    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(app).dim);
+    ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
     ImGui::TextUnformatted(columns[i].title.c_str());
     ImGui::PopStyleColor();
     if (!columns[i].help.empty()) help_on_hover(columns[i].help.c_str());
   }
 }
 
-void state_row(App& app, std::size_t index, const Solution& solution, const StateLine& line, bool shown) {
-  const UiColors& colors = colors_of(app);
+void state_row(Session& session, Ui& ui, std::size_t index, const Solution& solution, const StateLine& line,
+               bool shown) {
+  const UiColors& colors = colors_of(ui);
   ImGui::TableNextRow();
   if (shown) {
     ImVec4 tint = colors.accent;
@@ -174,34 +176,34 @@ void state_row(App& app, std::size_t index, const Solution& solution, const Stat
   ImGui::PushID(static_cast<int>(index));
   const ImVec2 at = ImGui::GetCursorPos();
   if (ImGui::Selectable("##row", false, ImGuiSelectableFlags_SpanAllColumns))
-    later(app, [&app, index] { show_state(app, index); });
-  note_widget(app.widgets, name, KeyUse::row);
-  if (shown) mark_chosen(app.widgets);
+    later(ui, [&session, index] { show_state(session, index); });
+  note_widget(ui.widgets, name, KeyUse::row);
+  if (shown) mark_chosen(ui.widgets);
   ImGui::PopID();
   ImGui::SetCursorPos(at);
   if (shown) {
     ImGui::TextColored(colors.accent, "%s", icon::eye);
-    note_widget(app.widgets, "states/shown");
+    note_widget(ui.widgets, "states/shown");
   } else {
     ImGui::TextColored(colors.dim, "%s", std::to_string(index + 1).c_str());
   }
   ImGui::TableNextColumn();
   const StabilityWords words = stability_words(solution.stable, solution.stability_reason, colors);
   ImGui::TextColored(words.color, "%s", words.icon);
-  ImGui::SameLine(0, 6 * app.scale);
+  ImGui::SameLine(0, 6 * ui.scale);
   ImGui::TextColored(words.color, "%s", words.word);
   help_on_hover(words.sentence);
-  if (ImGui::TableNextColumn()) right_digits(app, line.potential, colors.text);
+  if (ImGui::TableNextColumn()) right_digits(ui, line.potential, colors.text);
   for (std::size_t c = 0; c < line.values.size(); ++c) {
     if (!ImGui::TableNextColumn()) continue;
-    right_digits(app, line.values[c], colors.text);
+    right_digits(ui, line.values[c], colors.text);
     help_on_hover(line.details[c].c_str());
   }
 }
 
-std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
+std::vector<Column> columns_of(const Session& session, const Ui& ui, const std::vector<Solution>& all,
                                const std::vector<StateLine>& lines) {
-  const float s = app.scale;
+  const float s = ui.scale;
   std::vector<Column> columns{
       {"", "", 24 * s},
       {"Stability", "", 112 * s},
@@ -210,7 +212,7 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
        "energy of the drives' motion. Where it is least a state is stable.",
        0}};
   for (const StateNumber& n : numbers_of(all.front())) {
-    const std::string unit = shown_unit(n.unit, app.units).text;
+    const std::string unit = shown_unit(n.unit, session.units).text;
     columns.push_back({unit.empty() ? n.name : n.name + " [" + unit + "]", "", 0});
   }
   for (std::size_t i = 2; i < columns.size(); ++i) {
@@ -218,39 +220,39 @@ std::vector<Column> columns_of(const App& app, const std::vector<Solution>& all,
     width = ImGui::CalcTextSize(columns[i].title.c_str()).x;
     for (const StateLine& line : lines)
       if (i == 2 || i - 3 < line.values.size())
-        width = std::max(width, value_width(app, i == 2 ? line.potential : line.values[i - 3]));
+        width = std::max(width, value_width(ui, i == 2 ? line.potential : line.values[i - 3]));
     width += 14 * s;
   }
   return columns;
 }
 
-void states_table(App& app) {
-  const auto& found = app.study.states.found;
+void states_table(Session& session, Ui& ui) {
+  const auto& found = session.study.states.found;
   if (!found || found->result.equilibria.empty()) return;
   const std::vector<Solution>& all = found->result.equilibria;
   std::vector<StateLine> lines;
   lines.reserve(all.size());
   for (const Solution& solution : all)
-    lines.push_back(line_of(solution, app.options.numbers, app.units));
-  const std::vector<Column> columns = columns_of(app, all, lines);
+    lines.push_back(line_of(solution, session.options.numbers, session.units));
+  const std::vector<Column> columns = columns_of(session, ui, all, lines);
   ImGui::PushID(found.get()); // new widths with every list
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * app.scale, 3 * app.scale});
-  ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(app).panel);
-  ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors_of(app).border);
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * ui.scale, 3 * ui.scale});
+  ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(ui).panel);
+  ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors_of(ui).border);
   if (ImGui::BeginTable("states", static_cast<int>(columns.size()), states_table_flags,
                         ImGui::GetContentRegionAvail())) {
     ImGui::TableSetupScrollFreeze(2, 1);
     for (const Column& column : columns)
       ImGui::TableSetupColumn(column.title.c_str(), ImGuiTableColumnFlags_WidthFixed, column.width);
-    header(app, columns);
-    const std::optional<std::size_t> shown = shown_state(app);
-    ImGui::BeginDisabled(!states_are_current(app));
+    header(ui, columns);
+    const std::optional<std::size_t> shown = shown_state(session);
+    ImGui::BeginDisabled(!states_are_current(session));
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(all.size()));
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
         const auto index = static_cast<std::size_t>(i);
-        state_row(app, index, all[index], lines[index], shown == index);
+        state_row(session, ui, index, all[index], lines[index], shown == index);
       }
     ImGui::EndDisabled();
     ImGui::EndTable();
@@ -262,17 +264,17 @@ void states_table(App& app) {
 
 } // namespace
 
-void states_panel(App& app) {
-  const float s = app.scale;
+void states_panel(Session& session, Ui& ui) {
+  const float s = ui.scale;
   ImGui::BeginChild("words", {states_words_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
-  states_words(app);
+  states_words(session, ui);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("table", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  states_table(app);
+  states_table(session, ui);
   ImGui::EndChild();
 }
 

@@ -1,6 +1,7 @@
 // The transfer function of one input and one output: what is chosen, what it says, Bode's plots, poles and
 // zeros.
 #include "app/plot/transfer_plot.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
@@ -23,23 +24,23 @@ constexpr float transfer_words_width = 330; // points
 constexpr double transfer_patience = 0.25;  // s: a shorter wait is not worth a bar
 
 // Addresses as phrases, each once; what is no address stays as it is written.
-std::vector<std::string> signal_phrases(const App& app, const std::vector<std::string>& signals) {
+std::vector<std::string> signal_phrases(const Session& session, const std::vector<std::string>& signals) {
   std::vector<std::string> phrases;
   std::set<std::string> taken;
   for (const std::string& signal : signals) {
-    std::string phrase = has_number(app.mechanism(), signal) ? parameter_phrase(signal) : signal;
+    std::string phrase = has_number(session.mechanism(), signal) ? parameter_phrase(signal) : signal;
     phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : signal);
   }
   return phrases;
 }
 
-void signal_row(App& app, const char* name, const char* label, const std::vector<std::string>& signals,
-                std::string& chosen, const char* help) {
-  const std::vector<std::string> phrases = signal_phrases(app, signals);
+void signal_row(const Session& session, Ui& ui, const char* name, const char* label,
+                const std::vector<std::string>& signals, std::string& chosen, const char* help) {
+  const std::vector<std::string> phrases = signal_phrases(session, signals);
   const auto at = std::ranges::find(signals, chosen);
   const std::string shown =
       at == signals.end() ? chosen : phrases[static_cast<std::size_t>(at - signals.begin())];
-  if (const auto other = name_choice_row(app, name, label, phrases, shown, help))
+  if (const auto other = name_choice_row(ui, name, label, phrases, shown, help))
     chosen = signals[static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin())];
 }
 
@@ -48,25 +49,25 @@ std::string root_text(std::complex<double> s) {
   return short_text(s.real(), 5) + " ± " + short_text(std::abs(s.imag()), 5) + " i";
 }
 
-void root_rows(App& app, const char* title, const char* name, const std::vector<std::complex<double>>& roots,
+void root_rows(Ui& ui, const char* title, const char* name, const std::vector<std::complex<double>>& roots,
                const char* help) {
-  heading(app, title);
+  heading(ui, title);
   help_on_hover(help);
   std::size_t number = 0;
   for (const std::complex<double> s : roots) {
     if (s.imag() < 0) continue;
-    row(app, std::to_string(++number), root_text(s), "1/s");
+    row(ui, std::to_string(++number), root_text(s), "1/s");
   }
-  note_widget(app.widgets, name);
-  if (number == 0) paragraph("None.", colors_of(app).dim);
+  note_widget(ui.widgets, name);
+  if (number == 0) paragraph("None.", colors_of(ui).dim);
 }
 
 void transfer_words(App& app) {
   TransferState& state = app.study.transfer;
   const UiColors& colors = colors_of(app);
-  signal_row(app, "transfer/input", "Input", transfer_inputs(app), state.choice.input,
+  signal_row(app, app, "transfer/input", "Input", transfer_inputs(app), state.choice.input,
              "What acts: a number, or a torque or force that is added.");
-  signal_row(app, "transfer/output", "Output", transfer_outputs(app), state.choice.output,
+  signal_row(app, app, "transfer/output", "Output", transfer_outputs(app), state.choice.output,
              "What is looked at.");
   bool hertz = app.plots.transfer.hertz;
   if (text_button(app, "transfer/hertz", hertz ? "in rad/s" : "in Hz")) app.plots.transfer.hertz = !hertz;
