@@ -1,4 +1,5 @@
 #include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/joint_parts.hpp"
@@ -128,8 +129,7 @@ class Compiler {
     needs_coordinate_.assign(m_.joints.size(), false);
     for (int j = 0; j < joint_count(); ++j) {
       for (const Coordinate& c : joint(j).coordinates)
-        if (c.spring || c.stop || c.friction || c.damping_force)
-          needs_coordinate_[static_cast<std::size_t>(j)] = true;
+        if (c.spring || c.stop || c.friction) needs_coordinate_[static_cast<std::size_t>(j)] = true;
       if (joint(j).type == JointType::gear)
         for (int end : {0, 1})
           needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
@@ -228,7 +228,8 @@ class Compiler {
       }
       l.mobile = l.v >= 0 || (l.parent >= 0 && link(l.parent).mobile);
       l.depth = l.parent >= 0 ? link(l.parent).depth + 1 : 1;
-      l.frame = l.drive >= 0 ? last : l.parent >= 0 ? link(l.parent).frame : -1;
+      // What torques turn is a frame for the motion, too, so that it has the coordinates of the steady state.
+      l.frame = turns || found ? last : l.parent >= 0 ? link(l.parent).frame : -1;
       s_.links.push_back(l);
     }
     s_.tree_joints.push_back(std::move(record));
@@ -408,7 +409,7 @@ class Compiler {
       if (in_tree_[static_cast<std::size_t>(j)]) continue;
       const auto& [a, b] = ends(j);
       const bool damped =
-          std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
+          std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return is_damped(c); });
       const bool axial =
           x.type == JointType::revolute || x.type == JointType::prismatic || x.type == JointType::cylindrical;
       CutJoint cut;
@@ -430,7 +431,7 @@ class Compiler {
       cut.ends = ends_between(link_of(a), link_of(b));
       if (damped)
         for (int k = 0; k < coordinate_count(x.type); ++k)
-          if (x.coordinates[static_cast<std::size_t>(k)].damping != 0)
+          if (is_damped(x.coordinates[static_cast<std::size_t>(k)]))
             s_.cut_dampers.push_back({j, k, is_angle(x.type, k), cut.ends});
       add_cut(std::move(cut), x.type);
     }
@@ -617,6 +618,14 @@ class Compiler {
                                   read_law(spring_law(x), spring_variable, part),
                                   read_law(damper_law(x), damper_variable, part)});
     }
+    for (int i = 0; i < static_cast<int>(s_.cut_dampers.size()); ++i) {
+      const CutDamperElement& e = s_.cut_dampers[static_cast<std::size_t>(i)];
+      const Joint& of = joint(e.joint);
+      if (of.coordinates[static_cast<std::size_t>(e.coordinate)].damping_force)
+        s_.cut_damper_laws.push_back(
+            {i, 0, false, true, nullptr,
+             read_law(damper_law(of, e.coordinate), damper_variable, joint_path(e.joint))});
+    }
   }
 
   // Whether damping may be negative, so that a minimum of the potential need not be stable.
@@ -664,7 +673,7 @@ class Compiler {
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
     // A bearing's matrices may be symmetric, but the next number may change that.
     s_.conservative = s_.conservative && s_.bearings.empty();
-    if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty())
+    if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty() || !s_.cut_damper_laws.empty())
       s_.conservative = s_.conservative && !some_damper_may_drive();
     s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
     s_.conservative = s_.conservative && s_.torques.empty();

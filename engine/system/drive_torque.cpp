@@ -36,14 +36,15 @@ struct LawState {
     return 0; // at rest in a steady state
   }
 
-  // With the rates of the numbers, and the rate 1 at one input.
-  Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers,
-             std::size_t moved = most_inputs) const {
+  // With the rates of the numbers, and the rate 1 at one input; another is `by` further on.
+  Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t varied = most_inputs,
+             std::size_t moved = most_inputs, double by = 0) const {
     if (!law.expression) return numbers.value;
     std::array<Dual, most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
       inputs[i] = input(law.inputs[i]);
-    if (moved < law.inputs.size()) inputs[moved].rate = 1;
+    if (varied < law.inputs.size()) inputs[varied].rate = 1;
+    if (moved < law.inputs.size()) inputs[moved].value += by;
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
   }
 
@@ -60,7 +61,8 @@ struct LawState {
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
       const Link& link = system.links[static_cast<std::size_t>(c.link)];
       if (link.v < 0) continue;
-      const double slope = factor * value(law, numbers, i).rate;
+      const double slope =
+          factor * (numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i]);
       if (link.type == LinkType::spherical)
         out.block<1, 3>(row, link.v) +=
             slope * rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q)
@@ -122,6 +124,16 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
 double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
                     const Kinematics<double>& k) {
   return LawState<double>{system, p, q, k}.value(drive).value;
+}
+
+std::vector<double> drive_law_slopes(const System& system, const Parameters& p, const DriveLaw& law,
+                                     const DriveLawParameters& numbers, const Eigen::VectorXd& q,
+                                     const Kinematics<double>& k, std::size_t moved, double by) {
+  const LawState<double> state{system, p, q, k};
+  std::vector<double> out;
+  for (std::size_t i = 0; i < law.inputs.size(); ++i)
+    out.push_back(state.value(law, numbers, i, moved, by).rate);
+  return out;
 }
 
 void add_drive_torque_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,

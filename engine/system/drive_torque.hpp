@@ -27,6 +27,11 @@ void add_drive_torque_sizes(const System& system, const Parameters& parameters, 
 double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
+// The derivatives of the law of a torque or load with its inputs, where one of them is `by` further on.
+std::vector<double> drive_law_slopes(const System& system, const Parameters& parameters, const DriveLaw& law,
+                                     const DriveLawParameters& numbers, const Eigen::VectorXd& q,
+                                     const Kinematics<double>& kinematics, std::size_t moved, double by);
+
 // Adds the derivatives of torques and loads to df/dq and df/dq', the dampers left out.
 void add_drive_torque_stiffness(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                                 const Kinematics<double>& kinematics, Eigen::MatrixXd& stiffness);

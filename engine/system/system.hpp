@@ -95,7 +95,7 @@ struct PointSpringElement {
 
 // Laws in place of a stiffness and a damping (force_law.hpp); null where a number is the force.
 struct ForceLawElement {
-  int at = 0;        // link, or entry of System::springs
+  int at = 0;        // link, or entry of System::springs or cut_dampers
   int component = 0; // of a spherical link
   bool has_spring = false, has_damper = false;
   std::shared_ptr<const ForceLaw> spring, damper;
@@ -201,7 +201,7 @@ struct System {
   std::vector<CoordinateInfo> coordinates;  // of the tree, in the scene's order, implicit joints last
   std::vector<ReportedCoordinate> reported; // of all joints, in the same order
   std::vector<PointSpringElement> springs;
-  std::vector<ForceLawElement> coordinate_laws, spring_laws;
+  std::vector<ForceLawElement> coordinate_laws, spring_laws, cut_damper_laws;
   std::vector<BearingElement> bearings; // which the matrices of all coordinates alone know
   std::vector<BodyForceElement> body_forces;
   std::vector<TurningAirElement> turning_air;

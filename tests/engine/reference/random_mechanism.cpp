@@ -315,4 +315,20 @@ Mechanism random_sprung_mechanism(std::uint32_t seed) {
   return random_mechanism(seed, options);
 }
 
+Mechanism with_damper_laws(Mechanism mechanism) {
+  for (Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      Coordinate& c = joint.coordinates[i];
+      if (c.damping == 0 || is_rotation_vector(joint.type, static_cast<int>(i))) continue;
+      const std::string damping = std::to_string(c.damping);
+      joint.formulas.push_back(
+          {coordinate_key(joint, i, "damping_force"), is_angle(joint.type, static_cast<int>(i))
+                                                          ? damping + " N m s*rate + 0.5 N m s^3*rate^3"
+                                                          : damping + " N s/m*rate + 2 N s^3/m^3*rate^3"});
+      c.damping = 0;
+      c.damping_force = 0;
+    }
+  return mechanism;
+}
+
 } // namespace flyball::reference
