@@ -61,6 +61,49 @@ TEST_CASE("more friction than weight holds a pendulum all round, through the fol
   CHECK(band.message == "Friction holds it at any angle: hinge can go round.");
 }
 
+TEST_CASE("friction in the guide of a slider-crank holds it at any angle of the crank: d from -0.2 to 0") {
+  // 22.55 N are needed at most, so that the ways round leave the dead centre near the limit or far below it.
+  for (const double limit : {22.6, 23., 30., 100.}) {
+    CAPTURE(limit);
+    const FrictionBand band = find_friction_band(rubbing_slider_crank(limit));
+    INFO(band.message);
+    CHECK(band.folds);
+    CHECK_THAT(extent(band, "d").low, WithinAbs(-0.2, 1e-9));
+    CHECK_THAT(extent(band, "d").high, WithinAbs(0, 1e-9));
+    CHECK(extent(band, "a").low < -3.14);
+    CHECK(extent(band, "a").high > 3.14);
+  }
+}
+
+TEST_CASE("what depends on the band's coordinates has its extremes inside, too") {
+  Mechanism m = rubbing_pendulum(1.5);
+  m.measures.push_back(
+      {.name = "off", .description = {}, .text = "(coordinate(hinge) - 0.1 rad)^2", .unit = "rad^2"});
+  const double most = std::asin(0.15);
+  const FrictionBand band = find_friction_band(m);
+  CHECK_THAT(extent(band, "off").low, WithinAbs(0, 1e-15));
+  CHECK_THAT(extent(band, "off").high, WithinRel((most + 0.1) * (most + 0.1), 1e-12));
+  // Of two shares, along both; and where the band passes folds.
+  Mechanism two = read_scene(R"json({"flyball": 2, "name": "Double pendulum", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "p", "mass": 1, "position": [0, -0.5, 0]},
+               {"name": "q", "mass": 0.7, "position": [0, -0.9, 0]}],
+    "joints": [
+      {"name": "h", "type": "revolute", "bodies": ["ground", "p"], "at": [0, 0, 0], "axis": [0, 0, 1],
+       "friction": {"limit": 0.8}},
+      {"name": "k", "type": "revolute", "bodies": ["p", "q"], "at": [0, -0.5, 0], "axis": [0, 0, 1],
+       "friction": {"limit": 0.3}}],
+    "measures": {"r2": {"value": "=(coordinate(h)-0.05 rad)^2+(coordinate(k)-0.03 rad)^2", "unit": "rad^2"}}})json");
+  const FrictionBand both = find_friction_band(two);
+  const BandExtent& r2 = extent(both, "r2");
+  CHECK(r2.low < 1e-13);
+  CHECK(r2.low <= r2.error.value());
+  Mechanism round = rubbing_pendulum(12);
+  round.measures.push_back({.name = "height", .description = {}, .text = "y(bob)", .unit = "m"});
+  const FrictionBand folded = find_friction_band(round);
+  CHECK_THAT(extent(folded, "height").low, WithinAbs(-0.5, 1e-12));
+  CHECK_THAT(extent(folded, "height").high, WithinAbs(0.5, 1e-12));
+}
+
 TEST_CASE("holding a pendulum as drawn takes its moment") {
   const Holding holding = find_holding(rubbing_pendulum(1.5, 0.1), {});
   REQUIRE(holding.takes);
