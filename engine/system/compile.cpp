@@ -133,7 +133,18 @@ class Compiler {
       if (joint(j).type == JointType::gear)
         for (int end : {0, 1})
           needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
+      ask_for_coordinates_of_laws(j);
     }
+  }
+
+  // What the drives' laws of a joint ask for.
+  void ask_for_coordinates_of_laws(int j) {
+    for (int i = 0; i < static_cast<int>(joint(j).coordinates.size()); ++i)
+      for (const char* which : {"torque", "load"})
+        read_drive_law_of(joint(j), i, which, [&](const Expression& law) {
+          for (const ResultCall& call : law.results())
+            needs_coordinate_[static_cast<std::size_t>(find_coordinate(m_, call).joint)] = true;
+        });
   }
 
   const std::optional<Drive>& drive_of(int j, int coordinate) const {
@@ -561,7 +572,8 @@ class Compiler {
              c.index == at.coordinate;
     });
     if (found == s_.coordinates.end())
-      throw ExpressionError("expected a coordinate that closes no loop, found " + name);
+      throw ExpressionError("expected a coordinate that closes no loop, found " + name +
+                            "; with \"cut\": false on that joint its loop is cut elsewhere");
     if (link_at(found->link).drive >= 0 && !rate)
       throw ExpressionError("expected a rate: the coordinate " + name + " goes on and on as its drive turns");
     if (rate && link_at(found->link).type == LinkType::spherical)
@@ -571,18 +583,25 @@ class Compiler {
 
   DriveLaw law_of(const Joint& of, int i, std::string_view which) const {
     DriveLaw out;
-    const Formula* law = drive_law(of, i, which);
-    if (!law) return out;
-    const std::string where = "joints." + of.name + ".drive." + std::string(which);
-    try {
-      out.expression = read_drive_law(law->text);
-      for (const ResultCall& call : out.expression->results())
+    read_drive_law_of(of, i, which, [&](const Expression& law) {
+      for (const ResultCall& call : law.results())
         out.inputs.push_back(input_of(call));
+      out.expression = law;
+    });
+    return out;
+  }
+
+  // Hands on what a drive's torque or load is read as, where it is one of the state.
+  template <class Take>
+  void read_drive_law_of(const Joint& of, int i, std::string_view which, Take take) const {
+    const Formula* law = drive_law(m_, of, i, which);
+    if (!law) return;
+    try {
+      take(read_drive_law(m_, law->text));
     } catch (const ExpressionError& error) {
       throw SceneError("joints." + of.name + ".drive." + std::string(which),
                        "\"=" + law->text + "\": " + error.what());
     }
-    return out;
   }
 
   static std::shared_ptr<const ForceLaw> read_law(const Formula* law, std::string_view variable,
@@ -675,6 +694,7 @@ class Compiler {
     s_.conservative = s_.conservative && s_.bearings.empty();
     if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty() || !s_.cut_damper_laws.empty())
       s_.conservative = s_.conservative && !some_damper_may_drive();
+    s_.conservative_at_speeds = s_.conservative;
     s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
     s_.conservative = s_.conservative && s_.torques.empty();
   }
@@ -684,7 +704,12 @@ class Compiler {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (!s_.torques.empty() || !s_.bearings.empty() || !s_.turning_air.empty() || !no_drive_rides(s_) ||
+    if (!s_.torques.empty()) {
+      if (s_.nv > few + static_cast<int>(s_.torques.size()) && speeds_can_border(s_))
+        s_.kkt_form = KktForm::tree;
+      return;
+    }
+    if (!s_.bearings.empty() || !s_.turning_air.empty() || !no_drive_rides(s_) ||
         s_.nv <= (potential ? few : few_without_potential))
       return;
     if (is_plain_tree(s_))
@@ -730,6 +755,19 @@ bool no_drive_rides(const System& system) {
 bool is_plain_tree(const System& system) {
   return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() &&
          system.bearings.empty() && system.turning_air.empty() && no_drive_rides(system);
+}
+
+bool speeds_can_border(const System& system) {
+  const auto plain = [&](const DriveLaw& law) {
+    return std::ranges::none_of(law.inputs, [&](const DriveLaw::Input& input) {
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+      return system.links[static_cast<std::size_t>(c.link)].type == LinkType::spherical;
+    });
+  };
+  return system.conservative_at_speeds && system.single_drives && is_plain_tree(system) &&
+         std::ranges::all_of(system.torques, [&](const DriveTorqueElement& torque) {
+           return !torque.keeps_momentum && !torque.implied && plain(torque.torque) && plain(torque.load);
+         });
 }
 
 System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {

@@ -53,9 +53,10 @@ struct LawState {
            value(system.torques[drive].load, p.torques[drive].load);
   }
 
-  // Adds the derivatives with all inputs of a kind to a row.
+  // Calls add(row, column, derivative) for all inputs of a kind.
+  template <class Add>
   void add_derivatives(const DriveLaw& law, const DriveLawParameters& numbers, bool rates, double factor,
-                       int row, Eigen::MatrixXd& out) const {
+                       int row, const Add& add) const {
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
       if (law.inputs[i].rate != rates) continue;
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
@@ -63,20 +64,22 @@ struct LawState {
       if (link.v < 0) continue;
       const double slope =
           factor * (numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i]);
-      if (link.type == LinkType::spherical)
-        out.block<1, 3>(row, link.v) +=
-            slope * rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q)
-                        .row(c.index - link.coordinate);
-      else
-        out(row, link.v) += slope;
+      if (link.type != LinkType::spherical) {
+        add(row, link.v, slope);
+        continue;
+      }
+      const Mat3 turned = rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q);
+      for (int j = 0; j < 3; ++j)
+        add(row, link.v + j, slope * turned(c.index - link.coordinate, j));
     }
   }
 
-  void add_derivatives(bool rates, Eigen::MatrixXd& out) const {
+  template <class Add>
+  void add_derivatives(bool rates, const Add& add) const {
     for (std::size_t i = 0; i < system.torques.size(); ++i) {
       const int row = system.links[static_cast<std::size_t>(system.torques[i].link)].v;
-      add_derivatives(system.torques[i].torque, p.torques[i].torque, rates, -1, row, out);
-      add_derivatives(system.torques[i].load, p.torques[i].load, rates, 1, row, out);
+      add_derivatives(system.torques[i].torque, p.torques[i].torque, rates, -1, row, add);
+      add_derivatives(system.torques[i].load, p.torques[i].load, rates, 1, row, add);
     }
   }
 };
@@ -136,14 +139,26 @@ std::vector<double> drive_law_slopes(const System& system, const Parameters& p, 
   return out;
 }
 
+std::vector<DriveTorqueEntry> drive_torque_entries(const System& system, const Parameters& p,
+                                                   const Eigen::VectorXd& q, const Kinematics<double>& k,
+                                                   bool rates) {
+  std::vector<DriveTorqueEntry> out;
+  LawState<double>{system, p, q, k}.add_derivatives(rates, [&](int row, int column, double value) {
+    out.push_back({row, column, value});
+  });
+  return out;
+}
+
 void add_drive_torque_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                                 const Kinematics<double>& k, Eigen::MatrixXd& stiffness) {
-  LawState<double>{system, p, q, k}.add_derivatives(false, stiffness);
+  LawState<double>{system, p, q, k}.add_derivatives(
+      false, [&](int row, int column, double value) { stiffness(row, column) += value; });
 }
 
 void add_drive_torque_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                               const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
-  LawState<double>{system, p, q, k}.add_derivatives(true, velocity);
+  LawState<double>{system, p, q, k}.add_derivatives(
+      true, [&](int row, int column, double value) { velocity(row, column) += value; });
 }
 
 double turning_rate(const System& system, int l, const Kinematics<double>& k) {

@@ -38,6 +38,15 @@ void add_drive_torque_stiffness(const System& system, const Parameters& paramete
 void add_drive_torque_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                               const Kinematics<double>& kinematics, Eigen::MatrixXd& velocity);
 
+// The same one by one: with coordinates, or with rates.
+struct DriveTorqueEntry {
+  int row = 0, column = 0; // in q_R
+  double value = 0;
+};
+std::vector<DriveTorqueEntry> drive_torque_entries(const System& system, const Parameters& parameters,
+                                                   const Eigen::VectorXd& q,
+                                                   const Kinematics<double>& kinematics, bool rates);
+
 // The rate of a coordinate of one axis, from the motion of its link.
 double turning_rate(const System& system, int link, const Kinematics<double>& kinematics);
 
