@@ -88,9 +88,9 @@ void tell_each(const std::vector<double>& needed, Holding& out) {
   for (std::size_t i = 0; i < needed.size(); ++i) {
     HeldJoint& joint = out.joints[i];
     joint.force = needed[i];
-    const double share = joint.limit > 0 ? std::abs(needed[i]) / joint.limit : needed[i] != 0 ? infinite : 0;
-    if (share > most) {
-      most = share;
+    const double part = joint.limit > 0 ? std::abs(needed[i]) / joint.limit : needed[i] != 0 ? infinite : 0;
+    if (part > most) {
+      most = part;
       out.first = label(joint);
     }
   }
