@@ -3,6 +3,20 @@
 #include <algorithm>
 
 namespace flyball {
+namespace {
+
+// Of each shaft, scaled.
+void find_inertia(MotionProducts& products, const std::vector<int>& speeds, Eigen::VectorXd& out) {
+  Eigen::VectorXd product;
+  out.resize(static_cast<Eigen::Index>(speeds.size()));
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const int v = speeds[static_cast<std::size_t>(i)];
+    products.inertia(Eigen::VectorXd::Unit(products.coordinates(), v), product);
+    out[i] = product[v];
+  }
+}
+
+} // namespace
 
 void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evaluation& at) {
   const System& system = problem.system;
@@ -18,13 +32,11 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   columns_.resize(size_, count);
   resists_.resize(count, count);
-  inertia_.resize(count);
+  inertia_.resize(0); // until it is asked for
   for (Eigen::Index i = 0; i < count; ++i) {
     work_ = Eigen::VectorXd::Unit(size_, speeds_[static_cast<std::size_t>(i)]);
     products_.velocity(work_, product_);
     columns_.col(i) = product_;
-    products_.inertia(work_, product_);
-    inertia_[i] = product_[speeds_[static_cast<std::size_t>(i)]];
   }
   const auto place = [&](int v) { return std::ranges::find(speeds_, v) - speeds_.begin(); };
   for (const DriveTorqueEntry& e : drive_torque_entries(system, problem.parameters, z.q, at.kinematics, true))
@@ -56,7 +68,10 @@ void SpeedsKkt::factor(double shift) {
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   response_.resize(size_, count);
   Eigen::MatrixXd border = resists_;
-  border.diagonal() += shift * inertia_;
+  if (shift != 0) {
+    if (inertia_.size() == 0) find_inertia(products_, speeds_, inertia_);
+    border.diagonal() += shift * inertia_;
+  }
   Eigen::VectorXd noise(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     tree_.solve(columns_.col(i), answer_);
@@ -71,12 +86,14 @@ void SpeedsKkt::factor(double shift) {
   known_ = tree_.known() && border_.known();
   force_free_ = tree_.force_free_count();
   directions_ = tree_.null_directions();
-  if (border_.singular())
-    for (const auto& share : border_.null_basis().colwise()) {
+  if (border_.singular()) {
+    const Eigen::MatrixXd shares = border_.null_basis();
+    for (Eigen::Index c = 0; c < shares.cols(); ++c) {
       NullDirection& direction = directions_.emplace_back();
       for (Eigen::Index i = 0; i < count; ++i)
-        direction.emplace_back(speeds_[static_cast<std::size_t>(i)], share[i]);
+        direction.emplace_back(speeds_[static_cast<std::size_t>(i)], shares(i, c));
     }
+  }
   null_ = static_cast<int>(directions_.size());
   negative_ = tree_.negative_count();
 }
@@ -106,6 +123,7 @@ double SpeedsKkt::with_speeds(const Eigen::VectorXd& x, double square, Eigen::Ve
 }
 
 double SpeedsKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+  if (inertia_.size() == 0) find_inertia(products_, speeds_, inertia_);
   return with_speeds(x, tree_.metric(x, product), product);
 }
 

@@ -1,5 +1,6 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/support/dice.hpp"
 
