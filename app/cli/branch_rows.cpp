@@ -79,6 +79,10 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
       for (const BandExtent& extent : ribbons[k][i].extents)
         band[extent.name] = {number_json(extent.low), number_json(extent.high)};
     }
+    if (k < ribbons.size() && !ribbons[k].empty())
+      for (const BandExtent& extent : ribbons[k].front().extents)
+        for (std::size_t i = 0; const HysteresisPoint& way : hysteresis(ribbons[k], extent.name))
+          points[i++]["slow_change"][extent.name] = {{"forth", way.forth}, {"back", way.back}};
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
   }

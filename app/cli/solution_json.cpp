@@ -121,6 +121,12 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     put(out["drive_torques"], d.joint, d.index, d.count, number_json(d.value));
+  if (!s.frictions.empty()) out["rests_on_friction"] = Json::object();
+  for (const FrictionForce& f : s.frictions)
+    put(out["rests_on_friction"], f.joint, f.index, f.count,
+        {{"force", f.value ? number_json(*f.value) : Json(nullptr)},
+         {"limit", number_json(f.limit)},
+         {"slips", f.slips}});
   out["drive_torque_ranges"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     if (d.varying) {

@@ -102,10 +102,11 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     const std::string name = shown_label(c);
     if (c.speed) {
       const double shown = c.angle ? 30 / std::numbers::pi : 1000;
-      out += fmt::format("  {:{}}  {:>22} {:5}  {:>18} {:4}  ± {:.1g} {}  speed found\n", name, width,
+      out += fmt::format("  {:{}}  {:>22} {:5}  {:>18} {:4}  ± {:.1g} {}  {}\n", name, width,
                          rounded(*c.speed, c.speed_error, 17), c.angle ? "rad/s" : "m/s",
                          rounded(*c.speed * shown, c.speed_error * shown, 12), c.angle ? "rpm" : "mm/s",
-                         c.speed_error, c.angle ? "rad/s" : "m/s");
+                         c.speed_error, c.angle ? "rad/s" : "m/s",
+                         c.dependent ? "speed, closes a loop" : "speed found");
       continue;
     }
     if (c.driven) {
@@ -150,6 +151,11 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   for (const DriveTorque& d : s.drive_torques)
     out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, clean(d.value, load),
                        unit_of(d.angle), range_text(d), d.nonunique ? "  (not unique)" : "");
+  if (!s.frictions.empty()) heading("friction that it rests on");
+  for (const FrictionForce& f : s.frictions)
+    out += fmt::format("  {:{}}  {:>22} of {:.9g} {}{}\n", shown_label(f), width,
+                       f.value ? fmt::format("{:.9g}", *f.value) : std::string("not determined"), f.limit,
+                       unit_of(f.angle), f.slips ? "  slips" : "  holds");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   const auto wrench = [&](const std::string& name, const Vec3& raw_force, const Vec3& raw_torque,
                           const std::string& told) {

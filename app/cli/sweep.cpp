@@ -25,9 +25,19 @@ struct SweepArguments {
   SceneArgument scene;
   std::vector<std::string> vary;
   std::string csv, npz, shard;
-  bool all = false, json = false, no_times = false;
+  bool all = false, periodic = false, json = false, no_times = false;
   double search_time = 1;
 };
+
+bool has_answer(const SweepPoint& p) {
+  return p.solution.status == Status::converged ||
+         (p.periodic && p.periodic->status == PeriodicStatus::found);
+}
+
+std::string why_no_answer(bool periodic, GridSolver solver, std::size_t i) {
+  const SweepPoint p = periodic ? solver.solve_periodic(i) : solver.solve(i);
+  return p.periodic ? p.periodic->message : p.solution.message;
+}
 
 void run(const SweepArguments& options, Ending& ending) {
   check_outputs(options.scene.file, {{"--csv", options.csv}, {"--npz", options.npz}});
@@ -49,9 +59,10 @@ void run(const SweepArguments& options, Ending& ending) {
                      "expected at most 1000000 combinations in a table to read; --csv and --npz take more");
 
   const bool times = !options.no_times && !options.all && options.shard.empty() && !started_together();
-  const SweepColumns columns{variations, value_columns(mechanism), options.all, times};
+  const SweepColumns columns{variations, value_columns(mechanism), options.all, times, options.periodic};
   nlohmann::ordered_json request = {{"variations", std::move(asked)}};
   if (options.all) request["all equilibria"] = {{"search time", options.search_time}};
+  if (options.periodic) request["periodic"] = true;
   StudyPart part = part_of("sweep", mechanism, std::move(request), columns.columns(), grid_size(variations));
   if (!options.shard.empty()) part.shard = parse_shard("--shard", options.shard);
 
@@ -71,7 +82,7 @@ void run(const SweepArguments& options, Ending& ending) {
   SolveOptions search;
   search.search_time = options.search_time;
   rows.count = part.end() - part.begin();
-  if (options.all) rows.largest_block = 1; // each takes its time
+  if (options.all || options.periodic) rows.largest_block = 1; // each takes its time
   rows.maker = [&]() -> RowMaker {
     try {
       return [&, solver = std::make_shared<GridSolver>(mechanism, variations)](std::size_t begin,
@@ -83,13 +94,13 @@ void run(const SweepArguments& options, Ending& ending) {
             if (options.all)
               std::ranges::move(solver->solve_all(i, search), std::back_inserter(points));
             else
-              points.push_back(solver->solve(i));
+              points.push_back(options.periodic ? solver->solve_periodic(i) : solver->solve(i));
           }
         } catch (const SceneError& error) {
           throw options.scene.in_file(error);
         }
-        block.answers = static_cast<std::uint64_t>(std::ranges::count(
-            points, Status::converged, [](const SweepPoint& p) { return p.solution.status; }));
+        block.answers = static_cast<std::uint64_t>(
+            std::ranges::count(points, true, [](const SweepPoint& p) { return has_answer(p); }));
         for (const FormatRows format : formats)
           block.forms.push_back(format(columns, points));
         return block;
@@ -101,9 +112,11 @@ void run(const SweepArguments& options, Ending& ending) {
   const std::uint64_t answers = put_out(rows, *sharing);
   if (!sharing->takes() || answers > 0 || rows.count == 0) return;
   // Why no point has an answer: what is said of the first.
-  ending = end_with(false, options.scene.file,
-                    fmt::format("no steady state at any of the {} points; at the first: {}", rows.count,
-                                GridSolver(mechanism, variations).solve(part.begin()).solution.message));
+  ending =
+      end_with(false, options.scene.file,
+               fmt::format("no steady state{} at any of the {} points; at the first: {}",
+                           options.periodic ? " nor periodic motion" : "", rows.count,
+                           why_no_answer(options.periodic, GridSolver(mechanism, variations), part.begin())));
 }
 
 } // namespace
@@ -127,6 +140,12 @@ void add_sweep(CLI::App& app, Ending& ending) {
                    "operations so that every run finds the same (default 1)")
       ->check(above_zero())
       ->needs(all);
+  command
+      ->add_flag(
+          "--periodic", options->periodic,
+          "Where drives make the balance turn: the periodic motion in place of the steady state, with the "
+          "mean, least and most of each value")
+      ->excludes(all);
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");
   CLI::Option* npz = command->add_option("--npz", options->npz, "Write columns for NumPy to a file");

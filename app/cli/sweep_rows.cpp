@@ -2,6 +2,7 @@
 
 #include "app/cli/npz.hpp"
 #include "app/cli/output.hpp"
+#include "app/cli/periodic_told.hpp"
 #include "app/cli/solution_json.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,37 +28,89 @@ void append_number(std::string& out, double value) {
   out.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
 }
 
+const PeriodicState* motion_of(const SweepPoint& p) {
+  return p.periodic && p.periodic->status == PeriodicStatus::found ? &*p.periodic : nullptr;
+}
+
+// Of a value of a periodic motion; null where there is none.
+const PeriodicRange* range_of(const SweepPoint& p, const ValueColumn& value) {
+  const PeriodicState* motion = motion_of(p);
+  if (!motion) return nullptr;
+  if (value.measure) {
+    const auto m = std::ranges::find(motion->measures, value.name, &PeriodicMeasure::name);
+    return m == motion->measures.end() ? nullptr : &m->range;
+  }
+  for (const PeriodicCoordinate& c : motion->coordinates) {
+    const std::string label = coordinate_label(c);
+    if (value.name == label) return &c.range;
+    if (value.name == label + ".speed") return &c.rate;
+  }
+  return nullptr;
+}
+
+// Of a periodic motion its mean.
 double value_of(const SweepPoint& p, const ValueColumn& value) {
+  if (const PeriodicRange* range = range_of(p, value)) return range->mean;
+  if (motion_of(p)) return std::nan("");
   return value_at(p.solution.coordinates, p.solution.measures, value);
+}
+
+std::array<double, 2> extremes_of(const SweepPoint& p, const ValueColumn& value) {
+  if (const PeriodicRange* range = range_of(p, value)) return {range->least, range->most};
+  const double steady = value_of(p, value);
+  return {steady, steady};
+}
+
+std::string_view status_of(const SweepPoint& p) {
+  return motion_of(p) ? "periodic" : word(p.solution.status);
+}
+
+std::optional<bool> is_stable(const SweepPoint& p) {
+  return motion_of(p) ? motion_of(p)->stable : p.solution.stable;
+}
+
+double residual_of(const SweepPoint& p) {
+  return motion_of(p) ? motion_of(p)->residual : p.solution.residual;
+}
+
+double period_of(const SweepPoint& p) {
+  return motion_of(p) ? motion_of(p)->period : std::nan("");
+}
+
+double run_time_of(const SweepPoint& p) {
+  return p.solution.run_time_s + (p.periodic ? p.periodic->run_time_s : 0);
 }
 
 nlohmann::ordered_json json_of(const SweepColumns& columns, const SweepPoint& p) {
   nlohmann::ordered_json row;
   for (std::size_t v = 0; v < columns.variations.size(); ++v)
     row["parameters"][columns.variations[v].address] = p.parameters[v];
-  row["status"] = word(p.solution.status);
-  row["message"] = p.solution.message;
+  row["status"] = status_of(p);
+  row["message"] = p.periodic ? p.periodic->message : p.solution.message;
+  if (columns.periodic)
+    row["periodic"] = motion_of(p) ? to_json(*motion_of(p)) : nlohmann::ordered_json(nullptr);
   if (columns.all) {
     row["equilibria"] = p.equilibria;
     row["equilibrium"] =
         p.equilibria > 0 ? nlohmann::ordered_json(p.equilibrium) : nlohmann::ordered_json(nullptr);
   }
   row["coordinates"] = nlohmann::ordered_json::object();
+  const bool steady = !motion_of(p); // else they are told with their ranges
   for (const CoordinateSolution& c : p.solution.coordinates) {
+    if (!steady) break;
     if (c.speed)
       row["coordinates"][coordinate_label(c) + ".speed"] = *c.speed;
     else if (!c.driven)
       row["coordinates"][coordinate_label(c)] = c.value;
   }
-  if (!p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
-  row["stable"] =
-      p.solution.stable ? nlohmann::ordered_json(*p.solution.stable) : nlohmann::ordered_json(nullptr);
-  row["stability_reason"] = p.solution.stability_reason
-                                ? nlohmann::ordered_json(word(*p.solution.stability_reason))
-                                : nlohmann::ordered_json(nullptr);
-  if (p.solution.floquet) row["floquet"] = floquet_json(*p.solution.floquet);
-  row["residual"] = number_json(p.solution.residual);
-  if (columns.times) row["run_time_s"] = p.solution.run_time_s;
+  if (steady && !p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
+  const std::optional<bool> stable = is_stable(p);
+  row["stable"] = stable ? nlohmann::ordered_json(*stable) : nlohmann::ordered_json(nullptr);
+  const auto reason = steady ? p.solution.stability_reason : motion_of(p)->stability_reason;
+  row["stability_reason"] = reason ? nlohmann::ordered_json(word(*reason)) : nlohmann::ordered_json(nullptr);
+  if (steady && p.solution.floquet) row["floquet"] = floquet_json(*p.solution.floquet);
+  row["residual"] = number_json(residual_of(p));
+  if (columns.times) row["run_time_s"] = run_time_of(p);
   return row;
 }
 
@@ -68,8 +122,11 @@ std::vector<Column> SweepColumns::columns() const {
     out.push_back({variation.address});
   out.push_back({"status", CellKind::word});
   if (all) out.insert(out.end(), {{"equilibria"}, {"equilibrium"}});
-  for (const ValueColumn& value : values)
+  if (periodic) out.push_back({"period_s"});
+  for (const ValueColumn& value : values) {
     out.push_back({value.name});
+    if (periodic) out.insert(out.end(), {{value.name + ".min"}, {value.name + ".max"}});
+  }
   out.insert(out.end(), {{"stable", CellKind::verdict}, {"residual"}});
   if (times) out.push_back({"run_time_s"});
   return out;
@@ -82,21 +139,26 @@ std::string csv_rows(const SweepColumns& columns, std::span<const SweepPoint> po
       append_number(out, value);
       out += ',';
     }
-    out += word(p.solution.status);
+    out += status_of(p);
     if (columns.all) {
       out += ',' + std::to_string(p.equilibria) + ',';
       if (p.equilibria > 0) out += std::to_string(p.equilibrium);
     }
+    const auto add = [&](double number) {
+      out += ',';
+      append_number(out, number);
+    };
+    if (columns.periodic) add(period_of(p));
     for (const ValueColumn& value : columns.values) {
-      out += ',';
-      append_number(out, value_of(p, value));
+      add(value_of(p, value));
+      if (columns.periodic)
+        for (const double extreme : extremes_of(p, value))
+          add(extreme);
     }
-    out += p.solution.stable ? (*p.solution.stable ? ",true," : ",false,") : ",,";
-    append_number(out, p.solution.residual);
-    if (columns.times) {
-      out += ',';
-      append_number(out, p.solution.run_time_s);
-    }
+    const std::optional<bool> stable = is_stable(p);
+    out += stable ? (*stable ? ",true" : ",false") : ",";
+    add(residual_of(p));
+    if (columns.times) add(run_time_of(p));
     out += '\n';
   }
   return out;
@@ -111,13 +173,17 @@ std::string npz_rows(const SweepColumns& columns, std::span<const SweepPoint> po
   for (std::size_t v = 0; v < columns.variations.size(); ++v)
     numbers([v](const SweepPoint& p) { return p.parameters[v]; });
   for (const SweepPoint& p : points)
-    append_word(out, word(p.solution.status));
-  for (const ValueColumn& value : columns.values)
+    append_word(out, status_of(p));
+  if (columns.periodic) numbers(period_of);
+  for (const ValueColumn& value : columns.values) {
     numbers([&](const SweepPoint& p) { return value_of(p, value); });
+    for (std::size_t i = 0; columns.periodic && i < 2; ++i)
+      numbers([&](const SweepPoint& p) { return extremes_of(p, value)[i]; });
+  }
   for (const SweepPoint& p : points)
-    out += static_cast<char>(npz_verdict(p.solution.stable));
-  numbers([](const SweepPoint& p) { return p.solution.residual; });
-  if (columns.times) numbers([](const SweepPoint& p) { return p.solution.run_time_s; });
+    out += static_cast<char>(npz_verdict(is_stable(p)));
+  numbers(residual_of);
+  if (columns.times) numbers(run_time_of);
   return out;
 }
 
@@ -134,8 +200,11 @@ std::vector<std::string> table_head(const SweepColumns& columns, const Mechanism
     head.push_back(named_with_unit(v.address, parameter_unit(mechanism, v.address)));
   head.emplace_back("status");
   if (columns.all) head.insert(head.end(), {"equilibria", "equilibrium"});
-  for (const ValueColumn& value : columns.values)
+  if (columns.periodic) head.emplace_back("period [s]");
+  for (const ValueColumn& value : columns.values) {
     head.push_back(named_with_unit(value.name, value.unit));
+    if (columns.periodic) head.insert(head.end(), {"min", "max"});
+  }
   head.insert(head.end(), {"stable", "residual"});
   if (columns.times) head.emplace_back("time [µs]");
   return head;
@@ -146,19 +215,27 @@ std::string table_rows(const SweepColumns& columns, std::span<const SweepPoint> 
   for (const SweepPoint& p : points) {
     for (const double value : p.parameters)
       out += fmt::format("{:.8g}\t", value);
-    out += word(p.solution.status);
+    out += status_of(p);
     if (columns.all)
       out += fmt::format("\t{}\t{}", p.equilibria, p.equilibria > 0 ? std::to_string(p.equilibrium) : "-");
+    if (columns.periodic) out += motion_of(p) ? fmt::format("\t{:.8g}", period_of(p)) : "\t-";
     for (const ValueColumn& value : columns.values) {
-      const double number = value_of(p, value);
-      if (std::isfinite(number))
-        out += value.measure ? fmt::format("\t{:.10g}", number) : fmt::format("\t{:.10f}", number);
-      else
-        out += value.measure ? "\t-" : "\t";
+      const auto add = [&](double number) {
+        if (std::isfinite(number))
+          out += value.measure ? fmt::format("\t{:.10g}", number)
+                               : fmt::format("\t{:.10f}", std::abs(number) < 5e-11 ? 0 : number); // no sign
+        else
+          out += value.measure ? "\t-" : "\t";
+      };
+      add(value_of(p, value));
+      if (columns.periodic)
+        for (const double extreme : extremes_of(p, value))
+          add(extreme);
     }
-    out += p.solution.stable ? (*p.solution.stable ? "\tyes" : "\tno") : "\t-";
-    out += std::isfinite(p.solution.residual) ? fmt::format("\t{:.1e}", p.solution.residual) : "\t-";
-    if (columns.times) out += fmt::format("\t{:.1f}", p.solution.run_time_s * 1e6);
+    const std::optional<bool> stable = is_stable(p);
+    out += stable ? (*stable ? "\tyes" : "\tno") : "\t-";
+    out += std::isfinite(residual_of(p)) ? fmt::format("\t{:.1e}", residual_of(p)) : "\t-";
+    if (columns.times) out += fmt::format("\t{:.1f}", run_time_of(p) * 1e6);
     out += '\n';
   }
   return out;

@@ -1,5 +1,6 @@
 // What a row of a sweep tells, in each form: the varied numbers, the status, coordinates, measures,
-// stability, residual and run time; of all equilibria also how many there are and which one it is.
+// stability, residual and run time; of all equilibria also how many there are and which one it is. Of periodic
+// motions in the place of steady states also the period and, of each value, the mean, least and most.
 #pragma once
 
 #include "app/cli/row_output.hpp"
@@ -17,6 +18,7 @@ struct SweepColumns {
   std::vector<ValueColumn> values;
   bool all = false;  // of all equilibria
   bool times = true; // run times, which are others in every run
+  bool periodic = false;
 
   std::vector<Column> columns() const;
 };

@@ -15,6 +15,7 @@ struct ValueColumn {
   std::string name, unit; // "slide", or "free.2"
   bool measure = false;   // one of the measures rather than the coordinates
   std::size_t place = 0;  // there
+  bool speed = false;     // of the coordinate
 };
 std::vector<ValueColumn> value_columns(const Mechanism& mechanism);
 

@@ -68,8 +68,8 @@ class Paste {
         for (std::string& end : joint.joints)
           end = end_at(end, joints_[joint_of_end(end)]);
       for (Formula& formula : joint.formulas)
-        if (is_drive_law(formula))
-          formula.text = parts_renamed_in(formula.text, ResultPart::joint,
+        if (is_drive_law(from_, formula))
+          formula.text = parts_renamed_in(with_measures(from_, formula.text), ResultPart::joint,
                                           [&](const std::string& name) { return joints_[name]; });
       append(PartKind::joint, to_.joints, joint);
     }

@@ -94,17 +94,18 @@ class Copier {
   }
 
   // The torque of a copied drive is one of the copies' coordinates, and along that of the copy.
-  static void follow_in_laws(Joint& image, const Isometry& isometry, const Names& joints) {
+  void follow_in_laws(Joint& image, const Isometry& isometry, const Names& joints) const {
     const std::vector<CoordinateImage> images = images_of_coordinates(image.type, isometry);
     for (std::size_t i = 0; i < image.coordinates.size(); ++i)
       for (const char* which : {"torque", "load"}) {
-        const Formula* law = drive_law(image, static_cast<int>(i), which);
+        const Formula* law = drive_law(before_, image, static_cast<int>(i), which);
         if (!law) continue;
         Formula& followed = image.formulas[static_cast<std::size_t>(law - image.formulas.data())];
-        followed.text = parts_renamed_in(law->text, ResultPart::joint, [&](const std::string& name) {
-          const auto copy = joints.find(name);
-          return copy == joints.end() ? name : copy->second;
-        });
+        followed.text = parts_renamed_in(with_measures(before_, law->text), ResultPart::joint,
+                                         [&](const std::string& name) {
+                                           const auto copy = joints.find(name);
+                                           return copy == joints.end() ? name : copy->second;
+                                         });
         if (images[i].sign < 0) followed.text = "-(" + followed.text + ")";
       }
   }

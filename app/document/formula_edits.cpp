@@ -431,7 +431,7 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
     if (is_named(given) && is_moved(given)) moved.push_back(given);
   const std::vector<GivenNumber> all = given_numbers(settled);
   for (const GivenNumber& given : all) {
-    if (is_named(given) || is_of_state(given.text)) continue;
+    if (is_named(given) || is_of_state(next, given.text)) continue;
     const std::string part = owner(given.part);
     const bool is_part =
         part.find('.') != std::string::npos && !part.starts_with("gravity") && !part.starts_with("air.");

@@ -32,6 +32,16 @@ bool is_lost(const Mechanism& mechanism, const NamedMeasure& measure) {
   return !mistakes_of(alone).empty();
 }
 
+// In measures and laws, where a measure is called by name.
+void replace_in_uses(Mechanism& mechanism, const std::string& name, const std::string& text) {
+  for (NamedMeasure& each : mechanism.measures)
+    each.text = renamed_in(each.text, name, text);
+  for (Joint& joint : mechanism.joints)
+    for (Formula& formula : joint.formulas)
+      if (formula.key.starts_with("drive.") && parameter_index(mechanism, name) < 0)
+        formula.text = renamed_in(formula.text, name, text);
+}
+
 } // namespace
 
 void set_measure(Mechanism& mechanism, const std::string& name, const NamedMeasure& measure) {
@@ -42,9 +52,7 @@ void set_measure(Mechanism& mechanism, const std::string& name, const NamedMeasu
     next.measures.push_back(measure);
   } else {
     next.measures[static_cast<std::size_t>(index)] = measure;
-    if (name != measure.name)
-      for (NamedMeasure& each : next.measures)
-        each.text = renamed_in(each.text, name, measure.name);
+    if (name != measure.name) replace_in_uses(next, name, measure.name);
   }
   // Only its own mistakes: others may be being mended.
   for (const SceneError& error : mistakes_of(next))
@@ -67,10 +75,8 @@ std::string measure_mistake(const Mechanism& mechanism, const std::string& name,
 void remove_measure(Mechanism& mechanism, const std::string& name) {
   const int index = measure_index(mechanism, name);
   if (index < 0) throw SceneError("measures." + name, "there is no such measure");
-  const std::string text = "(" + mechanism.measures[static_cast<std::size_t>(index)].text + ")";
+  replace_in_uses(mechanism, name, "(" + mechanism.measures[static_cast<std::size_t>(index)].text + ")");
   mechanism.measures.erase(mechanism.measures.begin() + index);
-  for (NamedMeasure& each : mechanism.measures)
-    each.text = renamed_in(each.text, name, text);
 }
 
 void follow_in_measures(Mechanism& mechanism, const Part& part, const std::string& name) {
@@ -81,7 +87,8 @@ void follow_in_measures(Mechanism& mechanism, const Part& part, const std::strin
     each.text = part_renamed_in(each.text, kind, part.name, name);
   for (Joint& joint : mechanism.joints)
     for (Formula& formula : joint.formulas)
-      if (is_drive_law(formula)) formula.text = part_renamed_in(formula.text, kind, part.name, name);
+      if (is_drive_law(mechanism, formula))
+        formula.text = part_renamed_in(formula.text, kind, part.name, name);
 }
 
 void drop_lost_measures(Mechanism& mechanism) {

@@ -1,6 +1,25 @@
 #include "app/plot/ribbon_plot.hpp"
 
 namespace flyball {
+namespace {
+
+void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
+  const std::vector<HysteresisPoint> way = hysteresis(points, name);
+  if (way.empty()) return;
+  PlotCurve curve{.name = "slow rise and fall",
+                  .points = {},
+                  .line = PlotLine::dashed,
+                  .color = plot_color::vermillion,
+                  .width = 1.4};
+  for (std::size_t i = 0; i < way.size(); ++i)
+    curve.points.push_back({points[i].number, way[i].forth});
+  for (std::size_t i = way.size(); i-- > 0;)
+    curve.points.push_back({points[i].number, way[i].back});
+  curve.points.push_back({points[0].number, way[0].forth});
+  plot.curves.push_back(std::move(curve));
+}
+
+} // namespace
 
 void add_ribbon(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
   std::size_t begin = 0;
@@ -18,6 +37,7 @@ void add_ribbon(Plot& plot, std::span<const RibbonPoint> points, std::string_vie
     plot.bands.push_back(std::move(band));
     plot.curves.push_back(std::move(rising));
     plot.curves.push_back(std::move(falling));
+    add_way(plot, points.subspan(begin, end - begin), name);
   };
   double direction = 0; // in which the number goes
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -17,7 +17,8 @@ Html coordinates_table(const Solution& s) {
       const std::string_view unit = c.angle ? "rad/s" : "m/s";
       const double shown = c.angle ? 30 / std::numbers::pi : 1000;
       table.row({label, quantity_within(*c.speed, c.speed_error, unit), magnitude(c.speed_error, unit),
-                 quantity(*c.speed * shown, c.angle ? "rpm" : "mm/s"), "speed, found"});
+                 quantity(*c.speed * shown, c.angle ? "rpm" : "mm/s"),
+                 c.dependent ? "speed, closes a loop" : "speed, found"});
       continue;
     }
     if (c.driven) {

@@ -23,7 +23,8 @@ std::optional<FrictionRequest> request_of(const Session& session) {
   const LiveAnswer& answer = session.answer;
   if (!answer.mechanism || answer.error || !has_friction(*answer.mechanism)) return std::nullopt;
   FrictionRequest request{{answer.mechanism}, {}};
-  if (answer.solution.status == Status::converged) request.steady = start_values(answer.solution.coordinates);
+  if (answer.solution.status == Status::converged && answer.solution.frictions.empty())
+    request.steady = start_values(answer.solution.coordinates);
   return request;
 }
 

@@ -1,6 +1,7 @@
 // Gears as toothed wheels that mesh, or as signs that dots tie; belts as loops around their wheels, racks
 // with their pinion, screws as a thread along the slide.
 #include "app/viewport/glyphs.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +35,12 @@ void draw_dots(Sketch& sketch, const Vec3& from, const Vec3& to, double u) {
 }
 
 // The straight parts touch both wheels at angles to the line of centres whose cosine is the difference, or if
-// crossed the sum, of the radii by the distance. False where there is no such loop.
-bool draw_belt(Sketch& sketch, const Joint& belt, const GearEnd& a, const GearEnd& b, double u,
-               const Palette& colors) {
-  const double parallel = a.axis.dot(b.axis), sum = belt.radii[0] + (belt.crossed ? 1 : -1) * belt.radii[1];
+// crossed the sum, of the radii by the distance. Crossed where the wheels turn against each other in space.
+// False where there is no such loop.
+bool draw_belt(Sketch& sketch, const Mechanism& mechanism, const Joint& belt, const GearEnd& a,
+               const GearEnd& b, double u, const Palette& colors) {
+  const bool crossed = belt.crossed == wheels_turn_alike(mechanism, belt);
+  const double parallel = a.axis.dot(b.axis), sum = belt.radii[0] + (crossed ? 1 : -1) * belt.radii[1];
   const Vec3 center_a = a.at + 1.7 * u * a.axis;
   const Vec3 center_b = b.at + a.axis * a.axis.dot(center_a - b.at); // in the plane of the first wheel
   const Vec3 line = center_b - center_a;
@@ -54,8 +57,7 @@ bool draw_belt(Sketch& sketch, const Joint& belt, const GearEnd& a, const GearEn
   const double cosine = sum / distance, sine = std::sqrt(1 - cosine * cosine);
   for (const double side : {-1.0, 1.0}) {
     const Vec3 out = cosine * along + side * sine * across;
-    sketch.rod(center_a + belt.radii[0] * out, center_b + (belt.crossed ? -1 : 1) * belt.radii[1] * out,
-               wire);
+    sketch.rod(center_a + belt.radii[0] * out, center_b + (crossed ? -1 : 1) * belt.radii[1] * out, wire);
   }
   return true;
 }
@@ -106,7 +108,7 @@ void draw_gear(Sketch& sketch, const Assembly& assembly, std::size_t index, cons
   const double u = assembly.scale.unit;
   const auto a = gear_end(assembly, gear.joints[0]), b = gear_end(assembly, gear.joints[1]);
   if (!a || !b) return;
-  if (gear.kind == GearKind::belt && draw_belt(sketch, gear, *a, *b, u, colors)) return;
+  if (gear.kind == GearKind::belt && draw_belt(sketch, assembly.mechanism, gear, *a, *b, u, colors)) return;
   if (gear.kind == GearKind::rack) return draw_rack(sketch, gear.radii[0], *a, *b, u, colors);
   if (gear.kind == GearKind::screw) return draw_screw(sketch, *a, *b, u, colors);
   sketch.pen.color = colors.metal_dark;

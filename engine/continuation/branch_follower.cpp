@@ -12,6 +12,7 @@
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/solve/singular_loops.hpp"
+#include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -67,6 +68,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   const FactoredState at = factor_at(problem, z, w);
   point.singular_loops = at_singular_loops(problem, z, w);
   Stability stability = find_stability(at, details.eigenvalues);
+  if (sign_is_open(at, stability)) leave_open(stability);
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;
@@ -294,6 +296,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     const double p = position(next.parameter);
     if (p > 1 || p < 0) {
+      find_specials_inside(state, next, length, now, out);
       land_on_border(state, p > 1 ? to_ : from_, out);
       out.end = p > 1 ? "the end of the range" : "the beginning of the range";
       break;
@@ -317,7 +320,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
         same_pose(family_.problem(), next.z.q, origin.z.q, length) &&
         next.tangent.dot(origin.tangent) > 0.9) {
-      out.end = "closed";
+      out.end = closed_branch;
       out.closed = true;
       break;
     }
@@ -361,6 +364,27 @@ void BranchFollower::find_specials(const BranchState& state, const BranchState& 
   }
   if (options_.eigenvalues && std::abs(then.right - now.right) > explained)
     find_pair_crossings(state, next, length, now.right, then.right, out);
+}
+
+// Of a step that leaves the range those within it.
+void BranchFollower::find_specials_inside(const BranchState& state, const BranchState& beyond, double length,
+                                          const Described& now, FollowedBranch& out) {
+  FollowedBranch last;
+  try {
+    if (!holds_at_every_phase(beyond)) return;
+    find_specials(state, beyond, length, now, describe(beyond), last);
+  } catch (const SceneError&) { // no mechanism can be made a little beyond the range
+    return;
+  }
+  std::size_t crossing = 0;
+  for (auto& [type, point] : last.special) {
+    const bool crosses = type == SpecialPointType::branch_point;
+    const std::size_t at = crossing;
+    crossing += crosses ? 1 : 0;
+    if (const double p = position(point.parameter); p < 0 || p > 1) continue;
+    if (crosses) out.crossings.push_back(std::move(last.crossings[at]));
+    out.special.emplace_back(type, std::move(point));
+  }
 }
 
 // Every place on a step at which the number of eigenvalues to the right of the axis changes, in order.

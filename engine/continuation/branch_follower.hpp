@@ -90,6 +90,8 @@ class BranchFollower {
                                         double at_high, const BranchState& beyond, Value value);
   void find_specials(const BranchState& state, const BranchState& next, double length, const Described& now,
                      const Described& then, FollowedBranch& out);
+  void find_specials_inside(const BranchState& state, const BranchState& beyond, double length,
+                            const Described& now, FollowedBranch& out);
   Spectrum spectrum(const BranchState& state);
   void find_pair_crossings(const BranchState& state, const BranchState& next, double length, int before,
                            int after, FollowedBranch& out);

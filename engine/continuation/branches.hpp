@@ -40,6 +40,9 @@ struct SpecialPoint {
   int branch = 0;
 };
 
+// The end of a branch that comes back to where it began.
+inline constexpr std::string_view closed_branch = "closed";
+
 struct ResponseBranch {
   std::vector<ResponsePoint> points;
   std::string end;   // why it stops at its last point, in words

@@ -5,6 +5,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flyball {
 namespace {
@@ -64,7 +65,8 @@ MethodChoice choose_method(Equations& equations, double t, const Eigen::VectorXd
     implicit_cost = std::max(implicit_cost, 2 * size * alive * steps_implicit * std::pow(tolerance, -1. / 5));
   }
   out.fastest = fastest;
-  out.rate_scale = std::max({driven, slowest, 1e-3 * fastest});
+  // A slowest rate that is nothing but rounding says nothing beside how it moves and what moves it.
+  out.rate_scale = std::max({driven, slowest, 1e-3 * std::max({fastest, speed, std::sqrt(push)})});
   if (!(out.rate_scale > 0)) out.rate_scale = 1;
 
   if (wanted != Integrator::automatic) {

@@ -4,12 +4,17 @@
 #include "engine/solve/tied_motions.hpp"
 #include "engine/system/joint_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace flyball {
 namespace {
 
 constexpr double nothing = 1e-9; // of a rate, relative
+// How little a coordinate moves as the loops do, scaled, where it is taken to pass a dead point, and how fast
+// the loops then move, relative.
+constexpr double hardly = 1e-6, passing = 1e-6;
 
 // The constraint q = its value, as a gear that ties the coordinate to none.
 void add_hold(MotionModel& model, const Link& link, double value) {
@@ -45,7 +50,8 @@ std::vector<FrictionElement> list_frictions(const MotionModel& model) {
 }
 
 FrictionModes with_modes(const MotionModel& free, const std::vector<FrictionElement>& frictions,
-                         const std::vector<int>& slips, const Eigen::VectorXd& q) {
+                         const std::vector<int>& slips, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                         double rate) {
   auto model = std::make_shared<MotionModel>(free);
   FrictionModes out;
   std::vector<std::size_t> stuck;
@@ -62,7 +68,23 @@ FrictionModes with_modes(const MotionModel& free, const std::vector<FrictionElem
     return out;
   }
   Workspace w;
-  const TiedMotions tied = find_tied_motions(free.problem(), q, entries, w);
+  TiedMotions tied = find_tied_motions(free.problem(), q, entries, w);
+  if (free.system.rows > 0) {
+    const Eigen::MatrixXd& basis = w.dense.constraints().basis();
+    const auto passes = [&](std::size_t i) {
+      const int v = free.system.links[static_cast<std::size_t>(frictions[i].link)].v;
+      const double moves = basis.row(v).norm();
+      return moves < hardly && std::abs(u[v]) > passing * rate * free.scaling.column[v] * moves;
+    };
+    std::ranges::copy_if(stuck, std::back_inserter(out.at_dead_points), passes);
+    if (!out.at_dead_points.empty()) {
+      std::erase_if(stuck, passes);
+      entries.clear();
+      for (const std::size_t i : stuck)
+        entries.push_back(free.system.links[static_cast<std::size_t>(frictions[i].link)].v);
+      tied = find_tied_motions(free.problem(), q, entries, w);
+    }
+  }
   for (const std::size_t i : tied.independent) {
     const FrictionElement& element = frictions[stuck[i]];
     const Link& link = free.system.links[static_cast<std::size_t>(element.link)];

@@ -33,12 +33,16 @@ inline constexpr double slipping_by = 1 + 1e-9;
 struct FrictionModes {
   std::shared_ptr<const MotionModel> model;
   std::vector<FrictionHold> holds;
-  std::vector<std::size_t> at_dead_points; // elements that would stick, but do not move by the loops
+  // Elements whose coordinates are at dead points: they stand still while the loops move, and to hold them
+  // holds nothing. Or would stop at once what passes on.
+  std::vector<std::size_t> at_dead_points;
 };
 
 // `slips` by element: 1 where the coordinate grows, -1 where it falls, 0 where it sticks at q. The model has
-// the states of `free`. Throws SceneError where loops tie one that sticks to several others.
+// the states of `free`. `u`: the rates with which it comes to q, `rate` (1/s): a usual one. Throws SceneError
+// where loops tie one that sticks to several others.
 FrictionModes with_modes(const MotionModel& free, const std::vector<FrictionElement>& frictions,
-                         const std::vector<int>& slips, const Eigen::VectorXd& q);
+                         const std::vector<int>& slips, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                         double rate);
 
 } // namespace flyball

@@ -46,7 +46,9 @@ bool has_pairs(const System& system) {
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   MotionModel m;
   m.mechanism = mechanism;
-  m.system = compile_for_motion(mechanism);
+  const System steady = compile_for_drives(mechanism);
+  m.system = compile_for_motion(mechanism, steady);
+  m.finds_speeds = !steady.torques.empty();
   m.released = released(m.system);
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
@@ -64,7 +66,7 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   for (BearingParameters& b : m.parameters.bearings)
     b.damping.setZero();
   for (CutDamperParameters& d : m.parameters.cut_dampers)
-    d.damping = 0;
+    d.remove_damper();
   return m;
 }
 

@@ -9,10 +9,11 @@ namespace flyball {
 
 struct MotionModel {
   Mechanism mechanism;
-  System system;         // cut where the direct solution cuts
-  System released;       // the same with drives as coordinates
-  Parameters parameters; // of both; dampers zero where the motion is to be undamped
-  Scaling scaling;       // of the free coordinates and the constraint rows
+  System system;             // cut where the direct solution cuts
+  System released;           // the same with drives as coordinates
+  Parameters parameters;     // of both; dampers zero where the motion is to be undamped
+  Scaling scaling;           // of the free coordinates and the constraint rows
+  bool finds_speeds = false; // in the steady state: by torques, momenta that are kept, or loops
   // The equations of motion are solved along the tree (tree_motion.hpp), as far as all that moves has mass.
   bool along_tree = false;
   // They are as sparse equations of the bodies (sparse_motion.hpp), as far as the same holds.

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -59,7 +60,8 @@ struct Simulator::State {
   std::vector<Vec3> bearing_turns;         // rad, by bearing: of those that resist turns, at the last step
   std::shared_ptr<const MotionModel> free; // without what friction adds; null where there is none
   std::vector<FrictionElement> frictions;
-  std::vector<int> slips; // by friction, see with_modes()
+  std::vector<int> slips;             // by friction, see with_modes()
+  std::vector<std::size_t> undecided; // frictions at dead points that nothing moves
   std::vector<FrictionHold> holds;
   double rate_scale = 1, energy_scale = 1;
   double fastest = 0; // 1/s, of the linearised motion where the method was chosen; 0: not known
@@ -128,29 +130,25 @@ struct Simulator::State {
 
   // Which joints with friction stick and which way others slip, from q and u on: those that stand still
   // stick, unless that takes more than their limits. The one that it takes most of gives way, with what loops
-  // tie to it, again and again. Leaves model, equations and s.
-  void settle_frictions(double t, Eigen::VectorXd u) {
+  // tie to it, again and again. Leaves model, equations and s. What has turned back has come to a stop, or
+  // else has passed a dead point on the way.
+  enum class Turned { stopped, passed };
+  void settle_frictions(double t, Eigen::VectorXd u, Turned turned_back = Turned::stopped) {
     best_independence = 0;
+    const Eigen::VectorXd coming = u;
     const std::vector<int> before = std::exchange(slips, std::vector<int>(frictions.size(), 0));
     for (std::size_t i = 0; i < frictions.size(); ++i) {
       const int v = v_of(frictions[i]);
       const double usual = model->scaling.column[v] * rate_scale;
-      // One that slipped the other way has come to a stop.
-      const bool turned = !before.empty() && before[i] * u[v] < 0;
+      const bool turned = turned_back == Turned::stopped && !before.empty() && before[i] * u[v] < 0;
       if (std::abs(u[v]) > still * usual && !turned)
         slips[i] = u[v] > 0 ? 1 : -1;
       else
         u[v] = 0;
     }
-    for (std::size_t tries = 0; tries <= 2 * frictions.size(); ++tries) {
-      FrictionModes modes = with_modes(*free, frictions, slips, q);
-      bool passes = false; // a dead point, from which its coordinate goes back as the others go on
-      for (const std::size_t i : modes.at_dead_points)
-        if (!before.empty() && before[i] != 0) {
-          slips[i] = -before[i];
-          passes = true;
-        }
-      if (passes) continue;
+    for (std::size_t tries = 0; tries <= 3 * frictions.size(); ++tries) {
+      FrictionModes modes = with_modes(*free, frictions, slips, q, coming, rate_scale);
+      undecided = std::move(modes.at_dead_points);
       equations.reset();
       model = std::move(modes.model);
       holds = std::move(modes.holds);
@@ -159,6 +157,7 @@ struct Simulator::State {
       if (!equations->evaluate(t, q, s))
         throw SceneError("", "the equations of motion have no solution where friction sticks: " +
                                  equations->unsolved());
+      if (leave_dead_points(t)) continue;
       const FrictionHold* worst = nullptr;
       double most = slipping_by;
       for (const FrictionHold& hold : holds) {
@@ -181,6 +180,42 @@ struct Simulator::State {
         recorder->name(frictions[i], run.frictions.back());
       }
     if (recorder) recorder->follow(model, *equations);
+  }
+
+  // Which way coordinates go on from dead points, where their friction does nothing: as they bend away from
+  // there, with the rates of the evaluated state or, where these do not move them, with what they become by
+  // its accelerations. True where one is found.
+  bool leave_dead_points(double t) {
+    if (undecided.empty()) return false;
+    // Of the largest acceleration, which moves what is as good as at a dead point by less; of a usual rate.
+    constexpr double seen = 2e-6, later = 0.05;
+    const Eigen::VectorXd& column = model->scaling.column;
+    const auto size = [&](const Eigen::VectorXd& x) {
+      return x.cwiseQuotient(column).lpNorm<Eigen::Infinity>();
+    };
+    bool found = false;
+    const auto look = [&] {
+      const Eigen::VectorXd& bends = equations->acceleration();
+      const double least = seen * size(bends);
+      for (const std::size_t i : undecided)
+        if (const int v = v_of(frictions[i]); slips[i] == 0 && std::abs(bends[v]) / column[v] > least) {
+          slips[i] = bends[v] > 0 ? 1 : -1;
+          found = true;
+        }
+    };
+    look();
+    const double most = size(equations->acceleration());
+    if (found || !(most > 0)) return found;
+    Eigen::VectorXd at = q, along = s + later * std::max(rate_scale, std::sqrt(most)) / most *
+                                            equations->acceleration();
+    if (equations->project(t, at, along) && equations->evaluate(t, at, along)) look();
+    return found || !equations->evaluate(t, q, s);
+  }
+  bool has_left_dead_point(const Eigen::VectorXd& state) const {
+    return std::ranges::any_of(undecided, [&](std::size_t i) {
+      const int v = v_of(frictions[i]);
+      return std::abs(state[model->system.nq + v]) > still * model->scaling.column[v] * rate_scale;
+    });
   }
 
   int v_of(const FrictionElement& friction) const {
@@ -343,12 +378,17 @@ struct Simulator::State {
     if (!changed && !frictions_change) return;
     equations->latch(stops, touching, flips);
     ode->set_touching(touching);
+    if (frictions_change) return change_frictions(t, u);
+    ode->pack(q, s, ode->energies(y), y);
+    start_stepper(t);
+  }
+
+  // From the evaluated state on.
+  void change_frictions(double t, const Eigen::VectorXd& u, Turned turned_back = Turned::stopped) {
     const Eigen::Vector3d energies = ode->energies(y);
-    if (frictions_change) {
-      settle_frictions(t, u);
-      stepper->count(run.statistics);
-      use_method(method);
-    }
+    settle_frictions(t, u, turned_back);
+    stepper->count(run.statistics);
+    use_method(method);
     ode->pack(q, s, energies, y);
     start_stepper(t);
   }
@@ -389,6 +429,26 @@ struct Simulator::State {
     return rotation(flip, turned).w() / 2;
   }
 
+  bool some_slip_has_turned(const Eigen::VectorXd& u) const {
+    for (std::size_t i = 0; i < frictions.size(); ++i)
+      if (slips[i] * u[v_of(frictions[i])] < 0) return true;
+    return false;
+  }
+  // Where a slip turns back as the loops come to a singular position it has not stopped: the step is taken
+  // back, and the way there halved until it can be leapt over.
+  bool comes_to_singular_position(const StepOutcome& outcome) {
+    constexpr int most = 60; // halvings
+    const auto first = static_cast<int>(stops.size() + flips.size());
+    if (halvings >= most || std::ranges::none_of(outcome.events, [&](int e) { return e >= first; }))
+      return false;
+    if (settle(outcome.time, nullptr) && equations->independence() >= 0.01 * best_independence) return false;
+    ++halvings;
+    y = whole;
+    start_stepper(began);
+    before_singular = began + (outcome.time - began) / 2;
+    return true;
+  }
+
   // J, by which the springs of a rotation vector differ from what they were at the other side of half a turn.
   double flip_energy(int link) const {
     const auto l = static_cast<std::size_t>(link);
@@ -420,6 +480,13 @@ struct Simulator::State {
       start_stepper(t);
       return true;
     }
+    if (has_left_dead_point(y)) {
+      ode->unpack(y.data(), q, s);
+      if (!equations->project(t, q, s) || !equations->evaluate(t, q, s))
+        return diverge(t, "the equations of motion have no solution there");
+      change_frictions(t, equations->velocity().head(model->system.nv));
+      return true;
+    }
     const double independence = equations->independence();
     best_independence = std::max(best_independence, independence);
     if (independence < 0.01 * best_independence) {
@@ -431,7 +498,14 @@ struct Simulator::State {
         ode->rate(across->time, y.data(), bridge->end_rate.data());
         bridge->end = y;
         ++run.statistics.singular_positions;
+        halvings = 0;
         start_stepper(across->time);
+        if (some_slip_has_turned(across->s)) {
+          q = across->q;
+          if (!equations->evaluate(across->time, q, across->s))
+            return diverge(across->time, "the equations of motion have no solution there");
+          change_frictions(across->time, equations->velocity().head(model->system.nv), Turned::passed);
+        }
         return true;
       }
     }
@@ -462,9 +536,9 @@ struct Simulator::State {
     if (!pending) return true;
     const StepOutcome outcome = *std::exchange(pending, {});
     stepper->state_at(outcome.time, y);
-    if (outcome.kind != StepOutcome::event) return check_step(outcome.time);
     try {
-      handle_event(outcome);
+      if (outcome.kind != StepOutcome::event) return check_step(outcome.time);
+      if (!comes_to_singular_position(outcome)) handle_event(outcome);
     } catch (const SceneError& error) {
       return diverge(outcome.time, error.what());
     }
@@ -530,7 +604,8 @@ struct Simulator::State {
                                        " steps" + pace());
       if (taken >= review_at) review_method();
       stepper->state_at(stepped_to, whole);
-      const StepOutcome outcome = stepper->step(t);
+      began = stepped_to;
+      const StepOutcome outcome = stepper->step(before_singular > began ? std::min(t, before_singular) : t);
       if (outcome.kind == StepOutcome::failed) {
         torn = interrupt();
         return torn ? false : diverge(outcome.time, reason_of(outcome));
@@ -554,6 +629,10 @@ struct Simulator::State {
   long review_at = 0, judged_at = 0;
   double judged_from = 0; // s
   Eigen::VectorXd whole;  // where the last step began
+  double began = 0;       // s, when
+  // The next step goes no further (s); how often it was cut short since a singular position was passed.
+  double before_singular = -std::numeric_limits<double>::infinity();
+  int halvings = 0;
 
   bool record(double t) {
     double shift = 0;

@@ -189,7 +189,8 @@ void start_at_found_speeds(const SimulationOptions& options, MotionModel& model,
     throw SceneError("", "there is no steady state to start from: " + steady.message);
   std::vector<std::pair<std::string, double>> start;
   for (const CoordinateSolution& c : steady.coordinates) {
-    if (!c.driven && !c.dependent) start.emplace_back(coordinate_label(c), c.value);
+    if (c.dependent) continue;
+    if (!c.driven) start.emplace_back(coordinate_label(c), c.value);
     if (!c.speed) continue;
     const int found = coordinate_called(model.system, coordinate_label(c));
     u[model.system
@@ -202,10 +203,12 @@ void start_at_found_speeds(const SimulationOptions& options, MotionModel& model,
 // The steady state that `solve` answers with.
 void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, Eigen::VectorXd& q,
                           Eigen::VectorXd& u) {
-  if (!model.system.torques.empty()) return start_at_found_speeds(options, model, q, u);
+  if (model.finds_speeds) return start_at_found_speeds(options, model, q, u);
   const Problem problem{model.system, model.parameters, model.scaling, options.cancel, model.system.kkt_form};
   SteadyState steady;
   steady.find(problem, q, q, {.seconds = SolveOptions{}.search});
+  if (!steady.holds && has_friction(model.mechanism)) // which may hold it, or let it slip on and on
+    return start_at_found_speeds(options, model, q, u);
   if (!steady.holds) {
     const Stability unknown;
     const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};

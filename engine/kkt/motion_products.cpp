@@ -28,6 +28,20 @@ Eigen::VectorXd any_motion(int size) {
 
 void MotionProducts::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                const Residual<double>& residual) {
+  with_momenta_ = true;
+  take_in(problem, z, k, residual);
+  number_momenta();
+  velocity_matters_ = has_dampers_ || (problem.parameters.moving && coriolis_matters());
+}
+
+void MotionProducts::linearize_forces(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                                      const Residual<double>& residual) {
+  with_momenta_ = false;
+  take_in(problem, z, k, residual);
+}
+
+void MotionProducts::take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+                             const Residual<double>& residual) {
   coordinates_ = problem.system.nv;
   rows_ = problem.system.rows;
   has_dampers_ = false;
@@ -36,8 +50,6 @@ void MotionProducts::linearize(const Problem& problem, const Unknowns& z, const 
   add_pairs(problem, z, k);
   add_dampers(problem, k);
   set_rows(problem, k);
-  number_momenta();
-  velocity_matters_ = has_dampers_ || (problem.parameters.moving && coriolis_matters());
 }
 
 void MotionProducts::add_links(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
@@ -64,14 +76,15 @@ void MotionProducts::set_body(const Problem& problem, const Kinematics<double>& 
   const LinkParameters& lp = problem.parameters.links[l];
   n.stiffness.setZero();
   n.damping.setZero();
-  BodyInertia body;
+  BodyInertia& body = n.body;
   set_body_stiffness(problem.parameters, l, k, body, n.stiffness);
+  body.turning = 0;
   if (body.massless()) return;
   n.stiff = n.heavy = true;
   n.root_of_mass = std::sqrt(lp.mass);
   n.centre = k.links[l].R * lp.com;
   n.root_of_inertia.setZero();
-  if (lp.has_inertia) {
+  if (lp.has_inertia && with_momenta_) {
     const Mat3& r = k.links[l].R;
     n.root_of_inertia = square_root(r * lp.inertia * r.transpose());
   }
@@ -267,6 +280,15 @@ void MotionProducts::momentum_transposed(const Eigen::VectorXd& p, Eigen::Vector
 void MotionProducts::mass(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
   momentum(x, momenta_);
   momentum_transposed(momenta_, out);
+}
+
+void MotionProducts::inertia(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
+  outwards(x);
+  for (Node& n : nodes_)
+    n.wrench.setZero();
+  inwards(out, [&](Node& n) {
+    if (n.heavy) n.wrench += times_inertia(n.body, n.motion);
+  });
 }
 
 void MotionProducts::velocity(const Eigen::VectorXd& x, Eigen::VectorXd& out) {

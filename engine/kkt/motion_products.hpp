@@ -22,6 +22,10 @@ class MotionProducts {
   void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual);
 
+  // The same for velocity(), stiffness() and inertia() alone, at a part of the cost.
+  void linearize_forces(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
+                        const Residual<double>& residual);
+
   int coordinates() const { return coordinates_; }
 
   // The bodies' momenta, each divided by the root of its inertia: L x with L^T L = M, without entries that no
@@ -31,6 +35,8 @@ class MotionProducts {
   void momentum_transposed(const Eigen::VectorXd& p, Eigen::VectorXd& out);
 
   void mass(const Eigen::VectorXd& x, Eigen::VectorXd& out);
+  // The same without momenta.
+  void inertia(const Eigen::VectorXd& x, Eigen::VectorXd& out);
   void velocity(const Eigen::VectorXd& x, Eigen::VectorXd& out);
   void stiffness(const Eigen::VectorXd& x, Eigen::VectorXd& out);
   // 2-norm of what K x is made of, in the motions of the bodies: by each coordinate's own stiffness, the
@@ -43,7 +49,11 @@ class MotionProducts {
   bool velocity_matters() const { return velocity_matters_; }
 
  private:
+  void take_in(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
+               const Residual<double>& residual);
+
   struct Node {
+    BodyInertia body;
     int link = -1, parent = -1, v = -1;
     int columns = 0; // of its coordinates: 0, 1 or 3
     bool angular = false;
@@ -96,7 +106,7 @@ class MotionProducts {
   void inwards(Eigen::VectorXd& out, Own own);
 
   int coordinates_ = 0, rows_ = 0, momentum_count_ = 0;
-  bool velocity_matters_ = false, has_dampers_ = false;
+  bool velocity_matters_ = false, has_dampers_ = false, with_momenta_ = true;
   std::vector<Node> nodes_; // of mobile links, parents before children
   std::vector<int> node_of_link_;
   std::vector<Pair> pairs_;

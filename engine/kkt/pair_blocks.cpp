@@ -1,5 +1,7 @@
 #include "engine/kkt/pair_blocks.hpp"
 
+#include "engine/system/cut_damper.hpp"
+
 namespace flyball {
 namespace {
 
@@ -135,11 +137,13 @@ PairBlocks spring_blocks(const PointSpringElement& e, const PointSpringParameter
 PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p,
                          const Kinematics<double>& k) {
   const LinkState<double>&la = k.at(e.ends.a), &lb = k.at(e.ends.b);
-  const Vec3 axis = la.R * p.axis;
+  const CutDamperState<double> s = cut_damper_state<double>(e, p, k);
+  const Vec3& axis = s.axis;
+  const double damping = p.resistance_slope(s.rate);
   if (e.angular) {
-    const Vec3 slip = lb.w - la.w, torque = p.damping * axis.dot(slip) * axis;
+    const Vec3 slip = lb.w - la.w, torque = s.resistance * axis;
     // The rate changes as the axis turns with a, and the torque with it.
-    const Mat3 by_a = -p.damping * axis * slip.transpose() * skew(axis) - skew(torque);
+    const Mat3 by_a = -damping * axis * slip.transpose() * skew(axis) - skew(torque);
     PairBlocks x;
     x.set_zero();
     x.bb.topLeftCorner<3, 3>() = skew(torque);
@@ -149,12 +153,11 @@ PairBlocks damper_blocks(const CutDamperElement& e, const CutDamperParameters& p
     x.on_a = -x.on_b;
     return x;
   }
-  const Vec3 b = k.point(e.ends.b, p.b);
-  const Ends at = ends_of(e.ends, b, b, k);
-  const Vec3 slip = k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b);
-  const Vec3 force = p.damping * axis.dot(slip) * axis;
-  const Mat36 by_a = -p.damping * axis * slip.transpose() * turns(axis) - turns(force);
-  const Mat36 by_b = p.damping * axis * axis.transpose() * skew<double>(lb.w - la.w) * at.pb;
+  const Ends at = ends_of(e.ends, s.b, s.b, k);
+  const Vec3 slip = k.velocity(e.ends.b, s.b) - k.velocity(e.ends.a, s.b);
+  const Vec3 force = s.resistance * axis;
+  const Mat36 by_a = -damping * axis * slip.transpose() * turns(axis) - turns(force);
+  const Mat36 by_b = damping * axis * axis.transpose() * skew<double>(lb.w - la.w) * at.pb;
   return force_at_b(force, at.pa, at.pb, by_a, by_b);
 }
 
@@ -218,17 +221,16 @@ PairDamping spring_damping(const PointSpringElement& e, const PointSpringParamet
 
 PairDamping damper_damping(const CutDamperElement& e, const CutDamperParameters& p,
                            const Kinematics<double>& k) {
-  const Vec3 axis = k.at(e.ends.a).R * p.axis;
+  const CutDamperState<double> s = cut_damper_state<double>(e, p, k);
   PairDamping out;
-  out.damping = p.damping;
+  out.damping = p.resistance_slope(s.rate);
   if (e.angular) {
-    out.rate.a << -axis, Vec3::Zero();
-    out.rate.b << axis, Vec3::Zero();
+    out.rate.a << -s.axis, Vec3::Zero();
+    out.rate.b << s.axis, Vec3::Zero();
     return out;
   }
-  const Vec3 b = k.point(e.ends.b, p.b);
-  out.rate.a << -(b - k.at(e.ends.a).o).cross(axis), -axis;
-  out.rate.b << (b - k.at(e.ends.b).o).cross(axis), axis;
+  out.rate.a << -(s.b - k.at(e.ends.a).o).cross(s.axis), -s.axis;
+  out.rate.b << (s.b - k.at(e.ends.b).o).cross(s.axis), s.axis;
   return out;
 }
 

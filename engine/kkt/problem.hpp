@@ -30,6 +30,10 @@ struct Problem {
 
   // The balance is the gradient of the amended potential, so its Jacobian is symmetric where it matters.
   bool symmetric() const { return system.conservative && (system.single_drives || as_gradient); }
+  // The same but for the torques of drives, of a system that speeds_can_border().
+  bool symmetric_at_speeds() const {
+    return !system.torques.empty() && form != KktForm::dense && system.conservative_at_speeds;
+  }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
 

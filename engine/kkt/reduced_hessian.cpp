@@ -6,11 +6,17 @@
 #include <random>
 
 namespace flyball {
+namespace {
+
+constexpr Eigen::Index few_to_factor = 12; // of which an orthogonal decomposition costs no more than the rest
+constexpr double far_from_singular = 1e8;  // condition in the 1-norm, by its estimate
+
+} // namespace
 
 void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& noise, bool symmetric) {
   const Eigen::Index n = matrix.rows();
   symmetric_ = symmetric;
-  positive_ = decomposed_ = false;
+  positive_ = decomposed_ = by_lu_ = false;
   null_ = 0;
   scale_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -38,6 +44,9 @@ void ReducedHessian::factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd
     if (positive_) return;
     known_ = decompose();
     if (known_) null_ = static_cast<int>((eigen_.values().array().abs() <= zero).count());
+  } else if (known_ && n >= few_to_factor && lu_.compute(matrix_) &&
+             matrix_.cwiseAbs().colwise().sum().maxCoeff() * lu_.inverse_norm() < far_from_singular) {
+    by_lu_ = true;
   } else if (known_) {
     known_ = orthogonal_.compute(matrix_, zero);
     if (known_) null_ = static_cast<int>(n - orthogonal_.rank());
@@ -64,7 +73,9 @@ void ReducedHessian::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     x.setZero();
     return;
   }
-  if (!symmetric_) {
+  if (by_lu_) {
+    x = lu_.solve(work_);
+  } else if (!symmetric_) {
     orthogonal_.solve(work_, x);
   } else if (positive_) {
     x = work_;

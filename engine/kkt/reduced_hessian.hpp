@@ -48,6 +48,9 @@ class ReducedHessian {
   Eigen::MatrixXd matrix_;
   Cholesky cholesky_;
   SymmetricEigen eigen_;
+  // Not symmetric, of many coordinates and far from singular: a third of the work.
+  bool by_lu_ = false;
+  Lu lu_;
   CompleteOrthogonal orthogonal_;
 };
 

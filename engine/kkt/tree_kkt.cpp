@@ -71,7 +71,7 @@ void TreeKkt::inwards(std::vector<Sum>& branches, Visit visit) {
 void TreeKkt::place(int i, const Link& link) {
   Node& n = nodes_[static_cast<std::size_t>(i)];
   n.parent = link.parent < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link.parent)];
-  n.v = link.v;
+  n.v = finds_speed(link) ? -1 : link.v;
   n.ball = -1;
   if (link.v >= 0 && link.type == LinkType::spherical) {
     n.ball = static_cast<int>(balls_.size());
@@ -151,7 +151,7 @@ void TreeKkt::linearize_motion(const Problem& problem, const Unknowns& z, const 
   const System& system = problem.system;
   rate_ = rate;
   with_velocities_ = with_velocities;
-  symmetric_ = problem.symmetric() && !with_velocities;
+  symmetric_ = (problem.symmetric() || problem.symmetric_at_speeds()) && !with_velocities;
   size_ = system.nv;
   mass_ = 0;
   balls_.clear();

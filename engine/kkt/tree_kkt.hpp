@@ -36,7 +36,8 @@ struct SubtreeSizes {
 
 class TreeKkt final : public KktSystem {
  public:
-  // Of a system with is_plain_tree().
+  // Of a system with is_plain_tree(). Speeds that are found are left out: the tree at given speeds, its
+  // shafts held (speeds_kkt.hpp).
   void linearize(const Problem& problem, const Unknowns& z, const Evaluation& evaluation) override;
   // Takes in K + rate^2 M, or with velocities K + rate (C + G) + rate^2 M, in the place of K (rate in 1/s).
   void linearize_motion(const Problem& problem, const Unknowns& z, const Evaluation& evaluation, double rate,

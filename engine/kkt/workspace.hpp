@@ -4,6 +4,7 @@
 
 #include "engine/kkt/dense_kkt.hpp"
 #include "engine/kkt/sparse_kkt.hpp"
+#include "engine/kkt/speeds_kkt.hpp"
 #include "engine/kkt/tree_kkt.hpp"
 #include "engine/system/extended.hpp"
 
@@ -13,6 +14,7 @@ namespace flyball {
 
 struct Workspace : Evaluation {
   KktSystem& kkt(const Problem& problem) {
+    if (problem.form == KktForm::tree && !problem.system.torques.empty()) return speeds;
     switch (problem.form) {
     case KktForm::tree: return tree;
     case KktForm::sparse: return sparse;
@@ -26,6 +28,7 @@ struct Workspace : Evaluation {
 
   DenseKkt dense;
   TreeKkt tree;
+  SpeedsKkt speeds;
   SparseKkt sparse;
   Eigen::VectorXd scaled_phi, scaled_force, projected, scaled_step, scaled_lambda, step, zero_lambda;
   Kinematics<Extended> kinematics_extended;

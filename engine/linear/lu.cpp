@@ -37,6 +37,22 @@ Eigen::VectorXd Lu::solve_transposed(const Eigen::VectorXd& b) const {
   return x;
 }
 
+double Lu::inverse_norm() const {
+  const Eigen::Index n = large_ ? factors_.rows() : lu_.rows();
+  if (n == 0) return 0;
+  Eigen::VectorXd x = Eigen::VectorXd::Constant(n, 1 / static_cast<double>(n));
+  double norm = 0;
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::VectorXd y = solve(x);
+    norm = std::max(norm, y.lpNorm<1>());
+    const Eigen::VectorXd z = solve_transposed(y.unaryExpr([](double v) { return v < 0 ? -1. : 1.; }));
+    Eigen::Index steepest = 0;
+    if (z.cwiseAbs().maxCoeff(&steepest) <= std::abs(z.dot(x))) break;
+    x = Eigen::VectorXd::Unit(n, steepest);
+  }
+  return norm;
+}
+
 int Lu::sign_of_determinant() const {
   int sign = 1;
   if (large_) {

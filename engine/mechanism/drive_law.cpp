@@ -5,6 +5,7 @@
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/given_names.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/unit_hint.hpp"
 
@@ -20,32 +21,90 @@ ValueDimension dimension_of(const Mechanism& mechanism, const ResultCall& call) 
   return {{.length = angle ? 0. : 1., .time = call.result == Result::rate ? -1. : 0.}, false};
 }
 
+// The measure that a law means by a name; null where a parameter is called so, or no measure.
+const NamedMeasure* measure_called(const Mechanism& mechanism, std::string_view name) {
+  const int i = parameter_index(mechanism, name) < 0 ? measure_index(mechanism, name) : -1;
+  return i < 0 ? nullptr : &mechanism.measures[static_cast<std::size_t>(i)];
+}
+
+// What a measure asks for that a law may not.
+void expect_of_coordinates(const NamedMeasure& measure, const Expression& expression) {
+  for (const ResultCall& call : expression.results())
+    if (call.result != Result::coordinate && call.result != Result::rate)
+      throw ExpressionError("expected a measure of coordinate(), rate() and parameters alone; " +
+                            measure.name + " asks for " + std::string(result_function(call.result).name) +
+                            "(), and how that changes with the state is not among what the balance knows");
+}
+
+class MeasureWriter {
+ public:
+  explicit MeasureWriter(const Mechanism& mechanism) : mechanism_(mechanism) {}
+
+  std::string write(std::string_view text) {
+    const Expression expression(text, Expression::Results::allowed);
+    std::string out(text);
+    const std::vector<Expression::Mention>& mentions = expression.mentions();
+    for (auto at = mentions.rbegin(); at != mentions.rend(); ++at) {
+      const std::string& name = expression.names()[at->name];
+      const NamedMeasure* measure = measure_called(mechanism_, name);
+      if (!measure) continue;
+      out.replace(at->begin, name.size(), "(" + inside(*measure) + ")");
+      if (out.size() > longest) throw ExpressionError("expected a simpler expression");
+    }
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t longest = 20'000; // of a law
+
+  std::string inside(const NamedMeasure& measure) {
+    if (std::ranges::find(path_, measure.name) != path_.end())
+      throw ExpressionError("expected no circle of measures; " + measure.name + " leads back to itself");
+    expect_of_coordinates(measure, Expression(measure.text, Expression::Results::allowed));
+    path_.push_back(measure.name);
+    std::string text = write(measure.text);
+    path_.pop_back();
+    return text;
+  }
+
+  const Mechanism& mechanism_;
+  std::vector<std::string> path_; // of measures, each named by the one before
+};
+
 } // namespace
 
-bool is_of_state(std::string_view expression) {
+bool is_of_state(const Mechanism& mechanism, std::string_view text) {
   try {
-    return !Expression(expression, Expression::Results::allowed).results().empty();
+    const Expression expression(text, Expression::Results::allowed);
+    return !expression.results().empty() ||
+           std::ranges::any_of(expression.names(), [&](const std::string& name) {
+             return measure_called(mechanism, name) != nullptr;
+           });
   } catch (const ExpressionError&) { // to be told where it is read as what it means to be
-    return expression.find("rate(") != std::string_view::npos ||
-           expression.find("coordinate(") != std::string_view::npos;
+    return text.find("rate(") != std::string_view::npos || text.find("coordinate(") != std::string_view::npos;
   }
 }
 
-bool is_drive_law(const Formula& formula) {
+bool is_drive_law(const Mechanism& mechanism, const Formula& formula) {
   return formula.key.starts_with("drive.") &&
-         (formula.key.ends_with(".torque") || formula.key.ends_with(".load")) && is_of_state(formula.text);
+         (formula.key.ends_with(".torque") || formula.key.ends_with(".load")) &&
+         is_of_state(mechanism, formula.text);
 }
 
-const Formula* drive_law(const Joint& joint, int i, std::string_view which) {
+const Formula* drive_law(const Mechanism& mechanism, const Joint& joint, int i, std::string_view which) {
   if (joint.formulas.empty()) return nullptr;
   const std::string key = coordinate_key(joint, static_cast<std::size_t>(i), "drive") + ".";
   const auto law = std::ranges::find(joint.formulas, key + std::string(which), &Formula::key);
-  return law != joint.formulas.end() && is_drive_law(*law) ? &*law : nullptr;
+  return law != joint.formulas.end() && is_drive_law(mechanism, *law) ? &*law : nullptr;
 }
 
-Expression read_drive_law(std::string_view text) {
+std::string with_measures(const Mechanism& mechanism, std::string_view text) {
+  return MeasureWriter(mechanism).write(text);
+}
+
+Expression read_drive_law(const Mechanism& mechanism, std::string_view text) {
   constexpr std::size_t most = 32;
-  Expression expression(text, Expression::Results::allowed);
+  Expression expression(with_measures(mechanism, text), Expression::Results::allowed);
   if (expression.names().size() > most || expression.results().size() > most)
     throw ExpressionError("expected a simpler expression");
   return expression;
@@ -55,7 +114,8 @@ CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall
   if (call.result != Result::coordinate && call.result != Result::rate)
     throw ExpressionError("column " + std::to_string(call.begin + 1) +
                           ": expected coordinate() or rate(), found " +
-                          std::string(result_function(call.result).name) + "()");
+                          std::string(result_function(call.result).name) +
+                          "(): a torque or load is one of coordinates, rates and parameters");
   const ResultCall::Argument& of = call.arguments.front();
   const CoordinateReference at =
       find_coordinate(mechanism, of.index < 0 ? of.name : of.name + "." + std::to_string(of.index));
@@ -72,7 +132,7 @@ CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall
 
 void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle, const std::string& where) {
   try {
-    const Expression expression = read_drive_law(law.text);
+    const Expression expression = read_drive_law(mechanism, law.text);
     std::vector<ValueDimension> names, results;
     const GivenNames known(mechanism);
     for (const std::string& name : expression.names())

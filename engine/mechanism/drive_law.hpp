@@ -1,5 +1,6 @@
 // Torques and loads of drives as expressions of the state: "7500 N * (0.15 m - coordinate(slide))". Of what
-// measures may ask they know coordinate(joint), in rad or m as the joint labels it, and rate(joint). They
+// measures may ask they know coordinate(joint), in rad or m as the joint labels it, and rate(joint); and the
+// measures that are made of these and of parameters alone, by name: their derivatives enter the balance. They
 // have no value by themselves, but one at every state.
 #pragma once
 
@@ -14,15 +15,18 @@
 
 namespace flyball {
 
-// Whether an expression is one of the state; and of a drive.
-bool is_of_state(std::string_view expression);
-bool is_drive_law(const Formula& formula);
+// Whether an expression asks for results, or names a measure; and is of a drive.
+bool is_of_state(const Mechanism& mechanism, std::string_view expression);
+bool is_drive_law(const Mechanism& mechanism, const Formula& formula);
 
 // The expression of the state for "torque" or "load" of a joint's coordinate `i`; null where a number does.
-const Formula* drive_law(const Joint& joint, int i, std::string_view which);
+const Formula* drive_law(const Mechanism& mechanism, const Joint& joint, int i, std::string_view which);
 
-// A law as it is read. Throws ExpressionError.
-Expression read_drive_law(std::string_view text);
+// A law with the expressions of the measures that it names in their places. Throws ExpressionError where it
+// cannot be read, and for measures that go in a circle or ask for other results than a law may.
+std::string with_measures(const Mechanism& mechanism, std::string_view text);
+// A law as it is read, its measures in their places. Throws ExpressionError.
+Expression read_drive_law(const Mechanism& mechanism, std::string_view text);
 
 // The coordinate that a law asks for. Throws ExpressionError where there is none, and where it asks for
 // something else.

@@ -284,7 +284,10 @@ class ExpressionParser {
     } else if (at_ + 1 < text_.size() && text_[at_] == '.') {
       const auto [end, error] =
           std::from_chars(text_.data() + at_ + 1, text_.data() + text_.size(), argument.index);
-      if (error != std::errc() || argument.index < 0) fail("expected the number of a coordinate after the .");
+      if (error != std::errc() || argument.index < 0)
+        fail("expected the number of a coordinate after the ." +
+             (text_.substr(at_).starts_with(implicit_joint) ? "; " + std::string(implicit_joint_hint)
+                                                            : std::string()));
       at_ = static_cast<std::size_t>(end - text_.data());
     }
     return argument;

@@ -218,7 +218,7 @@ struct FormulaPlan::State {
     visit_parts(m, [&](const std::string& path, const Formulas& formulas, const auto& numbers_of_part) {
       const std::vector<Number> numbers = numbers_of_part();
       for (const Formula& formula : formulas) {
-        if (is_drive_law(formula) || is_force_law(formula)) continue; // has a value at each state
+        if (is_drive_law(m, formula) || is_force_law(formula)) continue; // has a value at each state
         const std::string where = joined_path(path, formula.key);
         const auto number = std::ranges::find(numbers, formula.key, &Number::key);
         if (number == numbers.end())

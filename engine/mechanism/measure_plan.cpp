@@ -56,6 +56,7 @@ class Finder {
     switch (kind) {
     case ArgumentKind::coordinate: {
       const int j = joint_index(m_, a.name);
+      if (j < 0 && a.name.ends_with(implicit_joint)) throw ExpressionError(std::string(implicit_joint_hint));
       if (j < 0) fail_part("joint", a.name, m_.joints);
       const int count = coordinate_count(m_.joints[place(j)].type);
       const std::string joint =

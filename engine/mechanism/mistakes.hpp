@@ -38,6 +38,7 @@ std::string coordinate_path(const Mechanism& mechanism, std::size_t joint, std::
 
 void find_body_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_body_warnings(const Mechanism& mechanism, Mistakes& warnings);
+void find_belt_warnings(const Mechanism& mechanism, Mistakes& warnings);
 void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_air_mistakes(const Mechanism& mechanism, Mistakes& mistakes);

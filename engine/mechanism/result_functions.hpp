@@ -67,6 +67,12 @@ struct ResultFunction {
   std::string_view example;
 };
 
+// Where a name is that of a joint which the program made itself, "ball.free": that it is none of the scene's.
+inline constexpr std::string_view implicit_joint = ".free";
+inline constexpr std::string_view implicit_joint_hint =
+    "the joint that holds a body on springs, strings and bearings is the program's own; a joint of the type "
+    "free between the same two bodies, under a name of its own, makes its coordinates known";
+
 std::span<const ResultFunction> result_functions();
 const ResultFunction& result_function(Result result);
 // Of so many arguments: clearance() takes a coordinate or two bodies.

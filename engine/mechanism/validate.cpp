@@ -399,6 +399,7 @@ void validate_numbers(const Mechanism& mechanism) {
 std::vector<SceneError> find_warnings(const Mechanism& mechanism) {
   Mistakes warnings;
   find_body_warnings(mechanism, warnings);
+  find_belt_warnings(mechanism, warnings);
   return warnings.all();
 }
 

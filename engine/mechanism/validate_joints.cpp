@@ -1,5 +1,6 @@
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/force_law.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -58,7 +59,7 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
                   "expected a speed other than zero, at which the search for the steady one begins");
   const bool angle = is_angle(joint.type, static_cast<int>(i));
   for (const char* which : {"torque", "load"}) {
-    const Formula* law = drive_law(joint, static_cast<int>(i), which);
+    const Formula* law = drive_law(mechanism, joint, static_cast<int>(i), which);
     try {
       if (law) check_drive_law(mechanism, *law, angle, path + "." + which);
     } catch (const SceneError& error) {
@@ -274,6 +275,22 @@ void find_mistakes_of_joint(const Mechanism& mechanism, std::size_t j, Mistakes&
   else
     for (std::size_t i = 0; i < count; ++i)
       find_coordinate_mistakes(mechanism, j, i, mistakes);
+}
+
+// A ratio is one of coordinates, and their signs need not be those of the turns in space.
+void find_belt_warnings(const Mechanism& mechanism, Mistakes& warnings) {
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& belt = mechanism.joints[j];
+    if (belt.type != JointType::gear || belt.kind != GearKind::belt || wheels_turn_alike(mechanism, belt))
+      continue;
+    const std::string& a = belt.joints[0];
+    const std::string& b = belt.joints[1];
+    warnings.add(joint_path(mechanism, j),
+                 (belt.crossed ? "it is crossed by the coordinates of " : "it ties the coordinates of ") + a +
+                     " and " + b + (belt.crossed ? "" : " as an open belt") +
+                     ", which grow as their wheels turn against each other in space: there it is " +
+                     (belt.crossed ? "an open belt" : "a crossed one") + "; turn one of the axes round");
+  }
 }
 
 void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {

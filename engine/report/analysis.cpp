@@ -8,6 +8,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/found_speeds.hpp"
+#include "engine/report/friction_state.hpp"
 #include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
@@ -29,15 +30,16 @@ namespace flyball {
 namespace {
 
 // Drives of coordinate i: none, by speed, or by torques that are both numbers or the same expressions.
-bool same_kind(const Joint& a, const Joint& b, int i) {
+bool same_kind(const Mechanism& of_a, const Joint& a, const Mechanism& of_b, const Joint& b, int i) {
   const auto &x = a.coordinates[static_cast<std::size_t>(i)].drive,
              &y = b.coordinates[static_cast<std::size_t>(i)].drive;
   if (!x || !y) return x.has_value() == y.has_value();
   if (x->torque.has_value() != y->torque.has_value() || x->keeps != y->keeps) return false;
   if (!x->torque) return true;
   for (const char* which : {"torque", "load"}) {
-    const Formula *of_a = drive_law(a, i, which), *of_b = drive_law(b, i, which);
-    if ((of_a == nullptr) != (of_b == nullptr) || (of_a && of_a->text != of_b->text)) return false;
+    const Formula *law_a = drive_law(of_a, a, i, which), *law_b = drive_law(of_b, b, i, which);
+    if ((law_a == nullptr) != (law_b == nullptr)) return false;
+    if (law_a && with_measures(of_a, law_a->text) != with_measures(of_b, law_b->text)) return false;
   }
   return true;
 }
@@ -77,7 +79,7 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
     for (std::size_t k = 0; k < x.coordinates.size(); ++k) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
       if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
-          c.friction.has_value() != d.friction.has_value() || !same_kind(x, y, static_cast<int>(k)) ||
+          c.friction.has_value() != d.friction.has_value() || !same_kind(a, x, b, y, static_cast<int>(k)) ||
           (c.damping != 0) != (d.damping != 0) || !same_laws(x, y, static_cast<int>(k)))
         return false;
     }
@@ -104,8 +106,12 @@ void find_dampers(const Mechanism& m, std::vector<bool>& dampers) {
 }
 
 // All eigenvalues need the matrices; beyond a size the pivots have to do.
-bool pivots_decide(const Problem& problem) {
+bool is_large(const Problem& problem) {
   return problem.system.nv > largest_for_eigenvalues && problem.form != KktForm::dense;
+}
+
+bool pivots_decide(const Problem& problem) {
+  return is_large(problem) && problem.system.torques.empty();
 }
 
 // Few coordinates by the matrices, whatever the form that solving takes.
@@ -122,21 +128,23 @@ Stability stability_of(const Problem& problem, SteadyState& steady, bool with_ei
 }
 
 bool stands_on_kink(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
-  if (problem.system.coordinate_laws.empty() && problem.system.spring_laws.empty())
+  if (problem.system.coordinate_laws.empty() && problem.system.spring_laws.empty() &&
+      problem.system.cut_damper_laws.empty() && problem.system.torques.empty())
     return false; // of a minimum
   forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
   return !find_kinks(problem, q, w.kinematics).empty();
 }
 
-// Within the error of the state; on kinks on their softer side.
+// Within the error of the state.
 bool sign_may_change(const Problem& problem, SteadyState& steady, const Stability& stability) {
-  const auto is_open = [&](const Problem& judged, bool minimum) {
-    return sign_is_open(judged, steady.found.z, steady.error.solution, minimum, steady.elsewhere());
-  };
-  if (stability.kinks.empty()) return is_open(problem, steady.found.minimum);
-  const Parameters softer = straightened(problem, stability.kinks, KinkSide::softer);
-  return is_open({problem.system, softer, problem.scaling, problem.cancel, problem.form},
-                 stability.reason == StabilityReason::minimum);
+  return sign_is_open(problem, steady.found.z, steady.error.solution, stability, steady.elsewhere());
+}
+
+// What cannot be told of a state whose error is taken for that of something too soft to be seen beside what
+// is stiff, which may hold it.
+void leave_verdict_open(SteadyState& steady, Stability& stability) {
+  leave_open(stability);
+  steady.error.solution = steady.error.solution.cwiseMax(steady.error.undetermined);
 }
 
 // Adds the eigenvalues nearest to zero of a large mechanism to what its pivots say; where those decide
@@ -205,6 +213,8 @@ struct Analysis::State {
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
+  // Of the last solve's answer where that rests on dry friction: it is not among the states of this system.
+  std::optional<Analysis> on_friction;
 
   // How the steady state moves with the sliders' numbers.
   void add_rates(const Problem& problem, Solution& out) {
@@ -239,6 +249,7 @@ struct Analysis::State {
   }
 
   void bind_numbers() {
+    on_friction.reset();
     bind(system, *mechanism, parameters);
     set_scaling(system, parameters, scaling);
     measures.bind(*mechanism, system, parameters);
@@ -323,18 +334,32 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   report_progress(options.progress, "solving");
   const auto begin = std::chrono::steady_clock::now();
   SteadyState& steady = s.steady;
-  steady.find(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress});
+  s.on_friction.reset();
+  const bool on_friction = options.friction && !options.nearest && has_friction(*s.mechanism);
+  const auto find = [&](double search) {
+    steady.find(problem, s.start, s.drawn, {options.nearest, warm, search, options.progress});
+  };
+  find(on_friction ? 0 : options.search);
+  if (on_friction && !steady.holds && !problem.cancelled())
+    if (std::optional<FrictionState> state = find_friction_state(*s.mechanism, options)) {
+      state->solution.run_time_s =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      s.on_friction = std::move(state->analysis);
+      return std::move(state->solution);
+    }
+  // What was left out is the search.
+  if (on_friction && (!steady.holds || (steady.stability && steady.stability->stable == false)))
+    find(options.search);
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty() &&
       !stands_on_kink(problem, steady.found.z.q, steady.elsewhere())) {
     stability.stable = true;
     stability.reason = StabilityReason::minimum;
   } else if (steady.holds) {
-    stability = stability_of(problem, steady, false, 0);
+    stability = steady.stability ? *steady.stability : stability_of(problem, steady, false, 0);
   }
   const bool varies = stability.floquet || stability.floquet_failure;
-  const bool open = steady.holds && !varies && stability.reason != StabilityReason::neutral &&
-                    sign_may_change(problem, steady, stability);
+  const bool open = steady.holds && sign_may_change(problem, steady, stability);
   const auto end = std::chrono::steady_clock::now();
 
   Solution out;
@@ -367,7 +392,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
   std::string without_modes;
-  if (options.details && !varies && (options.modes > 0 || !pivots_decide(problem))) {
+  const bool known_by_pivots = is_large(problem) && (pivots_decide(problem) || steady.found.minimum);
+  if (options.details && !varies && (options.modes > 0 || !known_by_pivots)) {
     report_progress(options.progress, "eigenvalues");
     if (pivots_decide(problem)) {
       without_modes =
@@ -379,12 +405,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
         stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
       stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
   }
-  if (open && stability.reason != StabilityReason::neutral) {
-    stability.stable.reset();
-    stability.reason = StabilityReason::marginal;
-    // Something may hold that is too soft to be seen beside what is stiff.
-    steady.error.solution = steady.error.solution.cwiseMax(steady.error.undetermined);
-  }
+  if (open && stability.reason != StabilityReason::neutral) leave_verdict_open(steady, stability);
   if (options.details) {
     add_condition(problem, steady, out);
     s.add_rates(problem, out);
@@ -480,6 +501,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
       continue;
     }
     const bool varies = stability.floquet || stability.floquet_failure;
+    if (sign_may_change(problem, steady, stability)) leave_verdict_open(steady, stability);
     std::string without_modes;
     if (by_pivots && options.modes > 0 && options.details && !varies)
       without_modes = add_lowest_eigenvalues(problem, found.z, options.modes, steady.elsewhere(), stability);
@@ -525,6 +547,7 @@ SystemSummary Analysis::summary() const {
 
 std::vector<Pose> Analysis::poses_at(double t) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->poses_at(t);
   std::vector<Pose> poses;
   Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
   forward<double>(s.system, s.turning(), s.answered ? s.answer : s.drawn, t, kinematics);
@@ -534,6 +557,7 @@ std::vector<Pose> Analysis::poses_at(double t) {
 
 std::vector<AngularMotion> Analysis::turning_at(double t) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->turning_at(t);
   std::vector<AngularMotion> turning;
   Kinematics<double>& kinematics = s.steady.elsewhere().kinematics;
   forward<double>(s.system, s.turning(), s.answered ? s.answer : s.drawn, t, kinematics);
@@ -544,6 +568,7 @@ std::vector<AngularMotion> Analysis::turning_at(double t) {
 
 std::vector<VibrationMode> Analysis::modes(int count) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->modes(count);
   if (!s.settled || s.steady.error.singular_loops) return {};
   const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.system.kkt_form};
   const Unknowns& z = s.steady.found.z;
@@ -554,6 +579,7 @@ std::vector<VibrationMode> Analysis::modes(int count) {
 
 std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitude, double phase, double t) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->mode_poses(mode, amplitude, phase, t);
   const Problem problem{s.system, s.turning(), s.scaling};
   Workspace& w = s.steady.elsewhere();
   const Eigen::VectorXd& steady = s.answered ? s.answer : s.drawn;
@@ -568,12 +594,14 @@ std::vector<Pose> Analysis::mode_poses(const VibrationMode& mode, double amplitu
 
 std::vector<BodyAmplitude> Analysis::body_amplitudes(const VibrationMode& mode) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->body_amplitudes(mode);
   if (!s.settled) return {};
   return flyball::body_amplitudes({s.system, s.parameters, s.scaling}, s.answer, mode, s.steady.elsewhere());
 }
 
 std::optional<Whirl> Analysis::whirl(const VibrationMode& mode, std::string_view joint) {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->whirl(mode, joint);
   if (!s.settled) return {};
   const auto drive = std::ranges::find_if(s.system.links, [&](const Link& link) {
     return link.drive >= 0 && link.type == LinkType::revolute &&
@@ -586,6 +614,7 @@ std::optional<Whirl> Analysis::whirl(const VibrationMode& mode, std::string_view
 
 std::optional<StabilityEvidence> Analysis::stability_evidence() {
   State& s = *state_;
+  if (s.on_friction) return s.on_friction->stability_evidence();
   if (!s.settled) return {};
   return flyball::stability_evidence(s.steady.factored({s.system, s.parameters, s.scaling}));
 }

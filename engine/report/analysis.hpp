@@ -30,6 +30,9 @@ struct SolveOptions {
   // Where no steady state is found from the start: how long others are looked for before refusing, in seconds
   // of one core, counted in operations (see SearchOptions). Zero: not at all.
   double search = 0.2;
+  // Where there is no steady state without dry friction, and not for `nearest`: whether one that rests on it
+  // is looked for (friction_state.hpp).
+  bool friction = true;
   // Of solve_all, see SearchOptions.
   double search_time = 1;
   int search_starts = 0;

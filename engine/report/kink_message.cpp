@@ -16,8 +16,19 @@ Owner owner_of(const System& system, const Mechanism& mechanism, const Kink& kin
   switch (kink.of) {
   case Kink::Of::spring:
     return force(system.springs[static_cast<std::size_t>(system.spring_laws[kink.entry].at)].force);
+  case Kink::Of::cut_damper: {
+    const CutDamperElement& e =
+        system.cut_dampers[static_cast<std::size_t>(system.cut_damper_laws[kink.entry].at)];
+    return {coordinate_name(mechanism.joints[static_cast<std::size_t>(e.joint)], e.coordinate), e.angular};
+  }
   case Kink::Of::vane: return force(system.body_forces[kink.entry].force);
   case Kink::Of::vane_in_turning_air: return force(system.turning_air[kink.entry].force);
+  case Kink::Of::drive: {
+    const Link& link = system.links[static_cast<std::size_t>(system.torques[kink.entry].link)];
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    return {coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)),
+            is_angle(joint.type, link.coordinate)};
+  }
   case Kink::Of::coordinate: break;
   }
   const ForceLawElement& e = system.coordinate_laws[kink.entry];
@@ -29,15 +40,30 @@ Owner owner_of(const System& system, const Mechanism& mechanism, const Kink& kin
 }
 
 struct Words {
-  std::string_view law, slope, unit;
+  std::string law, slope, unit;
 };
 
-Words words_of(Kink::Law law, bool angle) {
-  switch (law) {
-  case Kink::Law::spring: return {"spring", "stiffness", fields::stiffness_unit(angle)};
-  case Kink::Law::damper: return {"damper", "damping", fields::damping_unit(angle)};
+// Of a drive's law: the slope is that with one of its inputs.
+Words words_of_drive(const System& system, const Kink& kink, bool angle) {
+  const DriveTorqueElement& e = system.torques[kink.entry];
+  const bool torque = kink.law == Kink::Law::torque;
+  const DriveLaw::Input& input = (torque ? e.torque : e.load).inputs[kink.input];
+  const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+  const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
+  const std::string of = coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+  return {torque ? angle ? "torque" : "force" : "load",
+          "slope with " + std::string(input.rate ? "rate(" : "coordinate(") + of + ")",
+          std::string(fields::force_unit(angle)) + (input.rate ? " s/" : "/") + (c.angle ? "rad" : "m")};
+}
+
+Words words_of(const System& system, const Kink& kink, bool angle) {
+  switch (kink.law) {
+  case Kink::Law::spring: return {"spring", "stiffness", std::string(fields::stiffness_unit(angle))};
+  case Kink::Law::damper: return {"damper", "damping", std::string(fields::damping_unit(angle))};
   case Kink::Law::lift: return {"lift", "slope", "1/rad"};
   case Kink::Law::drag: return {"drag", "slope", "1/rad"};
+  case Kink::Law::torque:
+  case Kink::Law::load: return words_of_drive(system, kink, angle);
   }
   return {};
 }
@@ -48,12 +74,11 @@ std::string kink_message(const System& system, const Mechanism& mechanism, const
   std::string out;
   for (const Kink& kink : stability.kinks) {
     const Owner owner = owner_of(system, mechanism, kink);
-    const Words words = words_of(kink.law, owner.angle);
-    out += std::string(out.empty() ? "" : " ") + "The " + std::string(words.law) + " of " + owner.name +
-           " stands on a kink of its law, where its " + std::string(words.slope) + " jumps from " +
-           rounded_text(kink.slopes[0], 4) + " to " + rounded_text(kink.slopes[1], 4) + " " +
-           std::string(words.unit) + ": " +
-           (kink.law == Kink::Law::damper ? "eigenvalues hold" : "rates and eigenvalues hold") +
+    const Words words = words_of(system, kink, owner.angle);
+    out += std::string(out.empty() ? "" : " ") + "The " + words.law + " of " + owner.name +
+           " stands on a kink of its law, where its " + words.slope + " jumps from " +
+           rounded_text(kink.slopes[0], 4) + " to " + rounded_text(kink.slopes[1], 4) + " " + words.unit +
+           ": " + (kink.law == Kink::Law::damper ? "eigenvalues hold" : "rates and eigenvalues hold") +
            " on one side of it" +
            (stability.kinks_leave_open ? ", and whether it is stable stays open." : ".");
   }

@@ -1,4 +1,4 @@
-// What is said of springs, dampers and vanes that stand on a kink of their laws.
+// What is said of springs, dampers, vanes and drives that stand on a kink of their laws.
 #pragma once
 
 #include "engine/stability/stability.hpp"

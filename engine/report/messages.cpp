@@ -1,9 +1,7 @@
 #include "engine/report/messages.hpp"
 
-#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/turning_part.hpp"
-#include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/unbounded.hpp"
 
 #include <algorithm>
@@ -16,39 +14,6 @@ std::string cut_name(const ReportInput& in, int cut) {
   return in.mechanism
       .joints[static_cast<std::size_t>(in.problem.system.cuts[static_cast<std::size_t>(cut)].joint)]
       .name;
-}
-
-bool is_cut(const System& system, int joint) {
-  return std::ranges::find(system.cuts, joint, &CutJoint::joint) != system.cuts.end();
-}
-
-// A joint that turns on and on has to be cut, and one with a law is never: a sentence on the joint whose law
-// is in the way, if any. With a number for it another joint is cut.
-std::string law_in_the_way(const ReportInput& in) {
-  const System& system = in.problem.system;
-  for (int j = 0; j < static_cast<int>(in.mechanism.joints.size()) && !system.cuts.empty(); ++j) {
-    if (is_cut(system, j)) continue;
-    Mechanism numbers = in.mechanism;
-    Joint& joint = numbers.joints[static_cast<std::size_t>(j)];
-    bool has_law = false;
-    for (Coordinate& c : joint.coordinates) {
-      if (!c.damping_force) continue;
-      has_law = true;
-      c.damping_force.reset();
-      c.damping = 1;
-    }
-    if (!has_law) continue;
-    std::erase_if(joint.formulas, [](const Formula& f) { return f.key.starts_with("damping_force"); });
-    try {
-      if (is_cut(compile_for_drives(numbers), j))
-        return " Of the loop through \"" + joint.name +
-               "\" this need not be so: it is not cut there, as its damper is given by a law. With a number "
-               "for its damping it is, and may rest.";
-    } catch (const SceneError&) {
-      continue; // of a mechanism that nobody made
-    }
-  }
-  return "";
 }
 
 std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
@@ -157,6 +122,7 @@ std::string message(const Found& found, const Problem& problem) {
   const auto methods = [&] {
     std::vector<std::string_view> tried{"Newton-Raphson", "its damped form"};
     if (problem.parameters.moving) tried.emplace_back("homotopy from rest");
+    if (!problem.system.torques.empty()) tried.emplace_back("the slow motion from the start");
     if (found.descended) tried.emplace_back("descent of the potential");
     return word_list(tried, "and");
   };
@@ -173,6 +139,11 @@ std::string message(const Found& found, const Problem& problem) {
     return "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a stable one.";
   case Remark::unstable: return "No stable state was found downhill from here.";
   case Remark::unstable_and_unbounded: return "The" + falls + "; no stable state was found.";
+  case Remark::left_unstable_speeds:
+    return "Newton-Raphson arrived at an unstable state; " +
+           std::string(found.fallback == Fallback::search
+                           ? "this is the nearest stable one that a search all over the ranges found."
+                           : "the motion from the start, or from beside that state, leads to this one.");
   case Remark::basin_uncertain: return "A stable state, but the start may lie in the basin of another.";
   case Remark::first_does_not_hold:
     return searched("The equilibrium found first holds at one phase of the drives only");
@@ -192,7 +163,10 @@ std::string message(const OtherStates& others, Status first) {
                            : "No other start was tried; ") +
            "solve --all looks for others.";
   if (others.end == SearchEnd::cancelled) return "The search for others was cancelled.";
-  const std::string runs = std::to_string(others.starts) + " starts all over the coordinates' ranges";
+  std::string runs = std::to_string(others.starts) + " starts all over the coordinates' ranges";
+  if (others.fastest > 0)
+    runs +=
+        " and speeds up to " + rounded_text(others.fastest, 4) + (others.fastest_turns ? " rad/s" : " m/s");
   const std::string more =
       others.end == SearchEnd::settled ? "" : " The search was short; solve --all looks for longer.";
   if (others.equilibria == 0) return "A search from " + runs + " found none either." + more;
@@ -240,7 +214,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
                 : ".");
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
-         " turns with the drives, so the balance holds at one moment only." + law_in_the_way(in);
+         " turns with the drives, so the balance holds at one moment only.";
 }
 
 std::string solution_message(const ReportInput& in, int rank, const Solution& out) {

@@ -50,6 +50,14 @@ bool all_drives_turn(const System& system, const Parameters& p) {
          });
 }
 
+// Of what drives move, rad/s: with a slide's speed over the mechanism's reach.
+double fastest_drive(const System& system, const Parameters& p, const Kinematics<double>& k) {
+  double fastest = 0;
+  for (const DrivenCoordinate& d : system.drives)
+    fastest = std::max(fastest, k.at(d.link).w.norm() + k.at(d.link).v.norm() / std::max(p.length, 1e-300));
+  return fastest;
+}
+
 // The coordinates of a joint that closes a loop, and their errors (rad, m).
 struct Measured {
   int cut = -1;
@@ -68,9 +76,7 @@ Measured measure(const System& system, const Parameters& p, int c, const Kinemat
   Measured out{c, joint_coordinates(cut, numbers, k), Eigen::Matrix<double, 6, 1>::Zero(),
                Eigen::Matrix<double, 6, 1>::Zero()};
   out.rate = out.at.rate * relative_velocity(cut, numbers, turning);
-  for (const DrivenCoordinate& d : system.drives)
-    out.fastest = std::max(out.fastest, turning.at(d.link).w.norm() +
-                                            turning.at(d.link).v.norm() / std::max(p.length, 1e-300));
+  out.fastest = fastest_drive(system, p, turning);
   for (const SupportColumn& column : cut.ends.support)
     out.error += (out.at.rate * relative_velocity(cut, numbers, k, column)).cwiseAbs() * error[column.v];
   const auto depth = [&](int l) { return l < 0 ? 0 : system.links[static_cast<std::size_t>(l)].depth; };
@@ -83,6 +89,54 @@ Measured measure(const System& system, const Parameters& p, int c, const Kinemat
   for (int i = 0; i < 6; ++i)
     out.error[i] +=
         2 * std::numeric_limits<double>::epsilon() * std::abs(out.at.value[static_cast<std::size_t>(i)]);
+  return out;
+}
+
+// Whether a coordinate of a joint that closes a loop turns as the drives do, even where these stand.
+bool turns_on(const System& system, const ReportedCoordinate& of) {
+  const CutJoint& cut = system.cuts[static_cast<std::size_t>(of.cut)];
+  return cut.turns && of.angle && (cut.type == JointType::revolute || cut.type == JointType::cylindrical);
+}
+
+struct RateWithError {
+  double value = 0, error = 0; // rad/s or m/s
+};
+
+// At which a coordinate of a joint that closes a loop goes on in the steady state q; nothing where that
+// changes with the phase of the drives. The error by those of q.
+std::optional<RateWithError> constant_rate(const System& system, const Parameters& p,
+                                           const Eigen::VectorXd& q, const Eigen::VectorXd& error,
+                                           const ReportedCoordinate& of) {
+  const auto c = static_cast<std::size_t>(of.cut);
+  if (is_rotation_vector(system.cuts[c].type, of.index)) return {};
+  const double unit = of.angle ? 1 : p.length;
+  Kinematics<double> k;
+  const auto rate_at = [&](const Eigen::VectorXd& there, double t) {
+    forward<double>(system, p, there, t, k);
+    const JointCoordinates at = joint_coordinates(system.cuts[c], p.cuts[c], k);
+    return at.rate.row(of.index).dot(relative_velocity(system.cuts[c], p.cuts[c], k));
+  };
+  RateWithError out{rate_at(q, 0), 0};
+  const double fastest = fastest_drive(system, p, k);
+  for (const double turned : {0.9, 2.3, 4.1}) // rad of what turns fastest
+    if (fastest > 0 && !(std::abs(rate_at(q, turned / fastest) - out.value) <= 1e-9 * fastest * unit))
+      return {};
+  // Rates add up the speeds that are found; what the other coordinates change of them is taken as it comes.
+  Eigen::VectorXd others = error;
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    if (!finds_speed(link) || error[link.v] == 0) continue;
+    Eigen::VectorXd moved = q;
+    moved[link.q] += error[link.v];
+    others[link.v] = 0;
+    out.error += std::abs(rate_at(moved, 0) - out.value);
+  }
+  if (!others.isZero(0)) {
+    Eigen::VectorXd moved = q;
+    retract<double>(system, others, moved);
+    out.error += std::abs(rate_at(moved, 0) - out.value);
+  }
+  out.error += 4 * std::numeric_limits<double>::epsilon() * fastest * unit;
   return out;
 }
 
@@ -109,8 +163,13 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
       x.error = measured.error[r.index];
       x.dependent = true;
       // A loop joint that turns or slides with the drives is driven, too.
-      x.driven = std::abs(measured.rate[r.index]) > 1e-9 * measured.fastest * (r.angle ? 1 : p.length);
+      x.driven = std::abs(measured.rate[r.index]) > 1e-9 * measured.fastest * (r.angle ? 1 : p.length) ||
+                 turns_on(system, r);
       if (x.driven) x.error = 0;
+      if (const auto rate = x.driven ? constant_rate(system, p, q, error, r) : std::nullopt) {
+        x.speed = rate->value;
+        x.speed_error = rate->error;
+      }
       out.push_back(std::move(x));
       continue;
     }

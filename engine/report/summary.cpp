@@ -15,7 +15,14 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
   out.constraint_equations = system.rows;
   Eigen::VectorXd drawn;
   drawn_configuration(system, p, drawn);
-  for (const ReportedCoordinate& r : system.reported) {
+  std::vector<CoordinateSolution> at_drawn; // where joints that close loops turn
+  if (std::ranges::any_of(system.cuts, &CutJoint::turns)) {
+    Kinematics<double> k;
+    forward<double>(system, p, drawn, 0, k);
+    at_drawn = coordinate_solutions(system, p, drawn, Eigen::VectorXd::Zero(system.nv), k);
+  }
+  for (std::size_t i = 0; i < system.reported.size(); ++i) {
+    const ReportedCoordinate& r = system.reported[i];
     CoordinateSolution x;
     x.joint = r.joint;
     x.index = r.index;
@@ -24,6 +31,10 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
     x.dependent = r.cut >= 0;
     if (x.dependent) {
       x.value = p.cuts[static_cast<std::size_t>(r.cut)].drawn[static_cast<std::size_t>(r.index)];
+      if (!at_drawn.empty()) {
+        x.driven = at_drawn[i].driven;
+        x.speed = at_drawn[i].speed;
+      }
     } else {
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
       x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
@@ -53,8 +64,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
                             ? "bearings: stiffness and damping matrices"
                             : "bearings: matrices that feed whirl, or dampers between drives");
   say(!system.body_forces.empty() || !system.turning_air.empty(), "forces, torques and the air");
-  say(has_dampers(system, p),
-      "dampers: in the eigenvalues, and in the balance where parts turn against each other");
+  say(has_dampers(p), "dampers: in the eigenvalues, and in the balance where parts turn against each other");
   say(std::ranges::any_of(system.links,
                           [](const Link& l) { return l.type == LinkType::spherical && l.v >= 0; }),
       "rotations as quaternions");

@@ -45,7 +45,7 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
   for (BodyForceParameters& f : only.turning_air)
     f.linear = f.quadratic = f.normal_quadratic = 0;
   for (CutDamperParameters& d : only.cut_dampers)
-    d.damping = 0;
+    d.remove_damper();
   const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
   const auto change = [&] { return change_of_balance(part, q, phase, w); };
   double worst = 0;

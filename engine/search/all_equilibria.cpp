@@ -42,6 +42,34 @@ class Searcher {
     take_answer();
     arrive(drawn_);
     deflate_from(drawn_, 8);
+    look_in_ranges();
+    for (int times = 0; times < 3 && list_.states.empty() && !ended(); ++times) {
+      if (!widen_speeds(p_, 10, report_.ranges)) break;
+      spread_ = 0;
+      look_in_ranges();
+    }
+    report_.unseen = unseen();
+    note_fastest();
+    list_.report = std::move(report_);
+    return std::move(list_);
+  }
+
+ private:
+  static constexpr int closing = 8; // iterations that closing the loops costs, about
+
+  void note_fastest() {
+    for (std::size_t i = 0; i < report_.ranges.size(); ++i) {
+      const CoordinateInfo& c = p_.system.coordinates[i];
+      const SearchRange& range = report_.ranges[i];
+      const double most = std::max(std::abs(range.lower), std::abs(range.upper));
+      if (!finds_speed(p_.system.links[static_cast<std::size_t>(c.link)]) || most <= report_.fastest)
+        continue;
+      report_.fastest = most;
+      report_.fastest_turns = c.angle;
+    }
+  }
+
+  void look_in_ranges() {
     SearchStarts starts(p_, report_.ranges, options_.seed);
     Eigen::VectorXd q = drawn_;
     while (p_.system.nv > 0 && !ended()) {
@@ -59,13 +87,7 @@ class Searcher {
       }
       if (list_.states.size() > 1 && !ended()) arrive_from_mixture();
     }
-    report_.unseen = unseen();
-    list_.report = std::move(report_);
-    return std::move(list_);
   }
-
- private:
-  static constexpr int closing = 8; // iterations that closing the loops costs, about
 
   void spend(double iterations) { spent_ += iterations * cost_; }
 

@@ -34,6 +34,8 @@ struct SearchReport {
   // small to tell.
   double unseen = 0;
   SearchEnd end = SearchEnd::settled;
+  double fastest = 0;        // the largest speed in the ranges of those that are found; zero: there are none
+  bool fastest_turns = true; // rad/s, else m/s
 };
 
 struct EquilibriumList {
@@ -45,7 +47,8 @@ struct EquilibriumList {
   SearchReport report;
 };
 
-// From `drawn` and all over the ranges. The same options give the same list, whatever the computer does
+// From `drawn` and all over the ranges; where nothing is found, speeds that torques give in ranges ten, a
+// hundred and a thousand times as wide. The same options give the same list, whatever the computer does
 // besides, unless it ends by time.
 EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn,
                                     const SearchOptions& options, Workspace& w);

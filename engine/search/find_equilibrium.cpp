@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/solve/eigenvector_descent.hpp"
 #include "engine/solve/homotopy.hpp"
+#include "engine/solve/slow_motion.hpp"
 #include "engine/solve/trust_region.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/stability.hpp"
@@ -61,7 +62,7 @@ class EquilibriumSearch {
     if (!close_loops()) return false;
     if (against_stops()) return true;
     if (large_ && downhill()) return true;
-    if (damped_newton() || from_rest()) return true;
+    if (damped_newton() || from_rest() || slow_motion()) return true;
     if (!large_ && downhill()) return true;
     return settle_for_unstable();
   }
@@ -102,6 +103,13 @@ class EquilibriumSearch {
     return !arrived_ && p_.parameters.moving && attempt(w_.assembled, Fallback::homotopy, [&](Unknowns& z) {
       return homotopy(p_, z, w_, &history_);
     });
+  }
+
+  // To where what torques drive goes from the start.
+  bool slow_motion() {
+    return !arrived_ && !p_.system.torques.empty() &&
+           attempt(w_.assembled, Fallback::slow_motion,
+                   [&](Unknowns& z) { return follow_slow_motion(p_, z, w_, &history_); });
   }
 
   bool downhill() {
@@ -204,7 +212,10 @@ class EquilibriumSearch {
       unstable_ = !found_.minimum && !only_null_directions();
       return;
     }
-    if (large_) return;
+    if (large_) {
+      found_.minimum = p_.symmetric_at_speeds() && w_.speeds.keeps_minimum();
+      return;
+    }
     potential_ = !nearest_ && has_potential(p_, found_.z, w_.dense.stiffness(), w_.elsewhere());
     found_.minimum = unstable_ = false;
     if (!potential_) return;

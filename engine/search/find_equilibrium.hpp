@@ -1,11 +1,12 @@
 // Which equilibrium is the answer, and which method found it.
 //
 // Newton-Raphson runs first, then from the stops that what hangs loose is pushed to, then damped, then by
-// homotopy from rest, then downhill on the amended potential; for large mechanisms, where it takes few
+// homotopy from rest, then where torques drive along the slow motion from the start, then downhill on the
+// amended potential; for large mechanisms, where it takes few
 // iterations, downhill comes second. Where there is a potential an answer counts only if it is a minimum that
 // the assembled start can reach without climbing; Newton's habit of stopping at unstable states is met by
 // going on downhill. A drawn pose that is itself a gyroscopically stable state is the answer, too: it is what
-// the mechanism does from there. Without a potential Newton's answer stands.
+// the mechanism does from there. Without a potential Newton's answer stands, but see steady_state.
 #pragma once
 
 #include "engine/solve/newton.hpp"
@@ -21,9 +22,11 @@ enum class Remark {
   left_unstable_equilibrium, // Newton-Raphson arrived at an unstable one; this is a minimum below the start
   unstable,                  // and no minimum was found downhill from the start
   unstable_and_unbounded,    // and the potential falls on for hundreds of reaches
-  basin_uncertain,           // a minimum, but another may be the one below the start
-  first_does_not_hold,       // what was found first holds at one phase only; this is another (steady_state)
-  first_not_found,           // nothing was found from the start; this is from elsewhere (steady_state)
+  left_unstable_speeds, // Newton-Raphson arrived at an unstable state; this is where the slow motion from the
+                        // start goes, or from beside that state (steady_state)
+  basin_uncertain,      // a minimum, but another may be the one below the start
+  first_does_not_hold,  // what was found first holds at one phase only; this is another (steady_state)
+  first_not_found,      // nothing was found from the start; this is from elsewhere (steady_state)
   // not converged:
   cancelled,
   unbounded,               // what was found lies far down a potential that falls on, and is not known well

@@ -1,5 +1,6 @@
 #include "engine/search/search_starts.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -78,6 +79,17 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
     }
   }
   return ranges;
+}
+
+bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges) {
+  bool any = false;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (!finds_speed(link_of(problem, problem.system.coordinates[i]))) continue;
+    const double most = times * std::max(std::abs(ranges[i].lower), std::abs(ranges[i].upper));
+    ranges[i] = {-most, most};
+    any = true;
+  }
+  return any;
 }
 
 void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<SearchRange>& ranges) {

@@ -18,6 +18,9 @@ struct SearchRange {
 // speeds (rad/s or m/s) from rest to three times that at which the search for them begins.
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
 
+// Widens those of speeds that are found to `times` as much, either way. False where there are none.
+bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges);
+
 // Widens the ranges of slides, and of angles with springs or stops, so that they contain `q`.
 void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<SearchRange>& ranges);
 

@@ -1,6 +1,7 @@
 #include "engine/search/steady_state.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/solve/slow_motion.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -34,7 +35,9 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
   out.others = {.searched = true,
                 .starts = list.report.starts,
                 .equilibria = static_cast<int>(list.states.size()),
-                .end = list.report.end};
+                .end = list.report.end,
+                .fastest = list.report.fastest,
+                .fastest_turns = list.report.fastest_turns};
   struct Steady {
     std::size_t state;
     double distance;
@@ -67,11 +70,34 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
 
 void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
                        const SteadyStateOptions& options) {
+  find_once(problem, from, drawn, options);
+  if (options.nearest || problem.cancelled() || problem.system.nv == 0) return;
+  if (!holds) {
+    report_progress(options.progress, "searching for another steady state");
+    search_another(problem, drawn, options.seconds);
+    return;
+  }
+  if (problem.system.torques.empty() || (found.minimum && phases.empty())) return;
+  judge(problem);
+  if (!unstable_) return;
+  if (options.warm) {
+    SteadyStateOptions cold = options;
+    cold.warm = false;
+    find(problem, drawn, drawn, cold);
+  } else {
+    leave_unstable(problem, drawn, options);
+  }
+}
+
+void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
+                            const SteadyStateOptions& options) {
   holds = false;
   factored_.reset();
   refined_with_.reset();
   existence = {};
   others.reset();
+  stability.reset();
+  unstable_ = false;
   start = from;
   find_equilibrium(problem, start, options.nearest, options.warm, balance_, history, found);
   // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
@@ -91,9 +117,6 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
     }
   }
   if (found.status == Status::converged) check_phases(problem);
-  if (holds || options.nearest || problem.cancelled() || problem.system.nv == 0) return;
-  report_progress(options.progress, "searching for another steady state");
-  search_another(problem, drawn, options.seconds);
 }
 
 // What rounding did to a coordinate that neither forces nor loops depend on is taken back.
@@ -155,6 +178,79 @@ void SteadyState::check_phases(const Problem& problem) {
     existence.holds = largest(variation.cwiseQuotient(problem.scaling.column)) < tolerance::phase_variation;
   }
   holds = existence.holds;
+}
+
+// Of many coordinates the pivots at the speeds found have to do, where there are any.
+void SteadyState::judge(const Problem& problem) {
+  unstable_ = false;
+  if (problem.system.nv > largest_for_answer_search) {
+    unstable_ = problem.symmetric_at_speeds() && balance_.kkt(problem).negative_count() > 0;
+    return;
+  }
+  const Problem matrices{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  stability = find_stability(factored(matrices), false);
+  unstable_ = stability->stable == false;
+}
+
+// Puts one that is not unstable in the place of this state, which is, where the slow motion leads to one:
+// from the start, or from either side of this state, along what has a share of every direction in which it
+// grows; or else where a search finds one.
+void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& drawn,
+                                 const SteadyStateOptions& options) {
+  report_progress(options.progress, "leaving an unstable state");
+  Workspace& w = balance_.elsewhere();
+  int iterations = found.iterations;
+  const auto take = [&](Found candidate) {
+    candidate.iterations += iterations;
+    candidate.remark = Remark::left_unstable_speeds;
+    return take_if_stable(problem, drawn, std::move(candidate));
+  };
+  constexpr double beside = 0.01; // scaled
+  for (const double side : {0., beside, -beside}) {
+    Found candidate;
+    candidate.z = {side == 0 ? start : found.z.q, Eigen::VectorXd::Zero(problem.system.rows)};
+    const Eigen::VectorXd step = side * problem.scaling.column;
+    retract<double>(problem.system, step, candidate.z.q);
+    candidate.newton = follow_slow_motion(problem, candidate.z, w, nullptr);
+    if (problem.cancelled()) return;
+    iterations += candidate.newton.iterations;
+    if (!candidate.newton.converged || !same_assembly_mode(problem, w.kinematics)) continue;
+    candidate.status = Status::converged;
+    candidate.fallback = Fallback::slow_motion;
+    if (take(std::move(candidate))) return;
+  }
+  if (!(options.seconds > 0) || problem.system.nv > largest_for_answer_search) return;
+  constexpr double at_most = 0.3; // of what a search costs: an unstable state is an answer, too
+  const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  AnswerSearch other = search_answer(dense, start, phases, std::min(options.seconds, at_most), w);
+  if (!other.answer || problem.cancelled()) return;
+  other.answer->candidates = other.others.steady;
+  take(std::move(*other.answer));
+}
+
+// In the place of this state; false, and this one as it was, where that is unstable, too, or not known well.
+bool SteadyState::take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate) {
+  const std::size_t recorded = history.size();
+  Found first = std::exchange(found, std::move(candidate));
+  const Existence first_existence = existence;
+  const ErrorEstimate first_error = error;
+  const std::optional<Stability> first_stability = std::exchange(stability, std::nullopt);
+  unstable_ = false;
+  complete(problem);
+  if (holds && is_known(problem, found.z.q, drawn, error.solution)) {
+    found.minimum = found.minimum || (problem.symmetric_at_speeds() && balance_.speeds.keeps_minimum());
+    if (!found.minimum || !phases.empty()) judge(problem);
+    if (!unstable_ || (found.minimum && phases.empty())) return true;
+  }
+  history.resize(recorded);
+  found = std::move(first);
+  existence = first_existence;
+  error = first_error;
+  stability = first_stability;
+  holds = unstable_ = true;
+  factored_.reset();
+  refined_with_.reset();
+  return false;
 }
 
 // Puts another steady state in this one's place where a search finds one.

@@ -1,6 +1,7 @@
 // From a start to the steady state that is the answer. Where Newton-Raphson and what catches it lead to none,
 // or to an equilibrium that holds at one phase of the drives only, other equilibria are looked for before
-// solving refuses.
+// solving refuses. Where torques drive there is no potential to go down by: a state that is unstable is left
+// for the stable one that the slow motion from the start leads to, or else the nearest of a search.
 #pragma once
 
 #include "engine/search/all_equilibria.hpp"
@@ -8,6 +9,7 @@
 #include "engine/solve/existence.hpp"
 #include "engine/solve/factored_state.hpp"
 #include "engine/solve/refine.hpp"
+#include "engine/stability/stability.hpp"
 
 #include <optional>
 
@@ -23,6 +25,8 @@ struct OtherStates {
   int equilibria = 0;    // found at the drawn phase
   int steady = 0;        // of these, at every phase
   SearchEnd end = SearchEnd::settled;
+  double fastest = 0; // up to which speed it looked, where speeds are found (SearchReport)
+  bool fastest_turns = true;
 };
 
 struct SteadyStateOptions {
@@ -44,11 +48,14 @@ class SteadyState {
   std::vector<double> history;
   Eigen::VectorXd start; // where the run that found it began
   ErrorEstimate error;   // `solution` with what other phases ask the state to move
+  // Of an answer that holds, in the matrices, where torques drive few coordinates: what find() went by.
+  std::optional<Stability> stability;
 
   // find_equilibrium() from `start`, or where a neighbour's answer leads elsewhere from `drawn`; its last
   // digits and their error; whether it holds at every phase; and where it does not, or nothing was found,
   // whether another does that a bounded search finds: the stable one nearest to the start. `drawn` is where
-  // distances are measured from. A coordinate that nothing depends on stays where the run began.
+  // distances are measured from. Where torques drive an unstable one is left for a stable one. A coordinate
+  // that nothing depends on stays where the run began.
   void find(const Problem& problem, const Eigen::VectorXd& start, const Eigen::VectorXd& drawn,
             const SteadyStateOptions& options);
 
@@ -72,11 +79,18 @@ class SteadyState {
   void keep_where_started(const Problem& problem);
   void refine_found(const Problem& problem);
   void check_phases(const Problem& problem);
+  void find_once(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
+                 const SteadyStateOptions& options);
+  void judge(const Problem& problem);
+  void leave_unstable(const Problem& problem, const Eigen::VectorXd& drawn,
+                      const SteadyStateOptions& options);
+  bool take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate);
   void search_another(const Problem& problem, const Eigen::VectorXd& drawn, double seconds);
 
   Workspace balance_;
   std::optional<KktForm> factored_;     // the form that is, at this state
   std::optional<KktForm> refined_with_; // the form whose factors refine() left, beside it
+  bool unstable_ = false;               // says judge()
   double shift_ = 0;                    // 1/s^2: of the metric that keeps its neutral directions still
 };
 

@@ -16,6 +16,7 @@ namespace {
 // How the cut joints fare when the drives go on a little from the drawn pose with all else at rest.
 struct DrivenCuts {
   int opened = 0;           // cuts that the drives pull open
+  std::vector<int> open;    // these
   std::vector<bool> turned; // by cut: its ends move against each other, and it stays closed
   bool varies = false;      // some cut turned, and with it what forces act on: balance_varies()
 };
@@ -84,6 +85,7 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
       change = std::max(change, std::abs(r[1].phi[i] - r[0].phi[i]) * scaling.row[i]);
     if (change > 1e-6) {
       ++out.opened;
+      out.open.push_back(static_cast<int>(c));
     } else if (cut.type != JointType::gear) {
       const auto relative = [&](int i) {
         return Mat3(k[i].at(cut.ends.a).R.transpose() * k[i].at(cut.ends.b).R);
@@ -97,11 +99,8 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
   return out;
 }
 
-// With the same cuts, and more that turns at rates of its own. Nothing where nothing more does, or the drives
-// pull open what they did not before.
-std::optional<System> with_turning(const System& system, const Mechanism& mechanism,
-                                   const std::vector<CoordinateReference>& more) {
-  if (more.empty()) return {};
+// The same cuts, and the same that turns at rates of its own.
+CutChoice choice_of(const System& system) {
   CutChoice choice;
   for (const CutJoint& cut : system.cuts)
     if (cut.type != JointType::gear) choice.cut.push_back(cut.joint);
@@ -109,11 +108,40 @@ std::optional<System> with_turning(const System& system, const Mechanism& mechan
     if (const Link& link = system.links[static_cast<std::size_t>(torque.link)]; torque.implied)
       choice.turning.push_back(
           {system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint, link.coordinate});
+  return choice;
+}
+
+// With the same cuts, and more that turns at rates of its own. Nothing where nothing more does, or the drives
+// pull open what they did not before.
+std::optional<System> with_turning(const System& system, const Mechanism& mechanism,
+                                   const std::vector<CoordinateReference>& more) {
+  if (more.empty()) return {};
+  CutChoice choice = choice_of(system);
   choice.turning.insert(choice.turning.end(), more.begin(), more.end());
   try {
     return compile(mechanism, choice);
   } catch (const SceneError&) {
     return {};
+  }
+}
+
+// What a drive keeps is the momentum of what hangs from it alone. A loop through it that the drives pull open
+// would have to turn it as the others turn, and so passes that momentum on.
+void expect_no_loop_on_momenta(const System& system, const Mechanism& mechanism,
+                               const std::vector<int>& open) {
+  for (const DriveTorqueElement& torque : system.torques) {
+    if (!torque.keeps_momentum) continue;
+    for (const int c : open) {
+      const CutJoint& cut = system.cuts[static_cast<std::size_t>(c)];
+      if (std::ranges::find(cut.ends.support, torque.link, &SupportColumn::link) == cut.ends.support.end())
+        continue;
+      const int link_joint = system.links[static_cast<std::size_t>(torque.link)].tree_joint;
+      const std::string& drive = system.tree_joints[static_cast<std::size_t>(link_joint)].name;
+      throw SceneError("joints." + drive + ".drive.keeps",
+                       "expected speed, or no loop that ties " + drive + " to what others drive: through " +
+                           mechanism.joints[static_cast<std::size_t>(cut.joint)].name +
+                           " its momentum passes to them");
+    }
   }
 }
 
@@ -187,18 +215,15 @@ System compile_for_drives(const Mechanism& mechanism) {
     const System standing = best;
     let_turn(standing, slipping_turning(standing, bound(standing, mechanism)));
   }
+  expect_no_loop_on_momenta(best, mechanism, fate.open);
   for (std::size_t c = 0; c < best.cuts.size(); ++c)
     best.cuts[c].turns = fate.turned[c] && best.cuts[c].type != JointType::distance;
   return best;
 }
 
-System compile_for_motion(const Mechanism& mechanism) {
-  System steady = compile_for_drives(mechanism);
+System compile_for_motion(const Mechanism& mechanism, const System& steady) {
   if (steady.torques.empty()) return steady;
-  CutChoice same;
-  for (const CutJoint& cut : steady.cuts)
-    same.cut.push_back(cut.joint);
-  return compile(mechanism, same, TorqueDriven::moves_freely);
+  return compile(mechanism, choice_of(steady), TorqueDriven::moves_freely);
 }
 
 } // namespace flyball

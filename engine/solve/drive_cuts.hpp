@@ -10,7 +10,8 @@ namespace flyball {
 // (CutJoint::turns). Where drives would carry weights round by one joint of a loop and not by another, the
 // one is cut.
 System compile_for_drives(const Mechanism& mechanism);
-// With the same cuts, what torques drive being coordinates like others.
-System compile_for_motion(const Mechanism& mechanism);
+// The same tree and cuts as in the steady state (of compile_for_drives), so that the coordinates are the
+// same, with what turns at speeds that are found there being coordinates like others.
+System compile_for_motion(const Mechanism& mechanism, const System& steady);
 
 } // namespace flyball

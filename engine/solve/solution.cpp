@@ -20,6 +20,7 @@ std::string_view word(Fallback fallback) {
   case Fallback::damped: return "damped";
   case Fallback::homotopy: return "homotopy";
   case Fallback::descent: return "descent";
+  case Fallback::slow_motion: return "slow_motion";
   case Fallback::search: return "search";
   }
   return "";

@@ -27,7 +27,8 @@ enum class Fallback {
   damped,
   homotopy,
   descent,
-  search, // the others led to no steady state: one of those that a search all over the ranges found
+  slow_motion, // of what torques drive, from the start
+  search,      // the others led to no steady state: one of those that a search all over the ranges found
 };
 
 enum class StabilityReason {
@@ -66,18 +67,20 @@ std::string_view word(SearchEnd end);
 
 struct CoordinateSolution {
   std::string joint;
-  int index = 0, count = 1;      // which of the joint's coordinates
-  bool angle = false;            // rad rather than m
-  bool driven = false;           // then `value` is at the drawn drive phase and `error` is zero
-  double value = 0;              // rad or m
-  double error = 0;              // estimated absolute error, rad or m
-  std::optional<double> speed{}; // rad/s or m/s: of a drive by torque, as found
-  double speed_error = 0;        // estimated, absolute
-  bool dependent = false;        // of a joint that closes a loop: follows from the others, and starts nothing
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool angle = false;       // rad rather than m
+  bool driven = false;      // then `value` is at the drawn drive phase and `error` is zero
+  double value = 0;         // rad or m
+  double error = 0;         // estimated absolute error, rad or m
+  // rad/s or m/s: of a drive by torque, as found, and of a joint that closes a loop and goes on at a constant
+  // rate.
+  std::optional<double> speed{};
+  double speed_error = 0; // estimated, absolute
+  bool dependent = false; // of a joint that closes a loop: follows from the others, and starts nothing
 };
 
 // Whether a steady state finds something of a coordinate, which no drive prescribes: where it stands, or how
-// fast a drive by torque turns it.
+// fast it goes on.
 inline bool is_found(const CoordinateSolution& coordinate) {
   return coordinate.speed || !coordinate.driven;
 }
@@ -110,6 +113,17 @@ struct DriveTorque {
   // than three drives of which no two return together.
   std::optional<PhaseRange> range{};
   bool nonunique = false; // loops are redundant, and share it among several drives: the minimum-norm share
+};
+
+// Of a joint with dry friction that a state rests on: there is none without it.
+struct FrictionForce {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = true;             // N m rather than N
+  std::optional<double> value{}; // positive along the coordinate; where it changes with the phase of the
+                                 // drives the largest. Nothing where loops leave it open
+  double limit = 0;              // N m or N
+  bool slips = false;            // gives its limit against the coordinate's rate; else holds it as drawn
 };
 
 // What the parent exerts on the child through a joint, its spring, stop, damper, drive and gears included.
@@ -215,6 +229,8 @@ struct Solution {
   std::vector<UnheldCoordinate> unheld;
   bool unheld_by_weight = false, weight_turns = false;
   std::vector<DriveTorque> drive_torques;
+  // Where without dry friction there is no steady state: what this one rests on.
+  std::vector<FrictionForce> frictions;
   std::vector<Reaction> reactions;
   std::vector<GearReaction> gears;
   std::vector<BearingForce> bearings;

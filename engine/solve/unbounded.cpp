@@ -155,7 +155,14 @@ class Search {
       return rest >= tolerance::constant_push * whole; // `whole` is negative
     };
     out.by_weight = p_.parameters.gravity.norm() > 0 && without([](Parameters& p) { p.gravity.setZero(); });
-    out.by_inertia = p_.parameters.moving && without([](Parameters& p) { p.moving = false; });
+    // Drag and dampers push by speeds, too: what is left without masses is not inertia's.
+    out.by_inertia = p_.parameters.moving && without([](Parameters& p) { p.moving = false; }) &&
+                     without([](Parameters& p) {
+                       for (LinkParameters& link : p.links) {
+                         link.mass = 0;
+                         link.inertia.setZero();
+                       }
+                     });
   }
 
   void name(Unbounded& out) const {

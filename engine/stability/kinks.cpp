@@ -1,6 +1,8 @@
 #include "engine/stability/kinks.hpp"
 
 #include "engine/system/air_force.hpp"
+#include "engine/system/cut_damper.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/residual.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -12,12 +14,13 @@
 namespace flyball {
 namespace {
 
+constexpr double far = 1e-6, near = far / 64; // of the size of a number
+
 // Slopes before and after a jump within some 1e-8 of `size` beside x, of a law with this slope.
 template <class Slope>
 std::optional<std::array<double, 2>> jump_at(const Slope& slope, double x, double size) {
   const auto slopes = [&](double h) { return std::array<double, 2>{slope(x - h), slope(x + h)}; };
   const auto difference = [](const std::array<double, 2>& s) { return std::abs(s[1] - s[0]); };
-  constexpr double far = 1e-6, near = far / 64;
   const auto wide = slopes(far * size), close = slopes(near * size);
   const double largest = std::max(std::abs(close[0]), std::abs(close[1]));
   // A smooth slope differs by 1/64 as much.
@@ -41,7 +44,7 @@ class Search {
 
  private:
   void add(Kink::Law which, double at, const std::optional<std::array<double, 2>>& jump) const {
-    if (jump) out_.push_back({of_, entry_, which, at, *jump});
+    if (jump) out_.push_back({of_, entry_, which, at, *jump, 0, {}});
   }
 
   Kink::Of of_;
@@ -57,6 +60,47 @@ void look_at_polar(const Search& search, const BodyForceParameters& p, const Mat
   const double incidence = std::atan2(up, along);
   search.look_round(p.polar->lift, Kink::Law::lift, incidence);
   search.look_round(p.polar->drag, Kink::Law::drag, incidence);
+}
+
+// Whether two inputs cross the same kink, be it in opposite directions.
+bool same_sides(const Kink& a, const Kink& b) {
+  const auto alike = [](const std::vector<double>& x, const std::vector<double>& y) {
+    constexpr double smooth = 1e-4; // more than what a smooth law changes so near
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!(std::abs(x[i] - y[i]) <= smooth * std::max(std::abs(x[i]), std::abs(y[i])))) return false;
+    return true;
+  };
+  const auto& [before, after] = a.gradients;
+  return a.law == b.law && ((alike(before, b.gradients[0]) && alike(after, b.gradients[1])) ||
+                            (alike(before, b.gradients[1]) && alike(after, b.gradients[0])));
+}
+
+// Of the torque or load of a drive, along each of its inputs that a steady state or its motion can change.
+void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const Kinematics<double>& k,
+                       std::size_t drive, Kink::Law which, std::vector<Kink>& out) {
+  const System& system = problem.system;
+  const Parameters& p = problem.parameters;
+  const DriveTorqueElement& e = system.torques[drive];
+  const bool torque = which == Kink::Law::torque;
+  const DriveLaw& law = torque ? e.torque : e.load;
+  const DriveLawParameters& numbers = torque ? p.torques[drive].torque : p.torques[drive].load;
+  const std::size_t first = out.size();
+  for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    if (link.v < 0) continue;
+    const double size = link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v];
+    const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
+    const auto jump = jump_at([&](double by) { return slopes(by)[i]; }, 0, size);
+    if (!jump) continue;
+    const double at = !law.inputs[i].rate ? coordinate_value(system, p, q, c)
+                      : finds_speed(link) ? q[link.q]
+                                          : 0;
+    Kink kink{Kink::Of::drive, drive, which, at, *jump, i, {slopes(-near * size), slopes(near * size)}};
+    if (std::none_of(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
+                     [&](const Kink& other) { return same_sides(kink, other); }))
+      out.push_back(std::move(kink));
+  }
 }
 
 } // namespace
@@ -88,6 +132,13 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
     search.look(spring.laws->spring, Kink::Law::spring, s.length - spring.free_length, p.length);
     search.look(spring.laws->damper, Kink::Law::damper, stretching(system.springs[n], s, k), p.length);
   }
+  for (std::size_t i = 0; i < system.cut_damper_laws.size(); ++i) {
+    const auto n = static_cast<std::size_t>(system.cut_damper_laws[i].at);
+    const CutDamperElement& e = system.cut_dampers[n];
+    Search(Kink::Of::cut_damper, i, out)
+        .look(p.cut_dampers[n].laws->damper, Kink::Law::damper,
+              cut_damper_state<double>(e, p.cut_dampers[n], k).rate, e.angular ? 1 : p.length);
+  }
   for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
     const BodyForceParameters& vane = p.body_forces[i];
     const int link = system.body_forces[i].link;
@@ -102,6 +153,16 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
     look_at_polar(Search(Kink::Of::vane_in_turning_air, i, out), vane, k.at(e.ends.b).R,
                   turning_air_force<double>(e, vane, k).flow);
   }
+  for (std::size_t i = 0; i < system.torques.size(); ++i)
+    for (const Kink::Law which : {Kink::Law::torque, Kink::Law::load})
+      look_at_drive_law(problem, q, k, i, which, out);
+  return out;
+}
+
+Parameters beside_kink(const Problem& problem, const Kink& kink, std::size_t side) {
+  Parameters out = problem.parameters;
+  DriveTorqueParameters& drive = out.torques[kink.entry];
+  (kink.law == Kink::Law::torque ? drive.torque : drive.load).slopes = kink.gradients[side];
   return out;
 }
 

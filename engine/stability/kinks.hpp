@@ -1,8 +1,10 @@
-// Springs, dampers and vanes that stand on a kink of their laws (force_law.hpp), where the slope jumps.
+// Springs, dampers, vanes and drives that stand on a kink of their laws (force_law.hpp, drive_law.hpp), where
+// the slope jumps.
 //
 // The balance has one derivative on either side there, so eigenvalues tell of one side. Where there is a
 // potential the sides can be compared: with the smaller slope of every spring on a kink in place of its law
-// the second variation is nowhere larger than that of any side, and with the larger one nowhere smaller.
+// the second variation is nowhere larger than that of any side, and with the larger one nowhere smaller. Of
+// the torque of a drive each side can be looked at by itself.
 #pragma once
 
 #include "engine/kkt/problem.hpp"
@@ -13,14 +15,19 @@
 namespace flyball {
 
 struct Kink {
-  // Whose law: an entry of System::coordinate_laws, spring_laws, body_forces or turning_air.
-  enum class Of { coordinate, spring, vane, vane_in_turning_air };
-  enum class Law { spring, damper, lift, drag };
+  // Whose law: an entry of System::coordinate_laws, spring_laws, cut_damper_laws, body_forces, turning_air or
+  // torques.
+  enum class Of { coordinate, spring, cut_damper, vane, vane_in_turning_air, drive };
+  enum class Law { spring, damper, lift, drag, torque, load };
   Of of = Of::coordinate;
   std::size_t entry = 0;
   Law law = Law::spring;
   double at = 0;                  // the deflection, rate or incidence
   std::array<double, 2> slopes{}; // before and after
+  // Of a drive: which of the law's inputs crosses the kink, in DriveLaw::inputs, and the derivatives with all
+  // of them before and after. `at` is that input.
+  std::size_t input = 0;
+  std::array<std::vector<double>, 2> gradients{};
 };
 
 // At a configuration, whose kinematics are at the drawn phase.
@@ -31,5 +38,8 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q,
 // stands on a kink.
 enum class KinkSide { softer, stiffer };
 Parameters straightened(const Problem& problem, const std::vector<Kink>& kinks, KinkSide side);
+
+// The numbers with the law of a drive as it is on one side of its kink: 0 before, 1 after.
+Parameters beside_kink(const Problem& problem, const Kink& of_drive, std::size_t side);
 
 } // namespace flyball

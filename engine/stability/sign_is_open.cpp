@@ -1,13 +1,20 @@
 #include "engine/stability/sign_is_open.hpp"
 
-namespace flyball {
+#include "engine/linear/largest.hpp"
+#include "engine/solve/refine.hpp"
 
-bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error, bool minimum,
-                  Workspace& w) {
+#include <algorithm>
+
+namespace flyball {
+namespace {
+
+constexpr double known_error =
+    1e-11; // scaled: an error below this is that of a state that is far from singular
+
+// Of a dense problem with a potential; `away` is the error, scaled.
+bool stiffness_is_open(const Problem& problem, const Unknowns& z, double away, bool minimum, Workspace& w) {
   DenseKkt* dense = w.matrices(problem);
-  if (problem.system.nv == 0 || !dense || !problem.symmetric()) return false;
-  const double away = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
-  if (minimum && away < 1e-11) return false;
+  if (minimum && away < known_error) return false;
   Unknowns here = z;
   factor_with_multipliers(problem, here, w);
   ReducedHessian& hessian = dense->hessian();
@@ -38,6 +45,102 @@ bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::Vector
     change = std::max(change, std::abs(stiffness() - least));
   }
   return std::abs(least) <= change;
+}
+
+// The direction (scaled, its largest entry 1) in which the balance that is factored in the workspace changes
+// least, by inverse iteration.
+Eigen::VectorXd softest_direction(const Problem& problem, Workspace& w) {
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(problem.system.nv), next;
+  for (int i = 0; i < 3; ++i) {
+    w.kkt(problem).solve(x, next);
+    const double size = largest_size(next);
+    if (!(size > 0) || !std::isfinite(size)) return Eigen::VectorXd::Zero(x.size());
+    x = next / size;
+  }
+  return x;
+}
+
+// The largest real part (1/s) of the eigenvalues of the motion at `here`, where the loops are closed.
+std::optional<double> growth_at(const Problem& problem, Unknowns here, Workspace& w) {
+  factor_with_multipliers(problem, here, w);
+  const auto eigenvalues = motion_eigenvalues(problem, here, w);
+  if (!eigenvalues || eigenvalues->empty()) return {};
+  double growth = -std::numeric_limits<double>::infinity();
+  for (const std::complex<double> s : *eigenvalues)
+    growth = std::max(growth, s.real());
+  return growth;
+}
+
+// Of a dense problem whose speeds are found by torques.
+bool growth_is_open(const Problem& problem, const Unknowns& z, double away, Workspace& w) {
+  if (away < known_error) return false;
+  const auto least = growth_at(problem, z, w);
+  if (!least) return false;
+  const Eigen::VectorXd direction = softest_direction(problem, w);
+  double change = 0;
+  for (const double side : {4., -4.}) {
+    Unknowns there = z;
+    const Eigen::VectorXd step = side * away * direction.cwiseProduct(problem.scaling.column);
+    retract<double>(problem.system, step, there.q);
+    if (!assemble(problem, there.q, 0, w)) continue;
+    if (const auto growth = growth_at(problem, there, w))
+      change = std::max(change, std::abs(*growth - *least));
+  }
+  return std::abs(*least) <= change;
+}
+
+bool verdict_is_open(const Problem& problem, const Unknowns& z, double away, const Stability& stability,
+                     Workspace& w) {
+  if (problem.symmetric())
+    return stiffness_is_open(problem, z, away, stability.reason == StabilityReason::minimum, w);
+  const bool decided = stability.reason == StabilityReason::asymptotic ||
+                       stability.reason == StabilityReason::unstable ||
+                       stability.reason == StabilityReason::minimum;
+  return decided && !problem.system.torques.empty() && !problem.system.conserves &&
+         growth_is_open(problem, z, away, w);
+}
+
+} // namespace
+
+bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& error,
+                  const Stability& stability, Workspace& w) {
+  const bool varies = stability.floquet || stability.floquet_failure;
+  if (problem.system.nv == 0 || problem.form != KktForm::dense || varies ||
+      stability.reason == StabilityReason::neutral)
+    return false;
+  const double away = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
+  if (stability.kinks.empty()) return verdict_is_open(problem, z, away, stability, w);
+  const Parameters softer = straightened(problem, stability.kinks, KinkSide::softer);
+  return verdict_is_open({problem.system, softer, problem.scaling, problem.cancel, problem.form}, z, away,
+                         stability, w);
+}
+
+bool sign_is_open(const FactoredState& at, const Stability& stability) {
+  const Problem& problem = at.problem;
+  if (problem.system.nv == 0 || problem.form != KktForm::dense || !stability.stable) return false;
+  constexpr double nearly_singular = 1e-5;
+  const Eigen::VectorXd direction = softest_direction(problem, at.w);
+  const Eigen::MatrixXd& k = at.w.dense.stiffness();
+  const Eigen::VectorXd force = at.w.dense.constraints().basis().transpose() * (k * direction);
+  const double terms = (k.cwiseAbs() * direction.cwiseAbs()).norm();
+  if (!(force.norm() < nearly_singular * terms)) return false;
+  Workspace& w = at.w.elsewhere();
+  Unknowns beside = at.z;
+  const Eigen::VectorXd step = 1e-4 * direction.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, step, beside.q);
+  if (!assemble(problem, beside.q, 0, w)) return false;
+  NewtonSettings settings;
+  settings.max_iterations = 100;
+  const NewtonOutcome outcome = newton(problem, beside, w, settings, nullptr);
+  if (!outcome.converged) return false;
+  ErrorEstimate error;
+  refine(problem, beside, outcome, w, error);
+  return sign_is_open(problem, at.z, error.solution, stability, w);
+}
+
+void leave_open(Stability& stability) {
+  stability.stable.reset();
+  stability.reason = StabilityReason::marginal;
 }
 
 } // namespace flyball

@@ -130,6 +130,50 @@ std::optional<LinearPencil> steady_motion(const Problem& problem, const Unknowns
                           cyclic_directions(problem.system, basis, true));
 }
 
+// Whether torques that depend on the speeds they give alone, and fall as these grow, keep what stands at a
+// strict minimum of the amended potential at these speeds. The energy less the sum of w L then has a strict
+// minimum at the steady state, w its speeds and L the angular momenta of its shafts; and it falls at the rate
+// of sum_i (T_i(w') - T_i(w)) (w'_i - w_i) < 0 and what dampers take. `jacobian` is that of the balance,
+// scaled.
+bool torques_keep_minimum(const Problem& problem, const Eigen::MatrixXd& jacobian,
+                          const Eigen::MatrixXd& constraints, const Eigen::VectorXd& noise) {
+  const System& system = problem.system;
+  constexpr int few = 8; // of which eigenvalues cost little, and tell more
+  if (system.nv <= few || system.torques.empty() || !system.conservative_at_speeds || !system.single_drives)
+    return false;
+  std::vector<int> speeds, rest;
+  for (const DriveTorqueElement& torque : system.torques) {
+    if (torque.keeps_momentum || torque.implied) return false;
+    for (const DriveLaw* law : {&torque.torque, &torque.load})
+      for (const DriveLaw::Input& input : law->inputs)
+        if (const auto& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+            !input.rate || system.links[static_cast<std::size_t>(c.link)].drive < 0)
+          return false;
+    speeds.push_back(system.links[static_cast<std::size_t>(torque.link)].v);
+  }
+  for (int v = 0; v < system.nv; ++v)
+    if (std::ranges::find(speeds, v) == speeds.end()) rest.push_back(v);
+  if (constraints.rows() > 0 && !constraints(Eigen::all, speeds).isZero(0)) return false;
+  if (!(jacobian(speeds, rest).cwiseAbs().maxCoeff() <=
+        tolerance::symmetric * jacobian(rest, rest).cwiseAbs().maxCoeff()))
+    return false;
+  const Eigen::MatrixXd resists = jacobian(speeds, speeds);
+  if (!is_minimum((resists + resists.transpose()) / 2)) return false;
+  Eigen::MatrixXd stiffness = jacobian(rest, rest);
+  Eigen::VectorXd terms = noise;
+  if (constraints.rows() > 0) {
+    ConstraintSpace space;
+    space.factor(constraints(Eigen::all, rest), 1e-10);
+    stiffness = large::projected(stiffness, space.basis());
+    terms.setZero(stiffness.rows());
+  } else {
+    terms = noise(rest);
+  }
+  ReducedHessian energy;
+  energy.factor(stiffness, terms, true);
+  return energy.positive_definite();
+}
+
 // Without those of the phases of what torques drive.
 std::optional<std::vector<Complex>> eigenvalues_with_found_speeds(const Problem& problem,
                                                                   const Eigen::MatrixXd& basis,
@@ -218,9 +262,11 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
       motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters), w.elsewhere());
   const bool potential = has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();
-  ReducedHessian energy; // symmetric where there is a potential, whatever Newton used
   const Eigen::MatrixXd& reduced = w.dense.reduced();
-  energy.factor(reduced, w.dense.noise(), potential);
+  ReducedHessian symmetric; // where there is a potential, whatever Newton used
+  const bool factored = potential == problem.symmetric() && w.dense.shift() == 0;
+  if (!factored) symmetric.factor(reduced, w.dense.noise(), potential);
+  ReducedHessian& energy = factored ? w.dense.hessian() : symmetric;
   const bool minimum = potential && !varies && energy.positive_definite();
   if (minimum) {
     out.stable = true;
@@ -254,11 +300,16 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
     return out;
   }
 
+  const bool kept = torques_keep_minimum(problem, w.dense.stiffness(), w.dense.jacobian(), w.dense.noise());
+  if (kept) {
+    out.stable = true;
+    out.reason = StabilityReason::minimum;
+  }
   double most_negative = 0;
   if (potential && !minimum && energy.size() > 0) {
     if (energy.decompose()) most_negative = energy.eigenvalues()[0];
   }
-  if (minimum && !with_eigenvalues) return out;
+  if ((minimum || kept) && !with_eigenvalues) return out;
 
   auto motion = steady_motion(problem, at.z, w);
   if (!motion) return out;
@@ -270,7 +321,7 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
     return out;
   }
   const Eigen::MatrixXd &mass = motion->mass, &velocity = motion->velocity, &stiffness = motion->stiffness;
-  if (minimum || !out.eigenvalues) return out;
+  if (minimum || kept || !out.eigenvalues) return out;
 
   // Eigenvalues that belong to null directions are zero but for rounding: leave the smallest out.
   std::vector<Complex> moving = *out.eigenvalues;
@@ -336,8 +387,40 @@ Stability common_stability(const FactoredState& at, const std::vector<Kink>& kin
   return common;
 }
 
+// On the kink of a drive's law alone the linearised motion has two sides, which meet where that input is as
+// it is. A real eigenvalue that grows on either side proves that the state is unstable: of its direction and
+// the opposite one either lies on that side, and the motion along it stays there. That both die out proves
+// that the state is stable where there is one eigenvalue, so that a motion stays on its side; with more of
+// them one that goes to and fro may grow all the same.
+std::optional<bool> stable_on_both_sides(const FactoredState& at, const Kink& of_drive) {
+  std::size_t dying = 0;
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    const Parameters numbers = beside_kink(at.problem, of_drive, side);
+    const Problem problem{at.problem.system, numbers, at.problem.scaling, at.problem.cancel};
+    Workspace w;
+    const Stability there = find_smooth_stability(factor_at(problem, at.z, w), true);
+    if (!there.eigenvalues || there.floquet) return {};
+    if (there.reason == StabilityReason::unstable &&
+        std::ranges::any_of(*there.eigenvalues, [](Complex s) { return s.imag() == 0 && s.real() > 0; }))
+      return false;
+    if (there.reason == StabilityReason::asymptotic && there.eigenvalues->size() == 1) ++dying;
+  }
+  if (dying == 2) return true;
+  return {};
+}
+
+bool judge_kink_of_drive(const FactoredState& at, Stability& out) {
+  if (out.kinks.size() != 1 || out.kinks[0].of != Kink::Of::drive) return false;
+  const std::optional<bool> stable = stable_on_both_sides(at, out.kinks[0]);
+  if (!stable) return false;
+  out.stable = stable;
+  out.reason = *stable ? StabilityReason::asymptotic : StabilityReason::unstable;
+  return true;
+}
+
 void judge_kinks(const FactoredState& at, Stability& out) {
   out.kinks = find_kinks(at.problem, at.z.q, at.w.kinematics);
+  if (judge_kink_of_drive(at, out)) return;
   if (std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law == Kink::Law::spring; })) {
     const Stability common = common_stability(at, out.kinks);
     out.stable = common.stable;

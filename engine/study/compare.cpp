@@ -77,7 +77,8 @@ class Direct {
     steady_.find(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search});
     if (!steady_.holds) return false;
     if (!steady_.found.minimum || !steady_.phases.empty())
-      stability_ = find_stability(steady_.factored(classified()), false);
+      stability_ =
+          steady_.stability ? *steady_.stability : find_stability(steady_.factored(classified()), false);
     z = steady_.found.z;
     return true;
   }
@@ -307,10 +308,10 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   SolveOptions solve;
   solve.cancel = options.cancel;
   const Solution steady = Analysis(mechanism).solve(solve);
-  out.status = steady.status;
+  out.status = steady.frictions.empty() ? steady.status : Status::no_steady_state;
   out.message = steady.message;
   if (time.watch.over()) broken_off();
-  if (steady.status != Status::converged || !out.complete) return;
+  if (out.status != Status::converged || !out.complete) return;
 
   Direct direct(mechanism, options.cancel);
   Unknowns answer;
@@ -344,6 +345,10 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
       options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
   if (!measure_motions(mechanism, options, durations, time, direct, steady.neutral, out)) broken_off();
   find_best(out);
+  if (out.complete && !out.best) {
+    out.complete = false;
+    out.message = "No motion went on to its end, so there is nothing to compare with.";
+  }
 }
 
 } // namespace

@@ -19,8 +19,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int parts = 4;        // of a way to a corner, looked at on the way
-constexpr int most_sweeps = 12; // of all shares, one after the other
+constexpr int parts = 4;          // of a way to a corner, looked at on the way
+constexpr int most_sweeps = 40;   // of all shares, one after the other
+constexpr double no_gain = 1e-16; // of an output's size, in a sweep
 constexpr int most_iterations = 60;
 constexpr std::size_t most_outputs = 128;
 
@@ -100,15 +101,22 @@ class Box {
 
   // The place beyond which no rate of the output, times `sense`, leads up. Of one share the highest on the
   // ways to its ends, along which the output may go up and down; of several from the best that is known.
-  Place climb(Index output, double sense) {
+  // `left` is what further sweeps of these would add, estimated.
+  Place climb(Index output, double sense, double& left) {
+    left = 0;
     Place at = *std::ranges::max_element(
         places_, {}, [&](const Place& place) { return sense * place.state.values[output]; });
     if (at.state.p.size() == 1) return highest_along(output, sense, at);
+    double before = 0;
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
       bool moved = false;
+      const double from = at.state.values[output];
       for (Index j = 0; j < at.state.p.size(); ++j)
         moved = climb_along(output, sense, j, at) || moved;
-      if (!moved) break;
+      const double gain = std::abs(at.state.values[output] - from), ratio = before > 0 ? gain / before : 0;
+      left = ratio < 1 ? gain * ratio / (1 - ratio) : gain;
+      if (!moved || gain <= no_gain * size_of(output, at)) break;
+      before = gain;
     }
     return at;
   }
@@ -126,6 +134,10 @@ class Box {
  private:
   void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
 
+  static double size_of(Index output, const Place& at) {
+    return std::abs(at.state.values[output]) + at.rates.row(output).lpNorm<Eigen::Infinity>();
+  }
+
   Place highest_along(Index output, double sense, const Place& known) {
     std::vector<Place> line = places_;
     std::ranges::sort(line, {}, [](const Place& place) { return place.state.p[0]; });
@@ -141,10 +153,9 @@ class Box {
   // Along one share, as far as the output grows. Whether that is anywhere.
   bool climb_along(Index output, double sense, Index j, Place& at) {
     const double rate = sense * at.rates(output, j);
-    const double size = std::abs(at.state.values[output]) + at.rates.row(output).lpNorm<Eigen::Infinity>();
     VectorXd end = at.state.p;
     end[j] = rate > 0 ? 1 : -1;
-    if (!(std::abs(rate) > 1e-9 * size) || end == at.state.p) return false;
+    if (!(std::abs(rate) > 1e-9 * size_of(output, at)) || end == at.state.p) return false;
     const auto [beyond, there] = go(at, end);
     if (beyond.state.p == at.state.p) return false;
     if (sense * beyond.rates(output, j) * rate >= 0) {
@@ -190,6 +201,42 @@ double value_of(const ResponsePoint& point, const std::string& name) {
   return std::nan("");
 }
 
+// The largest value, times `sense`, along a branch between the points beside `i`, where its share goes one
+// way from one to the other; nothing where it turns back or the states there are singular.
+std::optional<double> crest_beside(const Mechanism& mechanism, const FreeNumber& share,
+                                   const std::vector<ResponsePoint>& points, std::size_t i,
+                                   const std::string& name, double sense, const std::atomic<bool>* cancel) {
+  const ResponsePoint &before = points[i - 1], &after = points[i + 1];
+  if ((points[i].parameter - before.parameter) * (after.parameter - points[i].parameter) <= 0) return {};
+  Mechanism at = mechanism;
+  set_parameter(at, share.address, before.parameter);
+  Box box(at, std::span(&share, 1), {name}, cancel);
+  if (!box.begin(start_values(before.coordinates)) || !box.first().rates.allFinite()) return {};
+  const auto [last, there] = box.go(box.first(), VectorXd::Constant(1, after.parameter));
+  if (!there) return {};
+  double left = 0;
+  return box.climb(0, sense, left).state.values[0];
+}
+
+// Takes into an extent what a branch reaches between its points.
+void take_crests(const Mechanism& mechanism, const FreeNumber& share,
+                 const std::vector<ResponsePoint>& points, const std::atomic<bool>* cancel,
+                 BandExtent& extent) {
+  for (std::size_t i = 1; i + 1 < points.size(); ++i)
+    for (const double sense : {1., -1.}) {
+      double& end = sense > 0 ? extent.high : extent.low;
+      const double value = value_of(points[i], extent.name),
+                   before = sense * (value - value_of(points[i - 1], extent.name)),
+                   after = sense * (value - value_of(points[i + 1], extent.name));
+      const double beyond = std::max(before, after); // less than this between them
+      if (!(before > 0) || !(after > 0) || !(sense * (value - end) + beyond > 0)) continue;
+      // A jump is an angle's that is told between -pi and pi.
+      if (extent.unit == "rad" && beyond > std::numbers::pi) continue;
+      const auto crest = crest_beside(mechanism, share, points, i, extent.name, sense, cancel);
+      if (crest && sense * (*crest - end) > 0) end = *crest;
+    }
+}
+
 // The extents over all that hangs together along one share, folds included.
 bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution& state,
             const std::atomic<bool>* cancel, FrictionBand& band) {
@@ -208,9 +255,12 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   for (const ResponseBranch& branch : diagram->branches)
     for (const bool last : {false, true}) {
       const ResponsePoint& end = last ? branch.points.back() : branch.points.front();
-      if (!branch.connected || end.parameter == share.from || end.parameter == share.to) continue;
+      // One that was followed off a crossing begins on what is known.
+      const std::string& reason = last ? branch.end : branch.begin;
+      if (!branch.connected || reason.empty() || reason == closed_branch) continue;
+      if (end.parameter == share.from || end.parameter == share.to) continue;
       open.push_back(&end);
-      why = last || branch.begin.empty() ? branch.end : branch.begin;
+      why = reason;
     }
   std::vector<std::string_view> round, farther;
   for (BandExtent& extent : band.extents) {
@@ -228,6 +278,8 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
       std::ranges::for_each(branch.points, take);
     for (const SpecialPoint& special : diagram->special)
       take(special.at);
+    for (const ResponseBranch& branch : diagram->branches)
+      take_crests(mechanism, share, branch.points, cancel, extent);
     const double width = extent.high - extent.low;
     bool unbounded = false;
     for (const ResponsePoint* end : open) {
@@ -259,7 +311,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     solve.details = false;
     solve.cancel = options.cancel;
     const Solution state = Analysis(mechanism).solve(solve);
-    if (state.status != Status::converged) {
+    if (state.status != Status::converged || !state.frictions.empty()) {
       band.message = state.message;
       return band;
     }
@@ -285,17 +337,24 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     for (Index i = 0; i < count; ++i)
       for (const double sense : {1., -1.})
         if (measured(i)) box.go_to_corner(i, sense);
+    const CoordinateReference at = find_frictions(mechanism).front();
+    const std::string frictional =
+        coordinate_name(mechanism.joints[static_cast<std::size_t>(at.joint)], at.coordinate);
     const auto shares = [](const VectorXd& p) { return std::vector<double>(p.begin(), p.end()); };
     for (Index i = 0; i < count; ++i) {
       if (!measured(i)) continue;
-      const Box::Place low = box.climb(i, -1), high = box.climb(i, 1);
+      double below = 0, above = 0;
+      const Box::Place low = box.climb(i, -1, below), high = box.climb(i, 1, above);
       const std::string& name = names[static_cast<std::size_t>(i)];
       std::optional<double> error;
       if (options.errors)
-        if (const double worst = std::max(box.errors(low)[i], box.errors(high)[i]); std::isfinite(worst))
+        if (const double worst = std::max(box.errors(low)[i] + below, box.errors(high)[i] + above);
+            std::isfinite(worst))
           error = worst;
+      const bool stands = free.size() == 1 && name == frictional;
       band.extents.push_back({name, box.unit(i), box.first().state.values[i], low.state.values[i],
-                              high.state.values[i], error, shares(low.state.p), shares(high.state.p)});
+                              high.state.values[i], error, shares(low.state.p), shares(high.state.p),
+                              stands});
     }
     band.found = true;
     band.whole = !box.lost();

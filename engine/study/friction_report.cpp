@@ -1,5 +1,6 @@
 #include "engine/study/friction_report.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace flyball {
@@ -14,7 +15,7 @@ FrictionReport report_friction(const Mechanism& mechanism,
     out.band = find_friction_band(mechanism, {.start = *steady, .cancel = cancel});
     out.speeds = find_held_speeds(mechanism, *steady, cancel);
   } else {
-    out.band.message = "There is no steady state for a band to hang together with.";
+    out.band.message = "Without friction there is no steady state for a band to hang together with.";
   }
   out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
@@ -23,8 +24,12 @@ FrictionReport report_friction(const Mechanism& mechanism,
 FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution,
                                const std::atomic<bool>* cancel) {
   std::optional<std::vector<std::pair<std::string, double>>> steady;
-  if (solution.status == Status::converged) steady = start_values(solution.coordinates);
-  return report_friction(mechanism, steady, cancel);
+  if (solution.status == Status::converged && solution.frictions.empty())
+    steady = start_values(solution.coordinates);
+  FrictionReport out = report_friction(mechanism, steady, cancel);
+  if (!solution.frictions.empty() && std::ranges::none_of(solution.frictions, &FrictionForce::slips))
+    out.speeds = find_held_speeds(mechanism, {}, cancel);
+  return out;
 }
 
 } // namespace flyball

@@ -2,8 +2,8 @@
 // which speeds of its drives the state does.
 #pragma once
 
+#include "engine/report/holding.hpp"
 #include "engine/study/friction_band.hpp"
-#include "engine/study/holding.hpp"
 
 namespace flyball {
 

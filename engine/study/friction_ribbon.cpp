@@ -42,6 +42,26 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
   return out;
 }
 
+std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name) {
+  std::vector<const BandExtent*> extents;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    extents.push_back(find_extent(points[i], name));
+    if (!extents.back() || !extents.back()->stands) return {};
+    if (i > 1 && (points[i].number - points[i - 1].number) * (points[1].number - points[0].number) <= 0)
+      return {};
+  }
+  std::vector<HysteresisPoint> out(extents.size());
+  if (out.size() < 2) return {};
+  double at = extents.front()->value;
+  for (int round = 0; round < 2; ++round) { // the first one forgets where it began
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i].forth = at = std::clamp(at, extents[i]->low, extents[i]->high);
+    for (std::size_t i = out.size(); i-- > 0;)
+      out[i].back = at = std::clamp(at, extents[i]->low, extents[i]->high);
+  }
+  return out;
+}
+
 const BandExtent* find_extent(const RibbonPoint& point, std::string_view name) {
   const auto found = std::ranges::find(point.extents, name, &BandExtent::name);
   return found == point.extents.end() ? nullptr : &*found;

@@ -33,6 +33,15 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
                  const std::atomic<bool>* cancel = nullptr,
                  const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
+// Where the coordinate of the one joint with friction stands as the varied number goes slowly from the first
+// point to the last and back, again and again: it stays until an end of the band comes to it, and goes on
+// with that (a play operator: Krasnoselskii and Pokrovskii, Systems with Hysteresis, 1989). By point; empty
+// where the points have no such band, or go back in the number, as beyond a fold.
+struct HysteresisPoint {
+  double forth = 0, back = 0; // rad or m
+};
+std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name);
+
 // Null where it has none of this name.
 const BandExtent* find_extent(const RibbonPoint& point, std::string_view name);
 

@@ -44,7 +44,7 @@ bool places_parts(const BasicParameters<Dual>& p) {
            moves(b.a, b.b, b.axes.reshaped());
   };
   const auto air = [](const BasicBodyForceParameters<Dual>& f) { return is_of_air(f.type) && moves(f.at); };
-  const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.a, d.b, d.axis); };
+  const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.b, d.axis); };
   const auto cut = [](const BasicCutParameters<Dual>& c) {
     return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
            std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });

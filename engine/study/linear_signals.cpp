@@ -91,9 +91,10 @@ NamedMeasure read_output(const std::string& text, const Mechanism& m, std::size_
   try {
     measure.unit = result_unit(m, measure.text);
   } catch (const ExpressionError& error) {
+    const bool implicit = text.find(implicit_joint) != std::string::npos;
     throw SceneError("output " + text, "expected a measure, a joint's coordinate, or a result such as "
                                        "rate(slide): " +
-                                           std::string(error.what()));
+                                           std::string(implicit ? implicit_joint_hint : error.what()));
   }
   return measure;
 }

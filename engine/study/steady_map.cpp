@@ -101,6 +101,10 @@ std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std
   solve.cancel = cancel_;
   first = Analysis(varied_).solve(solve);
   if (first.status != Status::converged) return std::nullopt;
+  if (!first.frictions.empty()) { // rates of what rests on it are none
+    first.status = Status::no_steady_state;
+    return std::nullopt;
+  }
   State state{p_, {configuration_of(problem(), first.coordinates), {}}, {}};
   if (!correct(state.z)) { // neutral, say: the state itself is known
     state.z.q = configuration_of(problem(), first.coordinates);

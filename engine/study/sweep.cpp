@@ -1,5 +1,6 @@
 #include "engine/study/sweep.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/study/work_sharing.hpp"
 
@@ -41,7 +42,7 @@ void expect_each_once(std::span<const std::string> addresses) {
 }
 
 GridSolver::GridSolver(const Mechanism& mechanism, std::span<const Variation> variations)
-    : variations_(variations.begin(), variations.end()), analysis_(mechanism),
+    : mechanism_(mechanism), variations_(variations.begin(), variations.end()), analysis_(mechanism),
       geometry_varies_(!mechanism.parameters.empty() || !mechanism.points.empty()) {
   std::vector<std::string> addresses;
   for (const Variation& variation : variations)
@@ -88,6 +89,17 @@ std::vector<SweepPoint> GridSolver::solve_all(std::size_t i, const SolveOptions&
     points.front().equilibria = points.front().solution.status == Status::converged ? 1 : 0;
   }
   return points;
+}
+
+SweepPoint GridSolver::solve_periodic(std::size_t i) {
+  SweepPoint point = solve(i);
+  if (point.solution.status != Status::no_steady_state) return point;
+  std::vector<ParameterValue> numbers;
+  for (std::size_t v = 0; v < variations_.size(); ++v)
+    numbers.push_back({variations_[v].address, point.parameters[v]});
+  set_parameters(mechanism_, numbers);
+  point.periodic = find_periodic_state(mechanism_);
+  return point;
 }
 
 std::vector<SweepPoint> sweep(const Mechanism& mechanism, std::span<const Variation> variations, int threads,

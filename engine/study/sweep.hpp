@@ -2,6 +2,7 @@
 // row says the same as a solve of its own would, in whatever order the rows were computed.
 #pragma once
 
+#include "engine/periodic/periodic_state.hpp"
 #include "engine/report/analysis.hpp"
 
 #include <functional>
@@ -22,6 +23,8 @@ struct SweepPoint {
   Solution solution;              // without details
   // Of solve_all: how many there are here, and which of them this is, from zero.
   std::size_t equilibria = 0, equilibrium = 0;
+  // Of solve_periodic: the motion that takes the place of a steady state, where a search looked for one.
+  std::optional<PeriodicState> periodic{};
 };
 
 // How many combinations there are, and the values of one of them, the last variation moving fastest.
@@ -44,11 +47,14 @@ class GridSolver {
   // All equilibria that a bounded search finds (Analysis::solve_all, by the search's options), each a point.
   // Where there are none, one point that says why, as solve() does.
   std::vector<SweepPoint> solve_all(std::size_t i, const SolveOptions& search);
+  // As solve(), and where drives make the balance turn the periodic motion in place of the steady state.
+  SweepPoint solve_periodic(std::size_t i);
 
  private:
   // False where no mechanism can be made of its numbers, as the point then says.
   bool set(std::size_t i, SweepPoint& point);
 
+  Mechanism mechanism_;
   std::vector<Variation> variations_;
   Analysis analysis_;
   bool geometry_varies_;

@@ -1,4 +1,5 @@
 #include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/joint_parts.hpp"
@@ -128,12 +129,22 @@ class Compiler {
     needs_coordinate_.assign(m_.joints.size(), false);
     for (int j = 0; j < joint_count(); ++j) {
       for (const Coordinate& c : joint(j).coordinates)
-        if (c.spring || c.stop || c.friction || c.damping_force)
-          needs_coordinate_[static_cast<std::size_t>(j)] = true;
+        if (c.spring || c.stop || c.friction) needs_coordinate_[static_cast<std::size_t>(j)] = true;
       if (joint(j).type == JointType::gear)
         for (int end : {0, 1})
           needs_coordinate_[static_cast<std::size_t>(gear_end(j, end).joint)] = true;
+      ask_for_coordinates_of_laws(j);
     }
+  }
+
+  // What the drives' laws of a joint ask for.
+  void ask_for_coordinates_of_laws(int j) {
+    for (int i = 0; i < static_cast<int>(joint(j).coordinates.size()); ++i)
+      for (const char* which : {"torque", "load"})
+        read_drive_law_of(joint(j), i, which, [&](const Expression& law) {
+          for (const ResultCall& call : law.results())
+            needs_coordinate_[static_cast<std::size_t>(find_coordinate(m_, call).joint)] = true;
+        });
   }
 
   const std::optional<Drive>& drive_of(int j, int coordinate) const {
@@ -228,7 +239,8 @@ class Compiler {
       }
       l.mobile = l.v >= 0 || (l.parent >= 0 && link(l.parent).mobile);
       l.depth = l.parent >= 0 ? link(l.parent).depth + 1 : 1;
-      l.frame = l.drive >= 0 ? last : l.parent >= 0 ? link(l.parent).frame : -1;
+      // What torques turn is a frame for the motion, too, so that it has the coordinates of the steady state.
+      l.frame = turns || found ? last : l.parent >= 0 ? link(l.parent).frame : -1;
       s_.links.push_back(l);
     }
     s_.tree_joints.push_back(std::move(record));
@@ -408,7 +420,7 @@ class Compiler {
       if (in_tree_[static_cast<std::size_t>(j)]) continue;
       const auto& [a, b] = ends(j);
       const bool damped =
-          std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return c.damping != 0; });
+          std::ranges::any_of(x.coordinates, [](const Coordinate& c) { return is_damped(c); });
       const bool axial =
           x.type == JointType::revolute || x.type == JointType::prismatic || x.type == JointType::cylindrical;
       CutJoint cut;
@@ -430,7 +442,7 @@ class Compiler {
       cut.ends = ends_between(link_of(a), link_of(b));
       if (damped)
         for (int k = 0; k < coordinate_count(x.type); ++k)
-          if (x.coordinates[static_cast<std::size_t>(k)].damping != 0)
+          if (is_damped(x.coordinates[static_cast<std::size_t>(k)]))
             s_.cut_dampers.push_back({j, k, is_angle(x.type, k), cut.ends});
       add_cut(std::move(cut), x.type);
     }
@@ -560,7 +572,8 @@ class Compiler {
              c.index == at.coordinate;
     });
     if (found == s_.coordinates.end())
-      throw ExpressionError("expected a coordinate that closes no loop, found " + name);
+      throw ExpressionError("expected a coordinate that closes no loop, found " + name +
+                            "; with \"cut\": false on that joint its loop is cut elsewhere");
     if (link_at(found->link).drive >= 0 && !rate)
       throw ExpressionError("expected a rate: the coordinate " + name + " goes on and on as its drive turns");
     if (rate && link_at(found->link).type == LinkType::spherical)
@@ -570,18 +583,25 @@ class Compiler {
 
   DriveLaw law_of(const Joint& of, int i, std::string_view which) const {
     DriveLaw out;
-    const Formula* law = drive_law(of, i, which);
-    if (!law) return out;
-    const std::string where = "joints." + of.name + ".drive." + std::string(which);
-    try {
-      out.expression = read_drive_law(law->text);
-      for (const ResultCall& call : out.expression->results())
+    read_drive_law_of(of, i, which, [&](const Expression& law) {
+      for (const ResultCall& call : law.results())
         out.inputs.push_back(input_of(call));
+      out.expression = law;
+    });
+    return out;
+  }
+
+  // Hands on what a drive's torque or load is read as, where it is one of the state.
+  template <class Take>
+  void read_drive_law_of(const Joint& of, int i, std::string_view which, Take take) const {
+    const Formula* law = drive_law(m_, of, i, which);
+    if (!law) return;
+    try {
+      take(read_drive_law(m_, law->text));
     } catch (const ExpressionError& error) {
       throw SceneError("joints." + of.name + ".drive." + std::string(which),
                        "\"=" + law->text + "\": " + error.what());
     }
-    return out;
   }
 
   static std::shared_ptr<const ForceLaw> read_law(const Formula* law, std::string_view variable,
@@ -616,6 +636,14 @@ class Compiler {
         s_.spring_laws.push_back({i, 0, x.force.has_value(), x.damping_force.has_value(),
                                   read_law(spring_law(x), spring_variable, part),
                                   read_law(damper_law(x), damper_variable, part)});
+    }
+    for (int i = 0; i < static_cast<int>(s_.cut_dampers.size()); ++i) {
+      const CutDamperElement& e = s_.cut_dampers[static_cast<std::size_t>(i)];
+      const Joint& of = joint(e.joint);
+      if (of.coordinates[static_cast<std::size_t>(e.coordinate)].damping_force)
+        s_.cut_damper_laws.push_back(
+            {i, 0, false, true, nullptr,
+             read_law(damper_law(of, e.coordinate), damper_variable, joint_path(e.joint))});
     }
   }
 
@@ -664,8 +692,9 @@ class Compiler {
       if (moving_frame(e.ends.a) != moving_frame(e.ends.b)) s_.conservative = false;
     // A bearing's matrices may be symmetric, but the next number may change that.
     s_.conservative = s_.conservative && s_.bearings.empty();
-    if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty())
+    if (!s_.coordinate_laws.empty() || !s_.spring_laws.empty() || !s_.cut_damper_laws.empty())
       s_.conservative = s_.conservative && !some_damper_may_drive();
+    s_.conservative_at_speeds = s_.conservative;
     s_.conserves = s_.conservative && std::ranges::all_of(s_.torques, &DriveTorqueElement::keeps_momentum);
     s_.conservative = s_.conservative && s_.torques.empty();
   }
@@ -675,7 +704,12 @@ class Compiler {
     // Without a potential stability asks for eigenvalues, and so for the matrices, as far as those are found.
     constexpr int few = 8, few_for_bodies = 60, few_without_potential = 200;
     const bool potential = s_.conservative && s_.single_drives;
-    if (!s_.torques.empty() || !s_.bearings.empty() || !s_.turning_air.empty() || !no_drive_rides(s_) ||
+    if (!s_.torques.empty()) {
+      if (s_.nv > few + static_cast<int>(s_.torques.size()) && speeds_can_border(s_))
+        s_.kkt_form = KktForm::tree;
+      return;
+    }
+    if (!s_.bearings.empty() || !s_.turning_air.empty() || !no_drive_rides(s_) ||
         s_.nv <= (potential ? few : few_without_potential))
       return;
     if (is_plain_tree(s_))
@@ -721,6 +755,19 @@ bool no_drive_rides(const System& system) {
 bool is_plain_tree(const System& system) {
   return system.rows == 0 && system.springs.empty() && system.cut_dampers.empty() &&
          system.bearings.empty() && system.turning_air.empty() && no_drive_rides(system);
+}
+
+bool speeds_can_border(const System& system) {
+  const auto plain = [&](const DriveLaw& law) {
+    return std::ranges::none_of(law.inputs, [&](const DriveLaw::Input& input) {
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+      return system.links[static_cast<std::size_t>(c.link)].type == LinkType::spherical;
+    });
+  };
+  return system.conservative_at_speeds && system.single_drives && is_plain_tree(system) &&
+         std::ranges::all_of(system.torques, [&](const DriveTorqueElement& torque) {
+           return !torque.keeps_momentum && !torque.implied && plain(torque.torque) && plain(torque.load);
+         });
 }
 
 System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {

@@ -4,8 +4,8 @@
 
 namespace flyball {
 
-bool has_dampers(const System& system, const Parameters& parameters) {
-  return !system.cut_dampers.empty() ||
+bool has_dampers(const Parameters& parameters) {
+  return std::ranges::any_of(parameters.cut_dampers, &CutDamperParameters::damped) ||
          std::ranges::any_of(parameters.bearings,
                              [](const BearingParameters& b) { return !b.damping.isZero(0); }) ||
          std::ranges::any_of(parameters.links,
@@ -16,7 +16,7 @@ bool has_dampers(const System& system, const Parameters& parameters) {
 }
 
 bool is_hamiltonian(const System& system, const Parameters& parameters) {
-  return system.conservative && !has_dampers(system, parameters);
+  return system.conservative && !has_dampers(parameters);
 }
 
 } // namespace flyball

@@ -36,14 +36,15 @@ struct LawState {
     return 0; // at rest in a steady state
   }
 
-  // With the rates of the numbers, and the rate 1 at one input.
-  Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers,
-             std::size_t moved = most_inputs) const {
+  // With the rates of the numbers, and the rate 1 at one input; another is `by` further on.
+  Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t varied = most_inputs,
+             std::size_t moved = most_inputs, double by = 0) const {
     if (!law.expression) return numbers.value;
     std::array<Dual, most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
       inputs[i] = input(law.inputs[i]);
-    if (moved < law.inputs.size()) inputs[moved].rate = 1;
+    if (varied < law.inputs.size()) inputs[varied].rate = 1;
+    if (moved < law.inputs.size()) inputs[moved].value += by;
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
   }
 
@@ -52,29 +53,33 @@ struct LawState {
            value(system.torques[drive].load, p.torques[drive].load);
   }
 
-  // Adds the derivatives with all inputs of a kind to a row.
+  // Calls add(row, column, derivative) for all inputs of a kind.
+  template <class Add>
   void add_derivatives(const DriveLaw& law, const DriveLawParameters& numbers, bool rates, double factor,
-                       int row, Eigen::MatrixXd& out) const {
+                       int row, const Add& add) const {
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
       if (law.inputs[i].rate != rates) continue;
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
       const Link& link = system.links[static_cast<std::size_t>(c.link)];
       if (link.v < 0) continue;
-      const double slope = factor * value(law, numbers, i).rate;
-      if (link.type == LinkType::spherical)
-        out.block<1, 3>(row, link.v) +=
-            slope * rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q)
-                        .row(c.index - link.coordinate);
-      else
-        out(row, link.v) += slope;
+      const double slope =
+          factor * (numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i]);
+      if (link.type != LinkType::spherical) {
+        add(row, link.v, slope);
+        continue;
+      }
+      const Mat3 turned = rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q);
+      for (int j = 0; j < 3; ++j)
+        add(row, link.v + j, slope * turned(c.index - link.coordinate, j));
     }
   }
 
-  void add_derivatives(bool rates, Eigen::MatrixXd& out) const {
+  template <class Add>
+  void add_derivatives(bool rates, const Add& add) const {
     for (std::size_t i = 0; i < system.torques.size(); ++i) {
       const int row = system.links[static_cast<std::size_t>(system.torques[i].link)].v;
-      add_derivatives(system.torques[i].torque, p.torques[i].torque, rates, -1, row, out);
-      add_derivatives(system.torques[i].load, p.torques[i].load, rates, 1, row, out);
+      add_derivatives(system.torques[i].torque, p.torques[i].torque, rates, -1, row, add);
+      add_derivatives(system.torques[i].load, p.torques[i].load, rates, 1, row, add);
     }
   }
 };
@@ -124,14 +129,36 @@ double drive_torque(const System& system, const Parameters& p, std::size_t drive
   return LawState<double>{system, p, q, k}.value(drive).value;
 }
 
+std::vector<double> drive_law_slopes(const System& system, const Parameters& p, const DriveLaw& law,
+                                     const DriveLawParameters& numbers, const Eigen::VectorXd& q,
+                                     const Kinematics<double>& k, std::size_t moved, double by) {
+  const LawState<double> state{system, p, q, k};
+  std::vector<double> out;
+  for (std::size_t i = 0; i < law.inputs.size(); ++i)
+    out.push_back(state.value(law, numbers, i, moved, by).rate);
+  return out;
+}
+
+std::vector<DriveTorqueEntry> drive_torque_entries(const System& system, const Parameters& p,
+                                                   const Eigen::VectorXd& q, const Kinematics<double>& k,
+                                                   bool rates) {
+  std::vector<DriveTorqueEntry> out;
+  LawState<double>{system, p, q, k}.add_derivatives(rates, [&](int row, int column, double value) {
+    out.push_back({row, column, value});
+  });
+  return out;
+}
+
 void add_drive_torque_stiffness(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                                 const Kinematics<double>& k, Eigen::MatrixXd& stiffness) {
-  LawState<double>{system, p, q, k}.add_derivatives(false, stiffness);
+  LawState<double>{system, p, q, k}.add_derivatives(
+      false, [&](int row, int column, double value) { stiffness(row, column) += value; });
 }
 
 void add_drive_torque_damping(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                               const Kinematics<double>& k, Eigen::MatrixXd& velocity) {
-  LawState<double>{system, p, q, k}.add_derivatives(true, velocity);
+  LawState<double>{system, p, q, k}.add_derivatives(
+      true, [&](int row, int column, double value) { velocity(row, column) += value; });
 }
 
 double turning_rate(const System& system, int l, const Kinematics<double>& k) {

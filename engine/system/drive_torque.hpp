@@ -27,11 +27,25 @@ void add_drive_torque_sizes(const System& system, const Parameters& parameters, 
 double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
+// The derivatives of the law of a torque or load with its inputs, where one of them is `by` further on.
+std::vector<double> drive_law_slopes(const System& system, const Parameters& parameters, const DriveLaw& law,
+                                     const DriveLawParameters& numbers, const Eigen::VectorXd& q,
+                                     const Kinematics<double>& kinematics, std::size_t moved, double by);
+
 // Adds the derivatives of torques and loads to df/dq and df/dq', the dampers left out.
 void add_drive_torque_stiffness(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                                 const Kinematics<double>& kinematics, Eigen::MatrixXd& stiffness);
 void add_drive_torque_damping(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                               const Kinematics<double>& kinematics, Eigen::MatrixXd& velocity);
+
+// The same one by one: with coordinates, or with rates.
+struct DriveTorqueEntry {
+  int row = 0, column = 0; // in q_R
+  double value = 0;
+};
+std::vector<DriveTorqueEntry> drive_torque_entries(const System& system, const Parameters& parameters,
+                                                   const Eigen::VectorXd& q,
+                                                   const Kinematics<double>& kinematics, bool rates);
 
 // The rate of a coordinate of one axis, from the motion of its link.
 double turning_rate(const System& system, int link, const Kinematics<double>& kinematics);

@@ -1,5 +1,6 @@
 #include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
+#include "engine/system/cut_damper.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/pair_stiffness.hpp"
@@ -78,12 +79,9 @@ ForcePowers force_powers(const System& system, const Parameters& p, const Eigen:
     out.dissipated += p.springs[i].resistance(rate) * rate;
   }
   for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
-    const CutDamperElement& e = system.cut_dampers[i];
-    if (p.cut_dampers[i].damping == 0) continue;
-    const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[i].axis, b = k.point(e.ends.b, p.cut_dampers[i].b);
-    const double rate = axis.dot(e.angular ? Vec3(k.at(e.ends.b).w - k.at(e.ends.a).w)
-                                           : Vec3(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b)));
-    out.dissipated += p.cut_dampers[i].damping * rate * rate;
+    if (!p.cut_dampers[i].damped()) continue;
+    const CutDamperState<double> s = cut_damper_state<double>(system.cut_dampers[i], p.cut_dampers[i], k);
+    out.dissipated += s.resistance * s.rate;
   }
   const BearingPowers bearings = bearing_powers(system, p, k);
   out.dissipated += bearings.dissipated;

@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
+#include "engine/system/cut_damper.hpp"
 #include "engine/system/pair_hessian.hpp"
 
 namespace flyball {
@@ -91,9 +92,10 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
     interruption_point();
     const CutDamperElement& e = system.cut_dampers[n];
     const LinkState<double>&la = k.at(e.ends.a), &lb = k.at(e.ends.b);
-    const Vec3 axis = la.R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
+    const CutDamperState<double> damper = cut_damper_state<double>(e, p.cut_dampers[n], k);
+    const Vec3 &axis = damper.axis, &b = damper.b;
     const Vec3 va = k.velocity(e.ends.a, b), vb = k.velocity(e.ends.b, b);
-    const double rate = axis.dot(e.angular ? Vec3(lb.w - la.w) : Vec3(vb - va));
+    const double slope = p.cut_dampers[n].resistance_slope(damper.rate);
     for_pairs(e.ends.support, k, out, [&](const PairPart& i, const PairPart& j) {
       const ScrewRates& s = screws[static_cast<std::size_t>(j.v)];
       const Vec3 turn = j.column.turn();
@@ -116,7 +118,7 @@ void add_cut_dampers(const System& system, const Parameters& p, const Kinematics
         turned = axis.dot(turn.cross(i.column.turn()));
       else if (!i.second && !j.second && !carries(j, i))
         turned = -turn.cross(axis).dot(i.column.turn());
-      return p.cut_dampers[n].damping * (drate * damper_gradient(e, axis, b, i) + rate * turned);
+      return slope * drate * damper_gradient(e, axis, b, i) + damper.resistance * turned;
     });
   }
 }
@@ -203,9 +205,10 @@ void add_pair_damping(const System& system, const Parameters& p, const Kinematic
   for (std::size_t n = 0; n < system.cut_dampers.size(); ++n) {
     interruption_point();
     const CutDamperElement& e = system.cut_dampers[n];
-    const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[n].axis, b = k.point(e.ends.b, p.cut_dampers[n].b);
+    const CutDamperState<double> s = cut_damper_state<double>(e, p.cut_dampers[n], k);
+    const double damping = p.cut_dampers[n].resistance_slope(s.rate);
     for_pairs(e.ends.support, k, velocity, [&](const PairPart& i, const PairPart& j) {
-      return p.cut_dampers[n].damping * damper_gradient(e, axis, b, i) * damper_gradient(e, axis, b, j);
+      return damping * damper_gradient(e, s.axis, s.b, i) * damper_gradient(e, s.axis, s.b, j);
     });
   }
   for (std::size_t n = 0; n < system.turning_air.size(); ++n) {

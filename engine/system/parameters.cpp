@@ -262,9 +262,19 @@ class Binder {
     for (std::size_t i = 0; i < s_.cut_dampers.size(); ++i) {
       const CutDamperElement& e = s_.cut_dampers[i];
       const Joint& j = joint(e.joint);
-      const Vector at = read_(j.at);
-      p_.cut_dampers[i] = {in_link(at, e.ends.a), in_link(at, e.ends.b), read_(j.axis).normalized(),
-                           read_(j.coordinates[static_cast<std::size_t>(e.coordinate)].damping)};
+      p_.cut_dampers[i] = {{0, read_(j.coordinates[static_cast<std::size_t>(e.coordinate)].damping), nullptr},
+                           in_link(read_(j.at), e.ends.b),
+                           read_(j.axis).normalized()};
+    }
+    for (const ForceLawElement& e : s_.cut_damper_laws) {
+      BasicCutDamperParameters<N>& out = p_.cut_dampers[static_cast<std::size_t>(e.at)];
+      const CutDamperElement& damper = s_.cut_dampers[static_cast<std::size_t>(e.at)];
+      BasicForceLaws<N> laws;
+      laws.damper = bind_law(
+          m_, e.damper,
+          joint(damper.joint).coordinates[static_cast<std::size_t>(damper.coordinate)].damping_force, read_);
+      out.damping = laws.damper.slope(0);
+      out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     }
     p_.torques.resize(s_.torques.size());
     for (std::size_t i = 0; i < s_.torques.size(); ++i) {

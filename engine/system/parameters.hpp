@@ -170,17 +170,19 @@ struct BasicBodyForceParameters {
   std::shared_ptr<const Polar> polar{}; // in place of normal_quadratic, its coefficients times quadratic
 };
 
+// Without a spring, which would need the joint's own coordinate.
 template <class N>
-struct BasicCutDamperParameters {
-  BasicOffset<N> a, b;
-  Vec3T<N> axis; // fixed in end a
-  N damping = 0;
+struct BasicCutDamperParameters : BasicSpringDamper<N> {
+  BasicOffset<N> b; // the joint's point on the second end
+  Vec3T<N> axis;    // fixed in end a
 };
 
 template <class N>
 struct BasicDriveLawParameters {
   N value = 0;               // N m or N, where no expression gives it
   std::vector<Dual> numbers; // by name of the expression
+  // On one side of a kink: the derivatives with the inputs, in place of the expression's; empty elsewhere.
+  std::vector<double> slopes{};
 };
 
 template <class N>
@@ -243,6 +245,8 @@ template <class S>
 using BearingParametersOf = BasicBearingParameters<NumberOf<S>>;
 template <class S>
 using BodyForceParametersOf = BasicBodyForceParameters<NumberOf<S>>;
+template <class S>
+using CutDamperParametersOf = BasicCutDamperParameters<NumberOf<S>>;
 template <class S>
 using CutParametersOf = BasicCutParameters<NumberOf<S>>;
 template <class S>

@@ -3,6 +3,7 @@
 #include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/cut_damper.hpp"
 #include "engine/system/drive_torque.hpp"
 
 #include <algorithm>
@@ -81,13 +82,11 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
   }
   for (std::size_t i = 0; i < system.cut_dampers.size(); ++i) {
     const CutDamperElement& e = system.cut_dampers[i];
-    const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[i].axis, b = k.point(e.ends.b, p.cut_dampers[i].b);
-    const Vec3 torque = p.cut_dampers[i].damping * axis * axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w);
-    const Vec3 force =
-        p.cut_dampers[i].damping * axis * axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
-    add(e.ends.b, b, e.angular ? Vec3(Vec3::Zero()) : force, e.angular ? torque : Vec3(Vec3::Zero()));
-    add(e.ends.a, b, e.angular ? Vec3(Vec3::Zero()) : Vec3(-force),
-        e.angular ? Vec3(-torque) : Vec3(Vec3::Zero()));
+    const CutDamperState<double> s = cut_damper_state<double>(e, p.cut_dampers[i], k);
+    const Vec3 resistance = s.resistance * s.axis;
+    const Vec3 force = e.angular ? Vec3::Zero() : resistance, torque = e.angular ? resistance : Vec3::Zero();
+    add(e.ends.b, s.b, force, torque);
+    add(e.ends.a, s.b, -force, -torque);
   }
   for (std::size_t i = 0; i < system.bearings.size(); ++i) {
     const PairEnds& ends = system.bearings[i].ends;
@@ -130,13 +129,8 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     // Damping in a cut joint is part of what the joint transmits. Dampers are in the order of their joints.
     for (; damper < system.cut_dampers.size() && system.cut_dampers[damper].joint == cut.joint; ++damper) {
       const CutDamperElement& e = system.cut_dampers[damper];
-      const std::size_t d = damper;
-      const Vec3 axis = k.at(e.ends.a).R * p.cut_dampers[d].axis;
-      if (e.angular)
-        w.torque -= p.cut_dampers[d].damping * axis * axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w);
-      else
-        w.force -= p.cut_dampers[d].damping * axis *
-                   axis.dot(k.velocity(e.ends.b, w.point) - k.velocity(e.ends.a, w.point));
+      const CutDamperState<double> s = cut_damper_state<double>(e, p.cut_dampers[damper], k);
+      (e.angular ? w.torque : w.force) -= s.resistance * s.axis;
     }
   }
   for (std::size_t i = n; i-- > 0;) {

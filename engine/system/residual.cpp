@@ -3,6 +3,7 @@
 #include "engine/system/air_force.hpp"
 #include "engine/system/bearing.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/cut_damper.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/extended.hpp"
 #include "engine/system/kept_momentum.hpp"
@@ -112,14 +113,10 @@ template <class S>
 void add_cut_damper(const System& system, const ParametersOf<S>& p, const Kinematics<S>& k, std::size_t i,
                     Configuration<S>& f) {
   const CutDamperElement& e = system.cut_dampers[i];
-  const auto& d = p.cut_dampers[i];
-  const Vec3T<S> axis = k.at(e.ends.a).R * d.axis.template cast<S>();
-  const Vec3T<S> b = k.point(e.ends.b, d.b);
-  const S rate = e.angular ? axis.dot(k.at(e.ends.b).w - k.at(e.ends.a).w)
-                           : axis.dot(k.velocity(e.ends.b, b) - k.velocity(e.ends.a, b));
+  const CutDamperState<S> s = cut_damper_state<S>(e, p.cut_dampers[i], k);
   for (const SupportColumn& c : e.ends.support) {
     const Column<S>& column = k.columns[static_cast<std::size_t>(c.v)];
-    const S g = S(d.damping) * rate * (e.angular ? axis.dot(column.turn()) : axis.dot(column.at(b)));
+    const S g = s.resistance * (e.angular ? s.axis.dot(column.turn()) : s.axis.dot(column.at(s.b)));
     f[c.v] += c.second ? g : -g;
   }
 }

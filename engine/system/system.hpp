@@ -95,7 +95,7 @@ struct PointSpringElement {
 
 // Laws in place of a stiffness and a damping (force_law.hpp); null where a number is the force.
 struct ForceLawElement {
-  int at = 0;        // link, or entry of System::springs
+  int at = 0;        // link, or entry of System::springs or cut_dampers
   int component = 0; // of a spherical link
   bool has_spring = false, has_damper = false;
   std::shared_ptr<const ForceLaw> spring, damper;
@@ -201,7 +201,7 @@ struct System {
   std::vector<CoordinateInfo> coordinates;  // of the tree, in the scene's order, implicit joints last
   std::vector<ReportedCoordinate> reported; // of all joints, in the same order
   std::vector<PointSpringElement> springs;
-  std::vector<ForceLawElement> coordinate_laws, spring_laws;
+  std::vector<ForceLawElement> coordinate_laws, spring_laws, cut_damper_laws;
   std::vector<BearingElement> bearings; // which the matrices of all coordinates alone know
   std::vector<BodyForceElement> body_forces;
   std::vector<TurningAirElement> turning_air;
@@ -218,6 +218,8 @@ struct System {
   // No drive rides on another or on a free coordinate: the inertia forces then have a potential, too (see
   // potential.hpp).
   bool single_drives = true;
+  // All forces but what torques of drives do: at given speeds it is conservative.
+  bool conservative_at_speeds = true;
   // The same but for drives that keep their momentum, for which Routh's potential takes its place.
   bool conserves = true;
   KktForm kkt_form = KktForm::dense;
@@ -250,6 +252,9 @@ inline bool hangs_from(const System& system, int link, int from) {
 // anything between two bodies but tree joints: what that along the tree does.
 bool no_drive_rides(const System& system);
 bool is_plain_tree(const System& system);
+// Speeds that are found can stand as a border of the balance at given speeds (kkt/speeds_kkt.hpp): of plain
+// trees with a potential at these, whose torques keep no momentum.
+bool speeds_can_border(const System& system);
 
 // The other ways to cut the loops: each joint cut by choice exchanged for a joint of its loop that may be cut
 // instead, one at a time.

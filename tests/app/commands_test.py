@@ -233,6 +233,48 @@ def reports(folder):
     check("what is refused leaves no file", not (folder / "none.html").exists())
 
 
+def resonance(folder):
+    """A sweep of periodic motions has at each point what `solve` tells there, and of steady states these."""
+    rotor = pathlib.Path(SCENE).parent / "horizontal_rotor.json"
+    code, out, error = run("sweep", rotor, "--vary", "parameters.n=20:40:3", "--vary", "parameters.e=0:0.001:2",
+                           "--periodic", "--csv", "-")
+    rows = list(csv.DictReader(io.StringIO(out.decode(), newline="")))
+    check(f"a resonance curve is found: {error}", code == 0 and len(rows) == 6)
+    for row in rows:
+        told = json.loads(run("solve", rotor, "--set", f"parameters.n={row['parameters.n']}", "--set",
+                              f"parameters.e={row['parameters.e']}", "--json")[1])
+        motion = told.get("periodic")
+        check(f"a row says which it is of: {row['status']}", row["status"] == ("periodic" if motion else "converged"))
+        for name in ("across", "up"):
+            values = [motion["coordinates"][name][key] for key in ("mean", "min", "max")] if motion else [
+                told["coordinates"][name]] * 3
+            found = [float(row[key]) for key in (name, name + ".min", name + ".max")]
+            check(f"{name} is that of solve: {found}, {values}",
+                  all(abs(a - b) < 1e-9 for a, b in zip(found, values)))
+    code, _, error = run("sweep", rotor, "--vary", "parameters.n=20:40:2", "--all", "--periodic")
+    check(f"not all motions: {error}", code == 2)
+
+
+def hunting(folder):
+    """Where a branch begins to hunt, its Hopf points have the loss that `hunting` finds on its boundary."""
+    engine = pathlib.Path(SCENE).parent / "governor_engine.json"
+    grid = json.loads(run("branch", engine, "--vary", "joints.slide.damping=15:30", "--over",
+                          "parameters.gain=7000:8000:2", "--json")[1] or b"{}")
+    for point in grid["points"]:
+        hopf = [special for special in point["special"] if special["type"] == "hopf"]
+        check("the governor with its engine hunts below a damper", len(hopf) == 1)
+        gain = point["parameters"]["parameters.gain"]
+        boundary = json.loads(run("hunting", engine, "--vary", "joints.slide.damping=5:60", "--vary",
+                                  f"parameters.gain={gain}:20000", "--json")[1] or b"{}")
+        ends = [curve["points"][i] for curve in boundary["curves"] for i in (0, -1)]
+        other = min(ends, key=lambda end: abs(end["y"] - gain))
+        check("both find it in the same place", abs(other["x"] - hopf[0]["parameter"]) < 1e-8 * other["x"])
+        one, two = hopf[0]["hunting"], other["hunting"]
+        check(f"both tell the same of it: {one}, {two}",
+              one["loss"] == two["loss"] == "hard" and abs(one["lyapunov"] / two["lyapunov"] - 1) < 1e-6 and
+              abs(one["frequency_rad_s"] / two["frequency_rad_s"] - 1) < 1e-9)
+
+
 def parts(folder):
     """What a killed program left is removed by the next that writes there; what another one writes stays."""
     own = folder / "parts"
@@ -254,7 +296,8 @@ def parts(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for part in (reasons, periodic, control_characters, tables, own_scene, limits, repetitions, reports, parts):
+    for part in (reasons, periodic, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
+                 hunting, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

@@ -1,7 +1,7 @@
 // Stick and slip in the motion, against closed forms.
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/study/holding.hpp"
+#include "engine/report/holding.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
 #include "tests/support/scenes.hpp"

@@ -16,7 +16,7 @@ inline const std::vector<std::string> shipped_names{
     "governor_bearing",  "pendulum",          "rate_gyro",        "watt_governor",     "governor_parametric",
     "governor_engine",   "governor_hartnell", "governor_porter",  "governor_proell",   "governor_watt",
     "governor_friction", "free_top",          "differential",     "horizontal_rotor",  "centrifugal_clutch",
-    "fan_governor",      "windmill",          "gear_train"};
+    "fan_governor",      "windmill",          "gear_train",       "rotor_oil_whip"};
 
 // A drive makes its balance turn: it moves periodically and has no steady state.
 inline bool moves_periodically(const std::string& shipped) {

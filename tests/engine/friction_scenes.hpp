@@ -40,4 +40,19 @@ inline Mechanism block_on_spring() {
       "axis": [1, 0, 0], "spring": {"stiffness": 50}, "friction": {"mu": 0.2, "preload": 20}}]})");
 }
 
+// A slider of 0.8 kg above a crank of 0.1 m by a link of 0.3 m, upright in gravity, with friction (N) in its
+// guide: at most 22.55 N are needed, right beside the lower dead centre.
+inline Mechanism rubbing_slider_crank(double limit) {
+  return read_scene(R"({"flyball": 1, "name": "Slider-crank", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "crank", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.001, 0.001, 0.002]},
+      {"name": "slider", "mass": 0.8, "position": [0, 0.4, 0]}],
+    "joints": [{"name": "a", "type": "revolute", "bodies": ["ground", "crank"], "at": [0, 0, 0],
+        "axis": [0, 0, 1]},
+      {"name": "d", "type": "prismatic", "bodies": ["ground", "slider"], "at": [0, 0.4, 0], "axis": [0, 1, 0],
+        "friction": {"limit": )" +
+                    number_text(limit) + R"(}},
+      {"name": "link", "type": "distance", "bodies": ["crank", "slider"],
+        "points": [[0, 0.1, 0], [0, 0.4, 0]]}]})");
+}
+
 } // namespace flyball::test

@@ -402,3 +402,20 @@ TEST_CASE("oil whip of a hanging rotor: it whirls at half its speed", "[bearings
     nearest = std::min(nearest, std::abs(e - Complex(0, onset / 2)));
   CHECK(nearest < 1e-5 * onset);
 }
+
+TEST_CASE("the shipped rotor whips at half its speed, beyond twice its first frequency",
+          "[bearings][branches]") {
+  const Mechanism m = shipped("rotor_oil_whip");
+  const double k = 2 * 30000., mass = 12.6, frequency = std::sqrt(k / mass), cross = 150 * 100.;
+  // It sinks under its weight and goes aside with the oil.
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  const double weight = mass * standard_gravity, size = k * k + cross * cross;
+  CHECK_THAT(s.coordinates[0].value, WithinRel(-weight * k / size, 1e-12));
+  CHECK_THAT(s.coordinates[1].value, WithinRel(-weight * cross / size, 1e-12));
+  CHECK(s.stable == true);
+  const ResponseDiagram d = follow_branches(m, "parameters.n", 0, 250);
+  REQUIRE(d.special.size() == 1);
+  CHECK(d.special[0].type == SpecialPointType::hopf);
+  CHECK_THAT(d.special[0].at.parameter, WithinRel(2 * frequency, 1e-9));
+}

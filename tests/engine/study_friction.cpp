@@ -61,6 +61,49 @@ TEST_CASE("more friction than weight holds a pendulum all round, through the fol
   CHECK(band.message == "Friction holds it at any angle: hinge can go round.");
 }
 
+TEST_CASE("friction in the guide of a slider-crank holds it at any angle of the crank: d from -0.2 to 0") {
+  // 22.55 N are needed at most, so that the ways round leave the dead centre near the limit or far below it.
+  for (const double limit : {22.6, 23., 30., 100.}) {
+    CAPTURE(limit);
+    const FrictionBand band = find_friction_band(rubbing_slider_crank(limit));
+    INFO(band.message);
+    CHECK(band.folds);
+    CHECK_THAT(extent(band, "d").low, WithinAbs(-0.2, 1e-9));
+    CHECK_THAT(extent(band, "d").high, WithinAbs(0, 1e-9));
+    CHECK(extent(band, "a").low < -3.14);
+    CHECK(extent(band, "a").high > 3.14);
+  }
+}
+
+TEST_CASE("what depends on the band's coordinates has its extremes inside, too") {
+  Mechanism m = rubbing_pendulum(1.5);
+  m.measures.push_back(
+      {.name = "off", .description = {}, .text = "(coordinate(hinge) - 0.1 rad)^2", .unit = "rad^2"});
+  const double most = std::asin(0.15);
+  const FrictionBand band = find_friction_band(m);
+  CHECK_THAT(extent(band, "off").low, WithinAbs(0, 1e-15));
+  CHECK_THAT(extent(band, "off").high, WithinRel((most + 0.1) * (most + 0.1), 1e-12));
+  // Of two shares, along both; and where the band passes folds.
+  Mechanism two = read_scene(R"json({"flyball": 2, "name": "Double pendulum", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "p", "mass": 1, "position": [0, -0.5, 0]},
+               {"name": "q", "mass": 0.7, "position": [0, -0.9, 0]}],
+    "joints": [
+      {"name": "h", "type": "revolute", "bodies": ["ground", "p"], "at": [0, 0, 0], "axis": [0, 0, 1],
+       "friction": {"limit": 0.8}},
+      {"name": "k", "type": "revolute", "bodies": ["p", "q"], "at": [0, -0.5, 0], "axis": [0, 0, 1],
+       "friction": {"limit": 0.3}}],
+    "measures": {"r2": {"value": "=(coordinate(h)-0.05 rad)^2+(coordinate(k)-0.03 rad)^2", "unit": "rad^2"}}})json");
+  const FrictionBand both = find_friction_band(two);
+  const BandExtent& r2 = extent(both, "r2");
+  CHECK(r2.low < 1e-13);
+  CHECK(r2.low <= r2.error.value());
+  Mechanism round = rubbing_pendulum(12);
+  round.measures.push_back({.name = "height", .description = {}, .text = "y(bob)", .unit = "m"});
+  const FrictionBand folded = find_friction_band(round);
+  CHECK_THAT(extent(folded, "height").low, WithinAbs(-0.5, 1e-12));
+  CHECK_THAT(extent(folded, "height").high, WithinAbs(0.5, 1e-12));
+}
+
 TEST_CASE("holding a pendulum as drawn takes its moment") {
   const Holding holding = find_holding(rubbing_pendulum(1.5, 0.1), {});
   REQUIRE(holding.takes);
@@ -201,7 +244,30 @@ TEST_CASE("Porter's governor with friction: (m + M +- F / g) g / (m h) is the sq
   }
 }
 
-TEST_CASE("a governor on its engine has a band; what holding takes is refused with the reason") {
+TEST_CASE("a speed that rises and falls slowly leads a bead round a loop") {
+  const double m = 0.5, k = 400, r0 = 0.2, limit = 1.25;
+  const auto edge = [&](double n, double sense) { return (k * r0 + sense * limit) / (k - m * n * n); };
+  std::vector<double> speeds;
+  for (int i = 0; i <= 40; ++i)
+    speeds.push_back(6 + 0.2 * i);
+  const Mechanism bead = bead_on_rod(10, limit);
+  std::vector<RibbonPlace> places;
+  for (const double speed : speeds)
+    places.push_back({speed, start_values(Analysis(bead_on_rod(speed, limit)).solve().coordinates)});
+  const std::vector<HysteresisPoint> way =
+      hysteresis(friction_ribbon(bead, "joints.spin.drive.speed", places), "slide");
+  REQUIRE(way.size() == speeds.size());
+  // Rising it lags behind, along the lower edge; turning back it stays where it is, then goes along the
+  // upper.
+  CHECK_THAT(way.back().forth, WithinRel(edge(14, -1), 1e-12));
+  CHECK_THAT(way.front().back, WithinRel(edge(6, 1), 1e-12));
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    CHECK_THAT(way[i].forth, WithinRel(std::max(edge(6, 1), edge(speeds[i], -1)), 1e-12));
+    CHECK_THAT(way[i].back, WithinRel(std::min(edge(14, -1), edge(speeds[i], 1)), 1e-12));
+  }
+}
+
+TEST_CASE("a governor on its engine has a band, and what holding takes is found") {
   Mechanism m = shipped("governor_engine");
   for (Joint& joint : m.joints)
     if (joint.name == "slide") joint.coordinates[0].friction.emplace().limit = 5;
@@ -209,9 +275,36 @@ TEST_CASE("a governor on its engine has a band; what holding takes is refused wi
   const BandExtent& speed = extent(report.band, "spin.speed");
   CHECK(speed.low < speed.value);
   CHECK(speed.high > speed.value);
+  // As drawn the engine would have to be braked.
   CHECK_FALSE(report.drawn.takes);
-  CHECK_THAT(report.drawn.message, ContainsSubstring("joints.spin.drive.torque"));
+  CHECK_THAT(report.drawn.message,
+             ContainsSubstring("standing still there, the others find no steady state"));
+  CHECK_THAT(report.drawn.message, ContainsSubstring("it slows down"));
   CHECK(report.speeds.empty());
+  const Holding steady = find_holding(m, start_values(Analysis(m).solve().coordinates));
+  CHECK(steady.takes.value() < 1e-9);
+  CHECK_THAT(steady.message, ContainsSubstring("spin at 11.0212 rad/s"));
+}
+
+TEST_CASE("what holding takes where a torque asks for the coordinate that friction holds") {
+  const double angle = 0.3, x = 0.3 * std::sin(angle), y = -0.3 * std::cos(angle);
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Hoop", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "hoop", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+      {"name": "bead", "mass": 0.5, "position": [)json" +
+                                 number_text(x) + ", " + number_text(y) +
+                                 R"json(, 0]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "hoop"], "at": [0, 0, 0],
+        "axis": [0, 1, 0], "drive": {"torque": "=2 N m*(1.2 rad - coordinate(b))",
+          "load": "=0.05 N m s*rate(spin)", "speed": 8}},
+      {"name": "b", "type": "revolute", "bodies": ["hoop", "bead"], "at": [0, 0, 0], "axis": [0, 0, 1],
+        "coordinate": 0.3, "damping": 0.05, "friction": {"limit": 0.1}}]})json");
+  const double w = 2 * (1.2 - angle) / 0.05;
+  const double needed = 0.5 * 0.3 * std::sin(angle) * (9.80665 - 0.3 * w * w * std::cos(angle));
+  const Holding holding = find_holding(m, {});
+  INFO(holding.message);
+  CHECK_THAT(holding.joints.at(0).force.value(), WithinRel(needed, 1e-12));
+  CHECK_THAT(holding.takes.value(), WithinRel(std::abs(needed) / 0.1, 1e-12));
+  CHECK_THAT(holding.message, ContainsSubstring("does not hold it there, with spin at 36 rad/s: b slips"));
 }
 
 TEST_CASE("friction that cannot be is refused") {

@@ -101,6 +101,36 @@ TEST_CASE("a belt turns a second shaft by its radii, crossed against the first",
   }
 }
 
+TEST_CASE("a belt whose sign the axes turn round in space is warned of", "[gear kinds]") {
+  // Whether an open belt between the wheels, each given by its joint, turns them alike in space.
+  const auto alike = [](const Joint& a, const Joint& b, bool crossed) {
+    Mechanism m;
+    m.bodies = {disc("a", 0.1), disc("b", 0.1, {0.5, 0, 0}), disc("arm", 0.1)};
+    m.joints = {a, b, tie("belt", GearKind::belt, a.name, b.name)};
+    m.joints[2].crossed = crossed;
+    const bool is = wheels_turn_alike(m, m.joints[2]);
+    const std::vector<SceneError> warnings = find_warnings(m);
+    REQUIRE(warnings.size() == (is ? 0 : 1));
+    if (is) return true;
+    CHECK(warnings[0].where() == "joints.belt");
+    CHECK_THAT(warnings[0].expected(),
+               ContainsSubstring(crossed ? "there it is an open belt" : "there it is a crossed one"));
+    return false;
+  };
+  const Vec3 z = Vec3::UnitZ(), there{0.5, 0, 0};
+  for (const bool crossed : {false, true}) {
+    const Joint a = revolute("a", "ground", "a", Vec3::Zero(), z);
+    CHECK(alike(a, revolute("b", "ground", "b", there, 3 * z), crossed));
+    CHECK_FALSE(alike(a, revolute("b", "ground", "b", there, -z), crossed));
+    CHECK_FALSE(alike(a, revolute("b", "b", "ground", there, z), crossed));
+    CHECK(alike(a, revolute("b", "b", "ground", there, -z), crossed));
+    CHECK(alike(a, revolute("b", "ground", "b", there, Vec3::UnitX()), crossed)); // a quarter turned
+    // A planet's wheel on an arm, and the wheel about which the arm goes, which stands still.
+    CHECK_FALSE(alike(revolute("arm", "ground", "arm", Vec3::Zero(), z), revolute("b", "arm", "b", there, z),
+                      crossed));
+  }
+}
+
 TEST_CASE("a chain over three wheels is a belt from each to the next", "[gear kinds]") {
   Mechanism m;
   m.bodies = {disc("a", 0.1), disc("b", 0.1, {1, 0, 0}), disc("c", 0.1, {2, 0, 0})};

@@ -70,6 +70,25 @@ double carrier_rate(const Solution& s) {
 
 } // namespace
 
+TEST_CASE("a joint that closes the loop tells at which rate it turns", "[implied]") {
+  for (const bool by_torque : {false, true}) {
+    CAPTURE(by_torque);
+    Mechanism m = planetary(
+        by_torque ? pushed(sun_joint(), "10 N m - 0.02 N m s*rate(sun)", 100) : driven(sun_joint(), 100), 3);
+    m.joints[1].cut = true;
+    const Solution s = Analysis(m).solve();
+    const CoordinateSolution& carrier = coordinate(s, "carrier");
+    REQUIRE(carrier.dependent);
+    CHECK(carrier.driven);
+    const double sun = by_torque ? rate(s, "sun") : 100;
+    CHECK_THAT(carrier.speed.value(), WithinRel(sun * sun_teeth / (sun_teeth + ring_teeth), 1e-12));
+    CHECK(carrier.speed_error < 1e-10);
+    // Columns of studies are named by it.
+    CHECK(found_number(coordinate(Analysis(m).summary().coordinates, "carrier")).value().name ==
+          "carrier.speed");
+  }
+}
+
 TEST_CASE("a planetary set turns as Willis says", "[implied]") {
   const double damping = 3;
   const double ratio = sun_teeth / (sun_teeth + ring_teeth);

@@ -493,3 +493,32 @@ TEST_CASE("a gear between what a shaft left to itself carries keeps its momentum
   REQUIRE(found.size() == 1);
   CHECK(found[0].where() == "joints.beside.joints[0]");
 }
+
+TEST_CASE("momentum that a planetary set passes on is not kept") {
+  Mechanism m;
+  const auto wheel = [](const std::string& name, const Vec3& at) {
+    return body(name, 1, at, {0.1, 0.1, 0.2});
+  };
+  m.bodies = {wheel("sun", {0, 0, 0}), wheel("carrier", {0, 0, 0}), wheel("planet", {0.9, 0, 0}),
+              wheel("ring", {0, 0, 0})};
+  Joint sun = driven(revolute("sun", "ground", "sun", {0, 0, 0}, {0, 0, 1}), 100);
+  sun.coordinates[0].drive->torque = 0;
+  sun.coordinates[0].drive->load = 0;
+  sun.formulas.push_back({"drive.load", "0.02 N m s*rate(sun)"});
+  m.joints = {sun,
+              left_to_itself(revolute("carrier", "ground", "carrier", {0, 0, 0}, {0, 0, 1}), 10),
+              driven(revolute("ring", "ground", "ring", {0, 0, 0}, {0, 0, 1}), -5),
+              revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+              revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
+              revolute("ring on carrier", "carrier", "ring", {0, 0, 0}, {0, 0, 1}),
+              gear("inner mesh", "sun on carrier", "planet", -1.5),
+              gear("outer mesh", "planet", "ring on carrier", 2. / 7)};
+  validate(m);
+  try {
+    Analysis(m).solve();
+    FAIL("it was not refused");
+  } catch (const SceneError& error) {
+    CHECK(error.where() == "joints.carrier.drive.keeps");
+    CHECK_THAT(error.expected(), ContainsSubstring("its momentum passes to them"));
+  }
+}

@@ -488,6 +488,9 @@ TEST_CASE("what has no linear model is refused with the reason", "[linear-model]
   CHECK_THROWS_AS(refusal(governor, {"force_x(nothing)"}, {"slide"}), SceneError);
   CHECK_THROWS_AS(refusal(governor, {"torque(slide)"}, {"nothing"}), SceneError);
   CHECK_THROWS_AS(refusal(governor, {"torque(slide)", "torque(slide)"}, {"slide"}), SceneError);
+  for (const char* output : {"ball.free.0", "coordinate(ball.free.0)", "coordinate('ball.free'.0)"})
+    CHECK_THROWS_WITH(refusal(shipped("ball_on_string"), {"gravity.1"}, {output}),
+                      ContainsSubstring("a joint of the type free"));
   CHECK_THAT(refusal(stored_case("no_equilibrium"), {"gravity.1"}, {"h"}), !ContainsSubstring("phase of"));
   CHECK_THAT(refusal(shipped("governor_friction"), {"gravity.1"}, {"lift"}), ContainsSubstring("friction"));
   CHECK_THAT(refusal(stored_case("parametric_rotor"), {"gravity.1"}, {"mass()"}),

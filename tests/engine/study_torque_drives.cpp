@@ -541,3 +541,71 @@ TEST_CASE("a centrifugal clutch engages at its speed, slips, and where it would 
   CHECK_THAT(resistance * drum, WithinRel(slope * (400 - motor), 1e-12));
   CHECK(motor - drum < creep);
 }
+
+TEST_CASE("a torque may name measures of coordinates and rates") {
+  const Mechanism by_law = shipped("governor_engine");
+  Mechanism by_measure = by_law;
+  by_measure.measures.push_back({"opening", "", "coordinate(slide) - closed", "m"});
+  by_measure.measures.push_back({"closed", "", "0.15 m", "m"});
+  for (Joint& joint : by_measure.joints)
+    for (Formula& formula : joint.formulas)
+      if (formula.key == "drive.torque") formula.text = "gain*opening";
+  validate(by_measure);
+  const Solution direct = Analysis(by_law).solve(), named = Analysis(by_measure).solve();
+  CHECK(speed(named, "spin") == speed(direct, "spin"));
+  CHECK(named.eigenvalues == direct.eigenvalues);
+  // Taken up as a change of the law.
+  Analysis analysis(by_measure);
+  Mechanism other = by_measure;
+  other.measures.back().text = "0.16 m";
+  analysis.update(other);
+  CHECK_THAT(value(analysis.solve(), "slide"), WithinRel(0.16, 1e-12));
+
+  const auto mistake = [&](const std::string& measure, const std::string& law) {
+    Mechanism m = by_law;
+    m.measures.push_back({"M", "", measure, "m"});
+    m.measures.push_back({"N", "", "M", "m"});
+    for (Joint& joint : m.joints)
+      for (Formula& formula : joint.formulas)
+        if (formula.key == "drive.torque") formula.text = law;
+    try {
+      validate(m);
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(mistake("coordinate(slide)", "gain*(N - 0.15 m)").empty());
+  CHECK_THAT(
+      mistake("y(ball1)", "gain*N"),
+      ContainsSubstring("expected a measure of coordinate(), rate() and parameters alone; M asks for y()"));
+  CHECK_THAT(mistake("N", "gain*M"), ContainsSubstring("circle of measures"));
+  CHECK_THAT(mistake("coordinate(slide)", "gain*y(ball1)"),
+             ContainsSubstring("is one of coordinates, rates"));
+}
+
+TEST_CASE("a law keeps the coordinates that it asks for, wherever loops could be cut") {
+  const double sun = 20, planet = 16, ring = 52;
+  Mechanism m;
+  const auto wheel = [](const std::string& name, const Vec3& at) {
+    return body(name, 1, at, {0.1, 0.1, 0.2});
+  };
+  m.bodies = {wheel("sun", {0, 0, 0}), wheel("carrier", {0, 0, 0}), wheel("planet", {0.9, 0, 0}),
+              wheel("ring", {0, 0, 0})};
+  m.joints = {torque_driven(revolute("sun", "ground", "sun", {0, 0, 0}, {0, 0, 1}), 100,
+                            "10 N m - 0.02 N m s*rate(sun) - 0.01 N m s*rate(carrier)"),
+              dampened(revolute("carrier", "ground", "carrier", {0, 0, 0}, {0, 0, 1}), 0.3),
+              dampened(revolute("ring", "ground", "ring", {0, 0, 0}, {0, 0, 1}), 0.4),
+              revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+              revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
+              revolute("ring on carrier", "carrier", "ring", {0, 0, 0}, {0, 0, 1}),
+              gear("inner mesh", "sun on carrier", "planet", -sun / planet),
+              gear("outer mesh", "planet", "ring on carrier", planet / ring)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  const double ws = speed(s, "sun"), wc = speed(s, "carrier"), wr = speed(s, "ring");
+  CHECK_THAT((ws - wc) * sun, WithinRel(-(wr - wc) * ring, 1e-12));
+  const double torque = 10 - 0.02 * ws - 0.01 * wc;
+  CHECK_THAT(0.3 * wc * wc + 0.4 * wr * wr, WithinRel(torque * ws, 1e-12));
+  CHECK_THAT(-0.4 * wr, WithinRel(torque * ring / sun, 1e-12));
+}

@@ -44,6 +44,7 @@ Mechanism sample(std::uint32_t seed) {
   options.conservative = seed % 2 == 0;
   options.spring_share = 1;
   Mechanism m = reference::random_mechanism(seed, options);
+  if (seed % 6 == 1) m = reference::with_damper_laws(m);
   for (Joint& joint : m.joints) {
     if (joint.type == JointType::spherical) make_isotropic(joint, 0);
     if (joint.type == JointType::free) {

@@ -176,15 +176,17 @@ struct Dressing {
   Dress dress;
 };
 
-// Springs by laws, beside dampers by laws where coordinates have rates.
-Dress with_laws(const std::string& name) {
-  return [name](Mechanism& m) {
+// Dampers by laws where coordinates have rates, beside springs by laws or alone.
+Dress with_laws(const std::string& name, bool springs) {
+  return [name, springs](Mechanism& m) {
     Joint& joint = m.joints[static_cast<std::size_t>(joint_index(m, name))];
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
       Coordinate& c = joint.coordinates[i];
-      c.spring = CoordinateSpring{0, 0.1, "", 0};
-      joint.formulas.push_back(
-          {coordinate_key(joint, i, "spring") + ".force", "20*sinh(2*deflection) + 9*deflection^3 + 1"});
+      if (springs) {
+        c.spring = CoordinateSpring{0, 0.1, "", 0};
+        joint.formulas.push_back(
+            {coordinate_key(joint, i, "spring") + ".force", "20*sinh(2*deflection) + 9*deflection^3 + 1"});
+      }
       if (is_rotation_vector(joint.type, static_cast<int>(i))) continue;
       c.damping_force = 0;
       joint.formulas.push_back({coordinate_key(joint, i, "damping_force"), "2*rate + tanh(3*rate)"});
@@ -216,7 +218,8 @@ std::vector<Dressing> dressings(const std::string& name) {
           {"upper stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, -2); })},
           {"idle stop", each([stop](Coordinate& c, double k) { stop(c, k, -4, 4); })},
           {"damper", each([](Coordinate& c, double k) { c.damping = 2 * k; })},
-          {"spring's law", with_laws(name)}};
+          {"damper's law", with_laws(name, false)},
+          {"laws of both", with_laws(name, true)}};
 }
 
 Force spring_between(const std::string& a, const std::string& b, const Vec3& on_a, const Vec3& on_b) {
@@ -417,14 +420,16 @@ TEST_CASE("the Jacobian is exact for drag, plates and blades in all air") {
 }
 
 TEST_CASE("the Jacobian is exact for random mechanisms with several drives") {
-  int drives = 0, twins = 0, dampers = 0;
+  int drives = 0, twins = 0, dampers = 0, laws = 0;
   for (std::uint32_t seed = 0; seed < 240; ++seed) {
     INFO("seed " << seed);
     RandomOptions options = several(seed);
     options.air = seed % 5 == 4;
-    Model model(reference::random_mechanism(seed, options));
+    const Mechanism mechanism = reference::random_mechanism(seed, options);
+    Model model(seed % 2 == 0 ? mechanism : reference::with_damper_laws(mechanism));
     Dice dice(seed);
     check_jacobian(model, dice, 0.5);
+    laws += static_cast<int>(model.system.cut_damper_laws.size());
     drives += model.system.drives.size() > 1;
     twins += model.has_twins();
     dampers += model.has_cut_dampers();
@@ -432,6 +437,7 @@ TEST_CASE("the Jacobian is exact for random mechanisms with several drives") {
   CHECK(drives > 60);
   CHECK(twins > 40);
   CHECK(dampers > 5);
+  CHECK(laws > 5);
 }
 
 TEST_CASE("mass and velocity matrices are the reference's") {

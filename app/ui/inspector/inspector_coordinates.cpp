@@ -202,9 +202,11 @@ struct CoordinateRows {
   const char* driven() const {
     if (coordinate().drive) return "Not on a driven coordinate: its torque or force would never settle.";
     const CoordinateSolution* found = solution();
-    return found && found->driven
-               ? "Not on a coordinate driven through a gear: its torque or force would never settle."
-               : nullptr;
+    if (!found || !found->driven) return nullptr;
+    return found->speed
+               ? "Not on a coordinate that goes on at a constant rate: its torque or force would never "
+                 "settle."
+               : "Not on a coordinate driven through a gear: its torque or force would never settle.";
   }
 
   void spring() const {
@@ -314,9 +316,16 @@ struct CoordinateRows {
            "How hard the stop pushes back beyond its limits.", Least::above_zero);
   }
 
+  // Whether loops, gears or forces make it go on at a rate of its own, against which friction gives its
+  // limit.
+  bool slips_on() const {
+    const CoordinateSolution* found = solution();
+    return !coordinate().drive && found && found->speed;
+  }
+
   // Why this coordinate can have none; null where it may.
   const char* friction_refused() const {
-    if (const char* why = driven()) return why;
+    if (const char* why = driven(); why && !slips_on()) return why;
     if (is_rotation_vector(joint.type, i) || joint.type == JointType::free)
       return "Its coordinates do not slip one by one; use revolute and prismatic joints.";
     if (joint.type == JointType::planar && !angle())

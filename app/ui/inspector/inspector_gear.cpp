@@ -68,7 +68,7 @@ void belt_rows(Session& session, Ui& ui, const Joint& belt) {
                   .least = Least::above_zero,
                   .address = gear_address(belt, keys[end])});
   if (check_row(ui, "inspector/crossed", "Crossed", belt.crossed,
-                "Whether the belt is crossed, so that the wheels turn against each other."))
+                "Whether the belt is crossed, so that the coordinates turn against each other."))
     edit_joint(session, ui, "Cross " + belt.name, belt.name,
                [](Joint& same) { same.crossed = !same.crossed; });
 }

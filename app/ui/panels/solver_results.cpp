@@ -12,6 +12,7 @@ const char* fallback_text(Fallback fallback) {
   case Fallback::damped: return "damped steps";
   case Fallback::homotopy: return "speeding up from rest";
   case Fallback::descent: return "descent of the potential";
+  case Fallback::slow_motion: return "slow motion from the start";
   case Fallback::search: return "search all over the ranges";
   }
   return "";

@@ -1,6 +1,6 @@
 #include "app/ui/widgets/notice.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 
 #include <algorithm>
 #include <limits>

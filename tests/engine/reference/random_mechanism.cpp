@@ -1,5 +1,6 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/support/dice.hpp"
 
@@ -313,6 +314,22 @@ Mechanism random_sprung_mechanism(std::uint32_t seed) {
   options.spring_share = 1;
   options.rotated_bodies = seed % 2 == 0;
   return random_mechanism(seed, options);
+}
+
+Mechanism with_damper_laws(Mechanism mechanism) {
+  for (Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      Coordinate& c = joint.coordinates[i];
+      if (c.damping == 0 || is_rotation_vector(joint.type, static_cast<int>(i))) continue;
+      const std::string damping = std::to_string(c.damping);
+      joint.formulas.push_back(
+          {coordinate_key(joint, i, "damping_force"), is_angle(joint.type, static_cast<int>(i))
+                                                          ? damping + " N m s*rate + 0.5 N m s^3*rate^3"
+                                                          : damping + " N s/m*rate + 2 N s^3/m^3*rate^3"});
+      c.damping = 0;
+      c.damping_force = 0;
+    }
+  return mechanism;
 }
 
 } // namespace flyball::reference

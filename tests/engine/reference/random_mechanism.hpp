@@ -46,4 +46,7 @@ Mechanism random_mechanism(std::uint32_t seed, const RandomOptions& options = {}
 // open.
 Mechanism random_sprung_mechanism(std::uint32_t seed);
 
+// With its joints' dampers by laws, as stiff at rest as they were and stiffer beyond.
+Mechanism with_damper_laws(Mechanism mechanism);
+
 } // namespace flyball::reference

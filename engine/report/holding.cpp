@@ -1,11 +1,15 @@
-#include "engine/study/holding.hpp"
+#include "engine/report/holding.hpp"
 
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/fields.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/found_speeds.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/report_forces.hpp"
 #include "engine/search/steady_state.hpp"
@@ -70,6 +74,10 @@ Coordinate& coordinate_at(Mechanism& mechanism, CoordinateReference at) {
       .coordinates[static_cast<std::size_t>(at.coordinate)];
 }
 
+void drive_at_rest(Coordinate& c) {
+  c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
+}
+
 std::string label(const HeldJoint& joint) {
   return coordinate_label(joint);
 }
@@ -80,9 +88,9 @@ void tell_each(const std::vector<double>& needed, Holding& out) {
   for (std::size_t i = 0; i < needed.size(); ++i) {
     HeldJoint& joint = out.joints[i];
     joint.force = needed[i];
-    const double share = joint.limit > 0 ? std::abs(needed[i]) / joint.limit : needed[i] != 0 ? infinite : 0;
-    if (share > most) {
-      most = share;
+    const double part = joint.limit > 0 ? std::abs(needed[i]) / joint.limit : needed[i] != 0 ? infinite : 0;
+    if (part > most) {
+      most = part;
       out.first = label(joint);
     }
   }
@@ -122,6 +130,63 @@ void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Ho
   out.at_least = std::min(*out.takes, std::max(out.at_least, work_share(motion)));
 }
 
+// Of a coordinate that stands still, as a law may ask for it.
+struct Standing {
+  CoordinateReference at;
+  double value = 0; // rad or m
+};
+
+// A law with what it asks of these in numbers.
+std::string without_standing(const Mechanism& mechanism, std::string_view law,
+                             std::span<const Standing> standing) {
+  std::string text = with_measures(mechanism, law);
+  const Expression read(text, Expression::Results::allowed);
+  for (auto call = read.results().rbegin(); call != read.results().rend(); ++call) {
+    const CoordinateReference asked = find_coordinate(mechanism, *call);
+    const auto found = std::ranges::find_if(standing, [&](const Standing& x) {
+      return x.at.joint == asked.joint && x.at.coordinate == asked.coordinate;
+    });
+    if (found == standing.end()) continue;
+    const bool angle =
+        is_angle(mechanism.joints[static_cast<std::size_t>(asked.joint)].type, asked.coordinate);
+    const ResultCall::Argument& last = call->arguments.back();
+    const std::size_t end = text.find(')', last.begin + last.length);
+    text.replace(call->begin, end + 1 - call->begin,
+                 call->result == Result::rate ? (angle ? "(0 rad/s)" : "(0 m/s)")
+                                              : "(" + number_text(found->value) + (angle ? " rad)" : " m)"));
+  }
+  return text;
+}
+
+// The laws of all drives with these in numbers: they cannot ask for what is driven.
+void put_into_laws(Mechanism& mechanism, std::span<const Standing> standing) {
+  for (Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
+      for (const char* which : {"torque", "load"}) {
+        const Formula* law = drive_law(mechanism, joint, static_cast<int>(i), which);
+        if (!law) continue;
+        const std::string text = without_standing(mechanism, law->text, standing);
+        Formula& now = joint.formulas[static_cast<std::size_t>(law - joint.formulas.data())];
+        now.text = text;
+        if (is_of_state(mechanism, text)) continue;
+        Drive& drive = *joint.coordinates[i].drive;
+        (std::string_view(which) == "torque" ? drive.torque : drive.load) = evaluate_expression(
+            mechanism, text, fields::force_unit(is_angle(joint.type, static_cast<int>(i))), now.key);
+        std::erase_if(joint.formulas, [key = now.key](const Formula& each) { return each.key == key; });
+      }
+}
+
+// At which speeds that are found it holds: "spin at 48 rad/s"; empty where none are.
+std::string at_found_speeds(const System& system, const VectorXd& q) {
+  std::string out;
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    out += (out.empty() ? "" : ", ") + system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name +
+           " at " + rounded_text(q[link.q], 6) + (link.type == LinkType::revolute ? " rad/s" : " m/s");
+  }
+  return out;
+}
+
 Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
   Holding out;
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
@@ -149,33 +214,33 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   const TiedMotions which = find_tied_motions(free.problem(cancel), free.q, entries, w);
 
   Mechanism locked = mechanism;
-  locked.sliders.clear();
-  locked.measures.clear();
   for (const CoordinateReference& f : frictions) {
     Coordinate& c = coordinate_at(locked, f);
     c.friction.reset();
   }
+  out.independent = which.independent;
+  std::vector<Standing> standing; // all with friction: those that loops tie stand, too
+  for (const CoordinateReference& f : frictions) {
+    const CoordinateInfo& c = free.system.coordinates[static_cast<std::size_t>(free.find(mechanism, f))];
+    standing.push_back({f, coordinate_value<double>(free.system, free.parameters, free.q, c)});
+  }
+  put_into_laws(locked, standing);
+  locked.sliders.clear();
+  locked.measures.clear();
   for (const std::size_t i : which.independent) {
     // What it takes is told of a drive in the tree.
     locked.joints[static_cast<std::size_t>(frictions[i].joint)].cut = false;
-    Coordinate& c = coordinate_at(locked, frictions[i]);
-    c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
+    drive_at_rest(coordinate_at(locked, frictions[i]));
   }
   std::optional<Compiled> made;
   try {
     made.emplace(locked);
-  } catch (const SceneError& error) { // a drive by torque asks for where one of them stands, say
-    out.message = "What holding takes is not found, since joints with friction would have to be driven: " +
-                  std::string(error.what());
+  } catch (const SceneError& error) { // loops that they close, say
+    out.message = "What holding takes is not found with the joints that have friction standing still: " +
+                  std::string(error.what()) + ".";
     return out;
   }
   Compiled& held = *made;
-  if (!held.system.torques.empty() && held.system.rows > 0) {
-    out.message =
-        "What holding takes is not found where loops or gears may lead what gives a torque to joints "
-        "with friction.";
-    return out;
-  }
   Coordinates rest;
   for (const auto& [name, value] : at) {
     const CoordinateReference c = find_coordinate(mechanism, name);
@@ -202,7 +267,11 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   SteadyState steady;
   steady.find(problem, held.q, held.q, {.nearest = !at.empty()});
   if (!steady.holds) {
-    out.message = "With the joints that have friction standing still, the others find no steady state.";
+    const std::string why =
+        held.system.torques.empty() ? "" : missing_speed_message(locked, problem, steady.elsewhere());
+    out.message =
+        "With the joints that have friction standing still there, the others find no steady state." +
+        (why.empty() ? "" : " " + why);
     return out;
   }
   const Unknowns z = evaluate_reported(problem, steady.found.z.q, w);
@@ -215,6 +284,13 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     if (torque == forces.drive_torques.end()) {
       out.message = "What holding takes is not found: loops or gears tie " + out.joints[i].joint +
                     " to another drive, which holds it or turns it.";
+      return out;
+    }
+    if (torque->nonunique && !held.system.torques.empty()) {
+      out.message =
+          "What holding takes is not determined: loops are redundant, and leave it open how much of "
+          "what the drives give reaches " +
+          out.joints[i].joint + ".";
       return out;
     }
     const int c = free.find(mechanism, frictions[i]);
@@ -232,13 +308,15 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     tell_each(needed, out);
   else
     tell_shared(which, needed, out);
-  out.message = *out.takes <= 1 ? "Friction holds it there: that takes " + rounded_text(100 * *out.takes, 3) +
-                                      " % of what it can give."
+  const std::string speeds = at_found_speeds(held.system, steady.found.z.q);
+  const std::string there = speeds.empty() ? "there" : "there, with " + speeds;
+  out.message = *out.takes <= 1 ? "Friction holds it " + there + ": that takes " +
+                                      rounded_text(100 * *out.takes, 3) + " % of what it can give."
                 : out.at_least > 1
-                    ? "Friction does not hold it there" +
+                    ? "Friction does not hold it " + there +
                           (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")
-                    : std::string("Whether friction holds it there depends on how the joints in loops share "
-                                  "the load, which is not determined.");
+                    : "Whether friction holds it " + there +
+                          " depends on how the joints in loops share the load, which is not determined.";
   return out;
 }
 
@@ -255,6 +333,19 @@ double find_slip(const auto& takes, double below, double above) {
 }
 
 } // namespace
+
+Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateReference> coordinates) {
+  Mechanism out = mechanism;
+  std::vector<Standing> standing;
+  for (const CoordinateReference& c : coordinates)
+    standing.push_back({c, coordinate_at(out, c).drawn});
+  put_into_laws(out, standing);
+  for (const CoordinateReference& c : coordinates) {
+    out.joints[static_cast<std::size_t>(c.joint)].cut = false;
+    drive_at_rest(coordinate_at(out, c));
+  }
+  return out;
+}
 
 Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
   const Interruptible scope(cancel);

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace flyball {
 
@@ -30,15 +31,20 @@ struct Holding {
   std::optional<double> takes;
   // Less than this holding cannot take. Differs from `takes` where loops leave it open how joints share.
   double at_least = 0;
-  std::vector<HeldJoint> joints; // with friction, in the scene's order
-  std::string first;             // the joint that slips first, where that is known
-  std::string message;           // a sentence
+  std::vector<HeldJoint> joints;        // with friction, in the scene's order
+  std::vector<std::size_t> independent; // of `joints`: those that loops do not tie to the ones before them
+  std::string first;                    // the joint that slips first, where that is known
+  std::string message;                  // a sentence
 };
 
 // At the drawn pose with the coordinates of `at` ("joint" or "joint.index", rad or m) in place of the drawn
 // ones. Throws SceneError for names of no coordinate.
 Holding find_holding(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& at,
                      const std::atomic<bool>* cancel = nullptr);
+
+// The mechanism with coordinates that have friction standing still as drawn, as if driven at the speed zero:
+// what is asked of their values by the laws of drives is in numbers.
+Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateReference> coordinates);
 
 // The speeds of a drive between which friction holds the mechanism where it stands: at `lower` and `upper` it
 // begins to slip.

@@ -1,0 +1,23 @@
+// Where a mechanism driven by torques goes from a start, slowly: along the flow W q' = -f, f the balance and
+// W the metric of steps (kkt/kkt_system.hpp). What turns gathers or loses speed by what its torque has in
+// excess, with the inertia it has, and the coordinates creep downhill meanwhile; where f vanishes it rests.
+// It comes to states that are stable in the main, where Newton-Raphson takes whatever is near.
+//
+// Pseudo-transient continuation (Kelley, Keyes, Convergence analysis of pseudo-transient continuation, 1998):
+// steps of the linearly implicit Euler method, (K + W / h) x = -f, as long as their model holds, and
+// Newton-Raphson at the end.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+
+namespace flyball {
+
+// Speeds that are found are followed up to so many times that at which they begin.
+constexpr double fastest_followed = 1e4;
+
+// Runs from z, in place, with its loops closed. Not converged where it goes on without end, or takes too
+// long. Appends the scaled residuals to `history`.
+NewtonOutcome follow_slow_motion(const Problem& problem, Unknowns& z, Workspace& w,
+                                 std::vector<double>* history);
+
+} // namespace flyball

@@ -1,0 +1,168 @@
+// Steady states that there are by dry friction alone: what it holds as drawn, and what slips at a constant
+// rate against its limit, against closed forms and against the motion that settles.
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/study/friction_report.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <string>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+// A shaft turned at 20 rad/s and a disc on it: joints between ground, shaft and disc, and forces on these.
+Mechanism disc_on_shaft(const std::string& joints, const std::string& forces = "") {
+  const std::string body = R"(, "mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.02]})";
+  return read_scene(R"({"flyball": 2, "name": "Clutch", "bodies": [{"name": "shaft")" + body +
+                    R"(, {"name": "disc")" + body + R"(],
+    "joints": [{"name": "shaft", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "drive": {"speed": 20}}, )" +
+                    joints + R"(], "forces": [)" + forces + "]}");
+}
+
+std::string turning(const std::string& name, const std::string& parent, const std::string& more) {
+  return R"({"name": ")" + name + R"(", "type": "revolute", "bodies": [")" + parent +
+         R"(", "disc"], "at": [0, 0, 0], "axis": [0, 0, 1], )" + more + "}";
+}
+
+// Two of 0.5 N s/m each at 0.3 m: 0.09 N m s against what turns.
+const std::string paddles =
+    R"({"name": "a", "type": "drag", "body": "disc", "at": [0.3, 0, 0], "linear": 0.5},
+       {"name": "b", "type": "drag", "body": "disc", "at": [-0.3, 0, 0], "linear": 0.5})";
+
+double rate(const Solution& s, std::string_view joint) {
+  INFO(s.message);
+  return coordinate(s, joint).speed.value();
+}
+
+void expect_motion(const Mechanism& m, const Solution& s, const std::string& joint) {
+  SimulationOptions options;
+  options.duration = 10;
+  const Run motion = simulate(m, options);
+  INFO(motion.message);
+  const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
+  REQUIRE(track != motion.coordinates.end());
+  CHECK_THAT(track->rate.back(), WithinAbs(rate(s, joint), 1e-6));
+}
+
+} // namespace
+
+TEST_CASE("a clutch that slips drives against a brake: T / c") {
+  const Mechanism m = disc_on_shaft(turning("clutch", "shaft", R"("friction": {"limit": 0.5})") + ", " +
+                                    turning("brake", "ground", R"("damping": 0.1)"));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(rate(s, "clutch"), WithinRel(0.5 / 0.1 - 20, 1e-12));
+  CHECK_THAT(rate(s, "brake"), WithinRel(0.5 / 0.1, 1e-12));
+  CHECK(s.stable == true);
+  REQUIRE(s.frictions.size() == 1);
+  CHECK(s.frictions[0].slips);
+  CHECK(s.frictions[0].value == 0.5);
+  REQUIRE(s.drive_torques.size() == 1);
+  CHECK_THAT(s.drive_torques[0].value, WithinRel(0.5, 1e-12));
+  CHECK_THAT(s.message, ContainsSubstring("clutch slips at a constant rate"));
+  expect_motion(m, s, "clutch");
+}
+
+TEST_CASE("friction in the brake, which closes the loop") {
+  const Mechanism m = disc_on_shaft(turning("free", "shaft", R"("damping": 0.1)") + ", " +
+                                    turning("brake", "ground", R"("friction": {"limit": 0.5})"));
+  const Solution s = Analysis(m).solve();
+  CHECK_THAT(rate(s, "brake"), WithinRel(20 - 0.5 / 0.1, 1e-12));
+  expect_motion(m, s, "brake");
+}
+
+TEST_CASE("a disc that the air brakes: held by enough friction, slipping with less") {
+  const Mechanism slips = disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 0.5})"), paddles);
+  const Solution s = Analysis(slips).solve();
+  CHECK_THAT(rate(s, "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
+  expect_motion(slips, s, "free");
+
+  const Mechanism holds = disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 5})"), paddles);
+  const Solution held = Analysis(holds).solve();
+  INFO(held.message);
+  REQUIRE(held.status == Status::converged);
+  CHECK(value(held, "free") == 0);
+  CHECK_FALSE(coordinate(held, "free").driven);
+  REQUIRE(held.frictions.size() == 1);
+  CHECK_FALSE(held.frictions[0].slips);
+  CHECK_THAT(held.frictions[0].value.value(), WithinRel(0.09 * 20, 1e-12));
+  CHECK_THAT(held.message, ContainsSubstring("takes 36 % of what it can give"));
+  const FrictionReport report = report_friction(holds, held);
+  CHECK_FALSE(report.band.found);
+  CHECK_THAT(report.band.message, ContainsSubstring("Without friction there is no steady state"));
+  REQUIRE(report.speeds.size() == 1);
+  CHECK_THAT(report.speeds[0].upper.value(), WithinRel(5 / 0.09, 1e-9));
+}
+
+TEST_CASE("without friction the disc in the air is not said to fly off by the centrifugal force") {
+  Mechanism m = disc_on_shaft(
+      turning("free", "shaft", R"json("spring": {"force": "=0.1 N m*tanh(deflection/(1 rad))"})json"),
+      paddles);
+  const Solution s = Analysis(m).solve();
+  CHECK(s.status != Status::converged);
+  CHECK_THAT(s.message, !ContainsSubstring("centrifugal"));
+}
+
+TEST_CASE("friction that carries a weight at every phase of the drive holds it") {
+  for (const std::string spring : {"", R"(, "spring": {"stiffness": 200, "free": 0.2})"}) {
+    const Mechanism m = read_scene(R"({"flyball": 2, "name": "Arm", "gravity": [0, -9.80665, 0],
+      "bodies": [{"name": "arm", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+                 {"name": "b", "mass": 1, "position": [0.2, 0, 0]}],
+      "joints": [{"name": "s", "type": "revolute", "bodies": ["ground", "arm"], "at": [0, 0, 0],
+          "axis": [0, 0, 1], "drive": {"speed": 2}},
+        {"name": "t", "type": "prismatic", "bodies": ["arm", "b"], "at": [0.2, 0, 0], "axis": [1, 0, 0],
+          "coordinate": 0.2, "friction": {"limit": 20})" +
+                                   spring + "}]}");
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(value(s, "t") == 0.2);
+    CHECK(coordinate(s, "t").error == 0);
+    // Hanging straight down, weight and m r w^2 pull alike.
+    CHECK_THAT(s.frictions.at(0).value.value(), WithinRel(-9.80665 - 0.2 * 4, 1e-12));
+    CHECK_THAT(s.message, ContainsSubstring("as drawn"));
+    SolveOptions plain;
+    plain.nearest = true;
+    CHECK(Analysis(m).solve(plain).status == Status::no_steady_state);
+  }
+}
+
+TEST_CASE("friction in the planet of a differential that slips, against the motion") {
+  const auto wheel = [](const std::string& name, double inertia) {
+    return R"({"name": ")" + name + R"(", "mass": 1, "position": [)" + (name == "planet" ? "0.05" : "0") +
+           R"(, 0, 0], "inertia": [)" + number_text(inertia) + ", " + number_text(inertia) + ", " +
+           number_text(2 * inertia) + "]}";
+  };
+  const auto joint = [](const std::string& name, const std::string& a, const std::string& b,
+                        const std::string& more) {
+    return R"({"name": ")" + name + R"(", "type": "revolute", "bodies": [")" + a + R"(", ")" + b +
+           R"("], "at": [)" + (name == "planet" ? "0.05" : "0") + R"(, 0, 0], "axis": [0, 0, 1])" + more +
+           "}";
+  };
+  const Mechanism m =
+      read_scene(R"({"flyball": 2, "name": "Differential", "bodies": [)" + wheel("sun", 0.01) + ", " +
+                 wheel("carrier", 0.01) + ", " + wheel("ring", 0.01) + ", " + wheel("planet", 1e-4) +
+                 R"(], "joints": [)" +
+                 joint("sun", "ground", "sun",
+                       R"json(, "drive": {"torque": "=10 N m - 0.02 N m s*rate(sun)", "speed": 100})json") +
+                 ", " + joint("carrier", "ground", "carrier", R"(, "damping": 0.3)") + ", " +
+                 joint("ring", "ground", "ring", R"(, "damping": 0.4)") + ", " +
+                 joint("planet", "carrier", "planet", R"(, "friction": {"limit": 0.5})") + ", " +
+                 joint("sun_c", "carrier", "sun", "") + ", " + joint("ring_c", "carrier", "ring", "") + R"(,
+      {"name": "m1", "type": "gear", "joints": ["sun_c", "planet"], "ratio": -1.5},
+      {"name": "m2", "type": "gear", "joints": ["planet", "ring_c"], "ratio": 0.2857142857142857}]})");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.frictions.at(0).slips);
+  expect_motion(m, s, "planet");
+}

@@ -1,0 +1,347 @@
+// Which steady state a mechanism driven by torques is told to have, and whether it is told to be stable: on
+// kinks of the torques, at roots of higher order, where the first root is unstable or far from where the
+// search begins, and of random mechanisms with several drives, against their motions.
+#include "engine/continuation/branches.hpp"
+#include "engine/dynamics/settled.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+// A joint whose drive gives a torque by a law.
+Joint with_torque(Joint j, double guess, const std::string& law, const std::string& load = "") {
+  Drive& drive = j.coordinates[0].drive.emplace();
+  drive.speed = guess;
+  drive.torque = 0;
+  j.formulas.push_back({"drive.torque", law});
+  if (!load.empty()) {
+    drive.load = 0;
+    j.formulas.push_back({"drive.load", load});
+  }
+  return j;
+}
+
+// A rotor of 1 kg m^2 about z.
+Mechanism lone_rotor(double guess, const std::string& law, const std::string& load = "") {
+  Mechanism m;
+  m.bodies = {body("r", 1, {0, 0, 0}, {1, 1, 1})};
+  m.joints = {with_torque(revolute("s", "ground", "r", {0, 0, 0}, {0, 0, 1}), guess, law, load)};
+  validate(m);
+  return m;
+}
+
+double speed_of(const Solution& s, std::string_view joint) {
+  INFO(s.message);
+  return coordinate(s, joint).speed.value();
+}
+
+// A mass on a slide with a damper of 1 N s/m and a spring by a law.
+Mechanism sprung_slide(const std::string& force) {
+  Mechanism m;
+  m.bodies = {body("b", 1)};
+  Joint slide = dampened(joint(JointType::prismatic, "s", "ground", "b", {0, 0, 0}, {1, 0, 0}), 1);
+  slide.coordinates[0].spring = CoordinateSpring{0, 0, "", 0};
+  slide.formulas.push_back({"spring.force", force});
+  m.joints = {slide};
+  validate(m);
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("kinks of torques are told, and stability is where both sides prove it", "[torque][kinks]") {
+  SECTION("it grows on one side: unstable, whatever the other") {
+    const Solution s = Analysis(lone_rotor(1, "-1 N m s * abs(rate(s))")).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK(std::abs(speed_of(s, "s")) < 1e-12);
+    CHECK(s.stable == false);
+    CHECK_THAT(s.message,
+               ContainsSubstring("The torque of s stands on a kink of its law, where its slope with "
+                                 "rate(s) jumps from 1 to -1 N m s/rad"));
+    Mechanism other = lone_rotor(1, "0", "1 N m s * abs(rate(s))");
+    const Solution load = Analysis(other).solve();
+    CHECK(load.stable == false);
+    CHECK_THAT(load.message, ContainsSubstring("The load of s stands on a kink"));
+  }
+  SECTION("one eigenvalue that dies out on both sides: stable") {
+    const Solution s =
+        Analysis(lone_rotor(1, "1 N m - 2 N m s * max(0 rad/s, rate(s) - 3 rad/s) - 1/3 N m s * rate(s)"))
+            .solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed_of(s, "s"), WithinRel(3, 1e-12));
+    CHECK(s.stable == true);
+    CHECK_THAT(s.message, ContainsSubstring("jumps from -0.3333 to -2.333 N m s/rad"));
+  }
+  SECTION("several that die out on both sides: open") {
+    Mechanism m = lone_rotor(1.5, "2 N m - 1 N m s * rate(s) - 1 N m s * abs(rate(s) - rate(t))");
+    m.bodies.push_back(body("q", 1, {1, 0, 0}, {1, 1, 1}));
+    m.joints.push_back(
+        with_torque(revolute("t", "ground", "q", {1, 0, 0}, {0, 0, 1}), 1.5, "2 N m - 1 N m s * rate(t)"));
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed_of(s, "s"), WithinRel(2, 1e-12));
+    CHECK(!s.stable);
+    CHECK(s.stability_reason == StabilityReason::marginal);
+    CHECK_THAT(s.message, ContainsSubstring("whether it is stable stays open"));
+    // Two inputs cross the kink, and it is told once.
+    CHECK(s.message.find("stands on a kink") == s.message.rfind("stands on a kink"));
+    const AllSolutions all = Analysis(m).solve_all();
+    REQUIRE(all.equilibria.size() == 1);
+    CHECK(!all.equilibria[0].stable);
+    CHECK_THAT(all.message, ContainsSubstring("stands on a kink"));
+  }
+  SECTION("smooth laws have none") {
+    for (const char* law : {"1 N m - 1 N m s^2 * rate(s) * abs(rate(s))",
+                            "table(rate(s), [0, 12 N m], [2, 4 N m], [5, -10 N m])"}) {
+      const Solution s = Analysis(lone_rotor(1, law)).solve();
+      REQUIRE(s.status == Status::converged);
+      CHECK(s.stable == true);
+      CHECK(s.message.find("kink") == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("at roots of higher order the verdict is open, for solve, all and branches alike",
+          "[torque][kinks]") {
+  SECTION("of a torque, from either side") {
+    const auto power = GENERATE("1 N m * (rate(s) * 1 s - 2)^2", "-1 N m * (rate(s) * 1 s - 2)^3");
+    const auto guess = GENERATE(1., 3.);
+    CAPTURE(power, guess);
+    const Mechanism m = lone_rotor(guess, power);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK(std::abs(speed_of(s, "s") - 2) < 1e-4);
+    CHECK(s.stability_reason == StabilityReason::marginal);
+    const AllSolutions all = Analysis(m).solve_all();
+    REQUIRE(all.equilibria.size() == 1);
+    CHECK(all.equilibria[0].stability_reason == StabilityReason::marginal);
+    const ResponseDiagram diagram = follow_branches(m, "bodies.r.mass", 0.5, 2);
+    REQUIRE(!diagram.branches.empty());
+    for (const ResponsePoint& p : diagram.branches[0].points)
+      CHECK(!p.stable);
+  }
+  SECTION("of a spring") {
+    const auto force = GENERATE("1 N/m^2 * (deflection - 0.1 m)^2", "1 N/m^3 * (deflection - 0.1 m)^3");
+    CAPTURE(force);
+    const Mechanism m = sprung_slide(force);
+    CHECK(Analysis(m).solve().stability_reason == StabilityReason::marginal);
+    const AllSolutions all = Analysis(m).solve_all();
+    REQUIRE(all.equilibria.size() == 1);
+    CHECK(all.equilibria[0].stability_reason == StabilityReason::marginal);
+    const ResponseDiagram diagram = follow_branches(m, "joints.s.damping", 0.5, 2);
+    REQUIRE(!diagram.branches.empty());
+    for (const ResponsePoint& p : diagram.branches[0].points)
+      CHECK(!p.stable);
+  }
+}
+
+TEST_CASE("an unstable steady speed is left for the stable one that the motion goes to", "[torque]") {
+  SECTION("of one shaft") {
+    const Mechanism m = lone_rotor(1, "3 N m * sin(rate(s) * 1 s)", "0.5 N m s * rate(s)");
+    const Solution s = Analysis(m).solve();
+    CHECK_THAT(speed_of(s, "s"), WithinRel(2.67878308, 1e-7)); // 3 sin w = w / 2
+    CHECK(s.stable == true);
+    CHECK_THAT(s.message, ContainsSubstring("arrived at an unstable state"));
+    SolveOptions nearest; // asked for, it is the answer
+    nearest.nearest = true;
+    CHECK(std::abs(speed_of(Analysis(m).solve(nearest), "s")) < 1e-9);
+  }
+  SECTION("with a disc that spins on a swinging arm: as at that speed prescribed") {
+    const auto made = [](bool torque) {
+      Mechanism m;
+      m.bodies = {body("hub", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("arm", 0),
+                  body("disc", 1, {0.3, -0.4, 0}, {0.01, 0.02, 0.01})};
+      m.bodies[2].rotation = Quat(0.9486832980505138, 0, 0, 0.31622776601683794);
+      const Joint spin = revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0});
+      m.joints = {torque ? with_torque(dampened(spin, 0.1), 5, "0.9 N m + 0 N m s * rate(spin)")
+                         : driven(spin, 9),
+                  dampened(revolute("swing", "hub", "arm", {0, 0, 0}, {0, 0, 1}), 0.2),
+                  driven(revolute("disc", "arm", "disc", {0.3, -0.4, 0}, {0.6, -0.8, 0}), 200)};
+      validate(m);
+      return m;
+    };
+    const Solution s = Analysis(made(true)).solve(), there = Analysis(made(false)).solve();
+    REQUIRE(there.stable == true);
+    INFO(s.message);
+    CHECK(s.stable == true);
+    CHECK_THAT(speed_of(s, "spin"), WithinRel(9, 1e-10));
+    CHECK_THAT(value(s, "swing"), WithinRel(value(there, "swing"), 1e-9));
+  }
+  SECTION("a ball on a string") {
+    Mechanism m = shipped("ball_on_string");
+    m.joints[0] = with_torque(m.joints[0], 4, "1 N m - 0.1 N m s * rate(spin)");
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable != false);
+    CHECK(s.message.find("goes on without end") == std::string::npos);
+  }
+}
+
+TEST_CASE("a speed far above where the search begins is found, or said how far it looked", "[torque]") {
+  const Mechanism m = lone_rotor(5, "3 N m + 2 N m * sin(rate(s) * 1 s / 4)", "0.002 N m s * rate(s)");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // The first at which 3 + 2 sin(w/4) falls below 0.002 w: from 5 rad/s the motion comes there from below.
+  double w = 5;
+  const auto surplus = [](double x) { return 3 + 2 * std::sin(x / 4) - 0.002 * x; };
+  while (surplus(w) > 0)
+    w += 1e-3;
+  CHECK(std::abs(speed_of(s, "s") - w) < 2e-3);
+  CHECK(s.stable == true);
+  CHECK(s.fallback == Fallback::slow_motion);
+  const Solution none = Analysis(lone_rotor(5, "3 N m + 2 N m * sin(rate(s) * 1 s / 4)")).solve();
+  CHECK(none.status == Status::not_converged);
+  CHECK_THAT(none.message, ContainsSubstring("runs away"));
+  CHECK_THAT(none.message, ContainsSubstring("speeds up to 1.5e+04 rad/s found none"));
+}
+
+namespace {
+
+// Links hinged one below the other on a shaft, each with a spring, drawn hanging.
+Mechanism sprung_chain(int count) {
+  Mechanism m = hanging_chain(count, 3);
+  for (int i = 0; i < count; ++i) {
+    Joint& hinge = m.joints[static_cast<std::size_t>(i) + 1];
+    hinge = sprung(dampened(hinge, 0.01), 0.5 * count, 0.3 / count);
+  }
+  m.bodies[0].inertia = {0.1, 0.1, 0.1};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("a chain that a torque drives stands as at that speed prescribed, however long", "[torque]") {
+  const int count = GENERATE(4, 20, 60, 250);
+  const bool by_angle = GENERATE(false, true);
+  CAPTURE(count, by_angle);
+  const Mechanism prescribed = sprung_chain(count);
+  Mechanism m = prescribed;
+  // 3 rad/s, or what the angle of the first hinge takes off.
+  m.joints[0] = with_torque(m.joints[0], 2.5,
+                            by_angle ? "0.9 N m - 0.1 N m s * rate(spin) - 0.3 N m * coordinate(hinge1)"
+                                     : "0.9 N m - 0.1 N m s * rate(spin)",
+                            "0.2 N m s * rate(spin)");
+  validate(m);
+  SolveOptions plain;
+  plain.details = false;
+  const Solution s = Analysis(m).solve(plain);
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double found = speed_of(s, "spin");
+  const double angle = by_angle ? value(s, "hinge1") : 0;
+  CHECK_THAT(found, WithinRel(3 - angle, 1e-11));
+  if (!by_angle) {
+    CHECK(s.stable == true);
+    if (count > 8) CHECK(s.stability_reason == StabilityReason::minimum);
+  }
+  Mechanism at_speed = prescribed;
+  at_speed.joints[0].coordinates[0].drive->speed = found;
+  SolveOptions from_there = plain;
+  for (const CoordinateSolution& c : s.coordinates)
+    if (!c.driven && !c.speed) from_there.start.emplace_back(coordinate_label(c), c.value);
+  from_there.nearest = true;
+  const Solution there = Analysis(at_speed).solve(from_there);
+  REQUIRE(there.status == Status::converged);
+  double apart = 0;
+  for (const CoordinateSolution& c : there.coordinates)
+    if (!c.driven) apart = std::max(apart, std::abs(c.value - value(s, c.joint)));
+  CHECK(apart < 1e-10);
+  if (by_angle) return;
+  // And as solving at that speed answers from the drawn pose.
+  const Solution answer = Analysis(at_speed).solve(plain);
+  CHECK(std::abs(value(answer, "hinge1") - value(s, "hinge1")) < 1e-9);
+  // With eigenvalues, of the matrices, the verdict is the same.
+  if (count > 60) return;
+  const Solution whole = Analysis(m).solve();
+  CHECK(whole.stable == true);
+  REQUIRE(whole.eigenvalues);
+  CHECK(std::ranges::all_of(*whole.eigenvalues, [](std::complex<double> x) { return x.real() < 0; }));
+}
+
+namespace {
+
+// Two sprung arms with dampers on a shaft, a rotor on one of them, and a shaft beside that a slipping clutch
+// drags along: three drives by torques of their own and each other's rates and of the arms' angles.
+Mechanism coupled_drives(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  const auto any = [&](double from, double to) {
+    return from + (to - from) * (static_cast<double>(random()) / 4294967296.);
+  };
+  const auto axis = [&] { return Vec3(any(-1, 1), any(-1, 1), any(-1, 1)).normalized(); };
+  const auto place = [&] { return Vec3(any(-0.3, 0.3), any(-0.5, 0), any(-0.3, 0.3)); };
+  const auto law = [](double x, const std::string& rest) { return "(" + number_text(x) + ") * 1 " + rest; };
+  Mechanism m;
+  m.bodies = {body("A", 1.5, {0, 0, 0}, {0.1, 0.1, 0.1}), body("C", 1, {1, 0, 0}, {0.05, 0.05, 0.05})};
+  const double slip = any(0.1, 0.4);
+  m.joints = {dampened(with_torque(revolute("a", "ground", "A", {0, 0, 0}, {0, 1, 0}), any(2, 8),
+                                   law(any(0.5, 2), "N m") + " - " + law(any(0.05, 0.2), "N m s * rate(a)") +
+                                       " + " + law(any(-1, 1), "N m * coordinate(p)") + " - " +
+                                       law(slip, "N m s * (rate(a) - rate(c))")),
+                       0.02),
+              with_torque(revolute("c", "ground", "C", {1, 0, 0}, {0, 1, 0}), any(1, 5),
+                          law(slip, "N m s * (rate(a) - rate(c))"), law(any(0.1, 0.3), "N m s * rate(c)"))};
+  for (const char* name : {"p", "q"}) {
+    const Vec3 at = place();
+    m.bodies.push_back(body(name, any(0.2, 0.6), at + any(0.05, 0.15) * axis(), {0.01, 0.012, 0.014}));
+    const Joint arm = dampened(revolute(name, "A", name, at, axis()), any(0.2, 0.4));
+    m.joints.push_back(sprung(arm, any(8, 15), any(-0.2, 0.2)));
+  }
+  const Vec3 on_arm = m.bodies[2].position;
+  m.bodies.push_back(body("rotor", 0.15, on_arm, {0.005, 0.005, 0.008}));
+  m.joints.push_back(with_torque(revolute("b", "p", "rotor", on_arm, axis()), any(20, 50),
+                                 "table(rate(b), [0, 1.2 N m], [50, 0.4 N m], [150, 0 N m])",
+                                 law(any(0.002, 0.004), "N m s * rate(b)") + " + " +
+                                     law(any(-0.01, 0.01), "N m * sin(coordinate(q))")));
+  validate(m);
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("random mechanisms with three coupled drives end where solving says", "[torque][random]") {
+  int followed = 0;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    CAPTURE(seed);
+    const Mechanism m = coupled_drives(seed);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    if (s.stable != true) continue;
+    double slowest = 1e9;
+    for (const std::complex<double> x : *s.eigenvalues)
+      slowest = std::min(slowest, -x.real());
+    SimulationOptions run;
+    run.duration = std::log(1e7) / slowest;
+    run.rate = 0;
+    run.tolerance = 1e-8;
+    const Run motion = simulate(m, run);
+    REQUIRE(motion.status == RunStatus::completed);
+    ++followed;
+    const std::size_t last = motion.time.size() - 1;
+    CHECK(distance_from(motion, last, s) < 1e-4);
+    for (const char* shaft : {"a", "b", "c"}) {
+      const auto track = std::ranges::find(motion.coordinates, shaft, &CoordinateTrack::joint);
+      CHECK_THAT(track->rate[last], WithinRel(speed_of(s, shaft), 1e-4));
+    }
+  }
+  CAPTURE(followed);
+  CHECK(followed > 8);
+}
