@@ -96,7 +96,7 @@ bool may_command(Session& session, Ui& ui, const KeyPress& key) {
   return !typed;
 }
 
-void give_keys_to_popups(Ui& ui, CommandState& commands, DialogState& dialog) {
+void give_keys_to_popups(Ui& ui, CommandState& commands, const DialogState& dialog) {
   const auto pressed = [&](int code) {
     return std::ranges::any_of(ui.keys, [&](const KeyPress& key) { return !key.ctrl && key.key == code; });
   };

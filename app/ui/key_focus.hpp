@@ -23,6 +23,6 @@ bool may_command(Session& session, Ui& ui, const KeyPress& key);
 
 // Menus, lists and the sheet of keys: while one is open no key reaches what lies behind it, and Escape closes
 // it. Takes the keys that are theirs out of ui.keys.
-void give_keys_to_popups(Ui& ui, CommandState& commands, DialogState& dialog);
+void give_keys_to_popups(Ui& ui, CommandState& commands, const DialogState& dialog);
 
 } // namespace flyball

@@ -1,6 +1,8 @@
 #include "app/ui/load_view.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/tool_state.hpp"
+#include "app/ui/view_state.hpp"
 
 #include <algorithm>
 

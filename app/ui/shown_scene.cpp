@@ -42,12 +42,12 @@ const ShownScene& keep(const Session& session, const ToolState& tool, ShownScene
 
 } // namespace
 
-const ShownScene& show_scene(const Session& session, ToolState& tool, ViewState& view,
+const ShownScene& show_scene(const Session& session, const ToolState& tool, ViewState& view,
                              const ViewFrame& frame) {
   return keep(session, tool, view.scene, frame);
 }
 
-const ShownScene& show_motion_scene(const Session& session, ToolState& tool, ViewState& view,
+const ShownScene& show_motion_scene(const Session& session, const ToolState& tool, ViewState& view,
                                     const ViewFrame& frame) {
   return keep(session, tool, view.scene_beside, frame);
 }

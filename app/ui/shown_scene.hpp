@@ -34,9 +34,9 @@ struct ShownScene {
 };
 
 // Of what the view shows in this frame, and of the view beside it.
-const ShownScene& show_scene(const Session& session, ToolState& tool, ViewState& view,
+const ShownScene& show_scene(const Session& session, const ToolState& tool, ViewState& view,
                              const ViewFrame& frame);
-const ShownScene& show_motion_scene(const Session& session, ToolState& tool, ViewState& view,
+const ShownScene& show_motion_scene(const Session& session, const ToolState& tool, ViewState& view,
                                     const ViewFrame& frame);
 // As the app is now, which commands may have changed since the frame began.
 const std::shared_ptr<const ViewScene>& shown_scene(App& app);

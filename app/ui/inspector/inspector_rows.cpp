@@ -118,7 +118,8 @@ void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
   });
 }
 
-bool inspector_section(Session& session, Ui& ui, const std::string& name, const char* title, bool open) {
+bool inspector_section(const Session& session, Ui& ui, const std::string& name, const char* title,
+                       bool open) {
   const auto found = ui.sections.open.find(name);
   bool now = open;
   if (found != ui.sections.open.end()) {

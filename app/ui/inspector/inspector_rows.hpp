@@ -25,7 +25,7 @@ void edit_later(Session& session, Ui& ui, const std::string& step,
 void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism);
 
 // A part of an inspector that opens and closes, and remembers it.
-bool inspector_section(Session& session, Ui& ui, const std::string& name, const char* title, bool open);
+bool inspector_section(const Session& session, Ui& ui, const std::string& name, const char* title, bool open);
 
 // The label; what follows stands beside it. Returns the width for it (without the margin).
 float row_label(const Ui& ui, const std::string& label, const char* help = nullptr);

@@ -28,7 +28,7 @@ void open_menu(Ui& ui, int menu) {
 
 } // namespace
 
-bool take_alt(Ui& ui, DialogState& dialog, const KeyPress& key) {
+bool take_alt(Ui& ui, const DialogState& dialog, const KeyPress& key) {
   KeyboardState& state = ui.keyboard;
   if (dialog.showing) return true;
   const auto titles = menu_titles();

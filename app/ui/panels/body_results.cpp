@@ -27,7 +27,7 @@ std::string size_text(const Vec3& v, double factor) {
 }
 
 // `name` begins the widgets' and `of` ends them.
-void motion_rows(Session& session, Ui& ui, const PointMotion& motion, const std::string& name,
+void motion_rows(const Session& session, Ui& ui, const PointMotion& motion, const std::string& name,
                  const std::string& of) {
   const char* at_phase = "x, y, z in world axes, at the drawn phase of the drives.";
   const ShownUnit length = coordinate_unit(false, session.units), speed = rate_unit(false, session.units);

@@ -128,7 +128,7 @@ void reactions(const Session& session, Ui& ui, PanelState& panels) {
 
 } // namespace
 
-void load_results(Session& session, Ui& ui, PanelState& panels) {
+void load_results(const Session& session, Ui& ui, PanelState& panels) {
   drive_torques(session, ui, panels);
   reactions(session, ui, panels);
 }

@@ -14,15 +14,15 @@ void measure_results(Session& session, Ui& ui);
 void friction_results(const Session& session, Ui& ui);
 // Where a drive makes the balance turn: the motion in its place.
 void periodic_results(Session& session, Ui& ui);
-void solver_results(Session& session, Ui& ui);
+void solver_results(const Session& session, Ui& ui);
 // While a hand pulls.
 void pull_results(const Session& session, Ui& ui, const ToolState& tool);
 // Position, speed and acceleration of the selected bodies.
 void body_results(Session& session, Ui& ui);
 // Drive torques, reactions.
-void load_results(Session& session, Ui& ui, PanelState& panels);
+void load_results(const Session& session, Ui& ui, PanelState& panels);
 void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels);
-void system_results(Session& session, Ui& ui, PanelState& panels);
+void system_results(const Session& session, Ui& ui, PanelState& panels);
 // The residual after each iteration, on a logarithmic scale.
 void history_plot(const Session& session, Ui& ui, float width, float height);
 

@@ -20,7 +20,7 @@ const char* fallback_text(Fallback fallback) {
 
 } // namespace
 
-void solver_results(Session& session, Ui& ui) {
+void solver_results(const Session& session, Ui& ui) {
   const Solution& solution = session.answer.solution;
   const NumberStyle& numbers = session.options.numbers;
   if (solution.history.empty() && solution.iterations == 0) return;

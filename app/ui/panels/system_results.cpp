@@ -20,7 +20,7 @@ void list_of(Ui& ui, const char* title, const std::vector<std::string>& words, c
 
 } // namespace
 
-void system_results(Session& session, Ui& ui, PanelState& panels) {
+void system_results(const Session& session, Ui& ui, PanelState& panels) {
   const UiColors& colors = colors_of(ui);
   const SystemSummary& summary = session.answer.summary;
   if (!section(ui, "results/system", "System", panels.system)) return;

@@ -125,7 +125,7 @@ void view_lines(App& app, const PanelRect& rect) {
   app.widgets["notice"] = plate;
 }
 
-void error_line(Session& session, Ui& ui, ViewState& view, const PanelRect& rect) {
+void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect& rect) {
   if (!is_error(session)) return;
   const UiColors& colors = colors_of(ui);
   const float s = ui.scale, width = std::min(560 * s, std::max(rect.width - 2 * 96 * s, 160 * s));
@@ -168,7 +168,7 @@ std::string tried_text(const Session& session) {
 
 } // namespace
 
-void explored_chip(Session& session, Ui& ui, DialogState& dialog, const PanelRect& view) {
+void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const PanelRect& view) {
   if (session.document.explored().empty() || dialog.showing || view.width < 300 * ui.scale) return;
   const float s = ui.scale;
   const auto status = ui.widgets.find("status");

@@ -52,7 +52,7 @@ OuterJoints joints_of_moved(const InspectorState& inspector, bool opposite) {
   return inspector.leave_joints != opposite ? OuterJoints::stay : OuterJoints::follow;
 }
 
-void tell_joints(Session& session, InspectorState& inspector, const Selection& moved, bool opposite) {
+void tell_joints(Session& session, const InspectorState& inspector, const Selection& moved, bool opposite) {
   const Mechanism& mechanism = session.mechanism();
   const Names names = outer_joints(mechanism, moved);
   if (names.empty()) return;

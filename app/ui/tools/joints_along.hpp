@@ -12,6 +12,6 @@ struct Session;
 OuterJoints joints_of_moved(const InspectorState& inspector, bool opposite);
 // Tells which joints went along with the selected bodies and what they are joined to that stays, or which
 // joints were left. After the edit; nothing where they have none to what stays.
-void tell_joints(Session& session, InspectorState& inspector, const Selection& moved, bool opposite);
+void tell_joints(Session& session, const InspectorState& inspector, const Selection& moved, bool opposite);
 
 } // namespace flyball

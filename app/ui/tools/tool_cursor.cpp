@@ -163,7 +163,7 @@ void use_tool_cursor(App& app, ViewInput& input) {
   input.active = input.held = input.moved = false;
 }
 
-void follow_tool_cursor(Session& session, Ui& ui, ToolState& tool, std::uint64_t revision_before,
+void follow_tool_cursor(const Session& session, Ui& ui, ToolState& tool, std::uint64_t revision_before,
                         bool joining_before) {
   if (!ui.keyboard.by_key) return;
   if (tool.joint && !joining_before) focus_widget(ui, "tools/join");

@@ -26,8 +26,8 @@ std::string tool_hint(const Session& session, const InspectorState& inspector, c
 
 // Moving and turning with the gizmo, and moving the ends of the selected spring or link.
 void use_gizmo(App& app, const ViewInput& input);
-void let_go(Session& session, ToolState& tool,
-            bool keep); // of what is held; otherwise everything is where it was
+// Lets go of what is held; unless it is to be kept, everything is where it was.
+void let_go(Session& session, ToolState& tool, bool keep);
 // Clicking and framing parts.
 std::optional<Hit> part_under_cursor(App& app, const ViewInput& input);
 void use_selecting(App& app, const ViewInput& input);

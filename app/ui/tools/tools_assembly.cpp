@@ -28,7 +28,7 @@ void draw_assembly(const Ui& ui, const ToolState& tool, const ViewInput& input) 
 }
 
 // An edit of the drag, whatever was pressed meanwhile.
-void redraw_grabbed(Session& session, ToolState& tool, const MechanismPose& pose) {
+void redraw_grabbed(Session& session, const ToolState& tool, const MechanismPose& pose) {
   const AssemblyGrab& grab = *tool.assembly;
   const std::uint64_t gesture = std::exchange(session.gesture, grab.gesture);
   redraw(session, grab.step, *grab.before, pose, grab.selection);

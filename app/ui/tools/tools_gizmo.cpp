@@ -97,7 +97,7 @@ void take_hold(const Session& session, ToolState& tool, const ViewInput& input, 
 }
 
 // An edit of the drag, whatever was pressed meanwhile.
-void edit_grabbed(Session& session, ToolState& tool, const std::function<void(Mechanism&)>& change) {
+void edit_grabbed(Session& session, const ToolState& tool, const std::function<void(Mechanism&)>& change) {
   const Grab& grab = *tool.grab;
   const std::uint64_t gesture = std::exchange(session.gesture, grab.gesture);
   edit(session, grab.name, [&](Mechanism& mechanism, Selection& selection) {

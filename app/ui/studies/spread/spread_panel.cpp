@@ -10,6 +10,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -191,7 +192,7 @@ void estimated_row(const Session& session, const Ui& ui, const char* label, doub
       unit.text.c_str(), help);
 }
 
-void statistics_rows(Session& session, Ui& ui, const SpreadOutput& output) {
+void statistics_rows(const Session& session, Ui& ui, const SpreadOutput& output) {
   const SpreadStatistics& s = output.followed;
   const ShownUnit unit = shown_unit(output.unit, session.units);
   const NumberStyle& numbers = session.options.numbers;
@@ -217,7 +218,7 @@ void statistics_rows(Session& session, Ui& ui, const SpreadOutput& output) {
   }
 }
 
-void fate_rows(Session& session, Ui& ui, const SpreadAnswer& answer, const SpreadOutput& output) {
+void fate_rows(const Session& session, Ui& ui, const SpreadAnswer& answer, const SpreadOutput& output) {
   heading(ui, (std::to_string(answer.samples) + " samples").c_str());
   const auto count = [&](SampleFate fate, const char* label, const char* help) {
     const std::size_t n = answer.counts[static_cast<std::size_t>(fate)];
