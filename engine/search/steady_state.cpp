@@ -2,6 +2,7 @@
 
 #include "engine/linear/largest.hpp"
 #include "engine/solve/slow_motion.hpp"
+#include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -189,7 +190,8 @@ void SteadyState::judge(const Problem& problem) {
   }
   const Problem matrices{problem.system, problem.parameters, problem.scaling, problem.cancel};
   stability = find_stability(factored(matrices), false);
-  unstable_ = stability->stable == false;
+  unstable_ = stability->stable == false &&
+              !sign_is_open(matrices, found.z, error.solution, *stability, balance_.elsewhere());
 }
 
 // Puts one that is not unstable in the place of this state, which is, where the slow motion leads to one:

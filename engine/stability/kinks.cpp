@@ -91,7 +91,15 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
     if (link.v < 0) continue;
     const double size = link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v];
     const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
-    const auto jump = jump_at([&](double by) { return slopes(by)[i]; }, 0, size);
+    const auto slope = [&](double by) { // of all that ask for the same
+      const std::vector<double> all = slopes(by);
+      double sum = 0;
+      for (std::size_t j = 0; j < all.size(); ++j)
+        if (law.inputs[j].rate == law.inputs[i].rate && law.inputs[j].coordinate == law.inputs[i].coordinate)
+          sum += all[j];
+      return sum;
+    };
+    const auto jump = jump_at(slope, 0, size);
     if (!jump) continue;
     const double at = !law.inputs[i].rate ? coordinate_value(system, p, q, c)
                       : finds_speed(link) ? q[link.q]

@@ -36,7 +36,8 @@ struct LawState {
     return 0; // at rest in a steady state
   }
 
-  // With the rates of the numbers, and the rate 1 at one input; another is `by` further on.
+  // With the rates of the numbers, and the rate 1 at one input; all that ask for the same as another are `by`
+  // further on.
   Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t varied = most_inputs,
              std::size_t moved = most_inputs, double by = 0) const {
     if (!law.expression) return numbers.value;
@@ -44,7 +45,10 @@ struct LawState {
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
       inputs[i] = input(law.inputs[i]);
     if (varied < law.inputs.size()) inputs[varied].rate = 1;
-    if (moved < law.inputs.size()) inputs[moved].value += by;
+    for (std::size_t i = 0; i < law.inputs.size() && moved < law.inputs.size(); ++i)
+      if (law.inputs[i].rate == law.inputs[moved].rate &&
+          law.inputs[i].coordinate == law.inputs[moved].coordinate)
+        inputs[i].value += by;
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
   }
 
