@@ -115,26 +115,57 @@ bool sign_is_open(const Problem& problem, const Unknowns& z, const Eigen::Vector
                          stability, w);
 }
 
+namespace {
+
+constexpr double little = 1e-4; // scaled: a step beside a state
+
+// Moves a state along a direction (scaled) and closes its loops; false where that cannot be done.
+bool step_beside(const Problem& problem, const Eigen::VectorXd& direction, double by, Workspace& w,
+                 Unknowns& z) {
+  const Eigen::VectorXd step = by * direction.cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, step, z.q);
+  return assemble(problem, z.q, 0, w);
+}
+
+// Whether a little beside the state the balance is not what its derivative there says by far, along the
+// direction in which that is least: then the state is within a tenth of that of a fold or a root of higher
+// order.
+bool is_nearly_singular(const FactoredState& at, const Eigen::VectorXd& direction) {
+  const Problem& problem = at.problem;
+  const DenseKkt& dense = at.w.dense;
+  const double slope = (dense.constraints().basis().transpose() * (dense.stiffness() * direction)).norm();
+  double most = 0;
+  for (const double side : {little, -little}) {
+    Workspace& w = at.w.elsewhere();
+    Unknowns beside = at.z;
+    if (!step_beside(problem, direction, side, w, beside)) continue;
+    evaluate_with_multipliers(problem, beside, w);
+    Eigen::VectorXd force = w.residual.f.cwiseProduct(problem.scaling.column);
+    if (problem.system.rows > 0) force = (w.dense.constraints().basis().transpose() * force).eval();
+    most = std::max(most, force.norm());
+  }
+  return slope * little < 0.1 * most;
+}
+
+} // namespace
+
 bool sign_is_open(const FactoredState& at, const Stability& stability) {
   const Problem& problem = at.problem;
   if (problem.system.nv == 0 || problem.form != KktForm::dense || !stability.stable) return false;
-  constexpr double nearly_singular = 1e-5;
   const Eigen::VectorXd direction = softest_direction(problem, at.w);
-  const Eigen::MatrixXd& k = at.w.dense.stiffness();
-  const Eigen::VectorXd force = at.w.dense.constraints().basis().transpose() * (k * direction);
-  const double terms = (k.cwiseAbs() * direction.cwiseAbs()).norm();
-  if (!(force.norm() < nearly_singular * terms)) return false;
+  if (!is_nearly_singular(at, direction)) return false;
   Workspace& w = at.w.elsewhere();
   Unknowns beside = at.z;
-  const Eigen::VectorXd step = 1e-4 * direction.cwiseProduct(problem.scaling.column);
-  retract<double>(problem.system, step, beside.q);
-  if (!assemble(problem, beside.q, 0, w)) return false;
+  if (!step_beside(problem, direction, little, w, beside)) return false;
   NewtonSettings settings;
   settings.max_iterations = 100;
   const NewtonOutcome outcome = newton(problem, beside, w, settings, nullptr);
   if (!outcome.converged) return false;
   ErrorEstimate error;
   refine(problem, beside, outcome, w, error);
+  // Found twice it is known no better than the two agree.
+  const Eigen::VectorXd apart = outcome.linear ? (beside.q - at.z.q).cwiseAbs().eval() : Eigen::VectorXd();
+  if (apart.size() == error.solution.size()) error.solution = error.solution.cwiseMax(apart);
   return sign_is_open(problem, at.z, error.solution, stability, w);
 }
 
