@@ -18,8 +18,8 @@ Vec3 across(const Vec3& line) {
   return side.norm() > 1e-3 ? Vec3(side.normalized()) : line.unitOrthogonal();
 }
 
-// What runs along a link or a slide would be hidden in it: it is drawn beside, and what pushes a body along a
-// link ends where it acts.
+// What runs along a link or a slide would be hidden in it: it is drawn beside; what pushes along a link ends
+// where what pulls begins.
 Vec3 beside_part(const Assembly& assembly, const Load& load, const Vec3& along, double length) {
   if (load.part.kind != PartKind::joint) return Vec3::Zero();
   const auto j = static_cast<std::size_t>(load.part.index);
@@ -28,9 +28,9 @@ Vec3 beside_part(const Assembly& assembly, const Load& load, const Vec3& along, 
   const double u = assembly.scale.unit;
   if (joint.type == JointType::distance) {
     const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
-    const Vec3 middle = 0.5 * a + 0.5 * b;
-    const Vec3 aside = 0.9 * u * across(along);
-    return along.dot(middle - load.at) < 0 ? Vec3(aside - length * along) : aside;
+    // Anywhere along its line: outside the body that feels it.
+    const Vec3 out = 0.7 * (0.5 * a + 0.5 * b - load.at), aside = out + 0.9 * u * across(along);
+    return along.dot(out) < 0 ? Vec3(aside - length * along) : aside;
   }
   if (load.kind != LoadKind::spring && load.kind != LoadKind::drive) return Vec3::Zero();
   double reach = 2 * u; // of what slides, across

@@ -123,26 +123,32 @@ void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from,
 // What rounding did to a coordinate that neither forces nor loops depend on is taken back.
 void SteadyState::keep_where_started(const Problem& problem) {
   constexpr double nothing = 1e-12; // scaled
+  still_.clear();
   const DenseKkt* dense = balance_.matrices(problem);
   if (!dense || !dense->singular()) return;
   const auto free = [&](int v) {
     return largest_size(dense->stiffness().col(v)) <= nothing &&
            (problem.system.rows == 0 || largest_size(dense->jacobian().col(v)) <= nothing);
   };
-  Unknowns kept = found.z;
   for (const Link& link : problem.system.links)
     if (link.v >= 0 && link.type != LinkType::spherical && !finds_speed(link) && free(link.v))
-      kept.q[link.q] = start[link.q];
+      still_.push_back(link.q);
+  if (still_.empty()) return;
+  Unknowns kept = found.z;
+  for (const int q : still_)
+    kept.q[q] = start[q];
   if (kept.q == found.z.q) return;
   factor_at(problem, kept, balance_);
-  const double residual = scaled_residual(problem, balance_);
-  if (residual <= nothing)
+  if (scaled_residual(problem, balance_) <= nothing) {
     found.z = kept;
-  else
+  } else {
+    still_.clear();
     factor_at(problem, found.z, balance_);
+  }
 }
 
 void SteadyState::complete(const Problem& problem) {
+  still_.clear();
   phases = sample_phases(problem.system, problem.parameters);
   factor_at(problem, found.z, balance_);
   history.push_back(scaled_residual(problem, balance_));
@@ -166,6 +172,8 @@ FactoredState SteadyState::factored(const Problem& problem) {
 // From the balance factored beside it.
 void SteadyState::refine_found(const Problem& problem) {
   refine(problem, found.z, found.newton, balance_, error);
+  for (const int q : still_)
+    found.z.q[q] = start[q];
   shift_ = balance_.kkt(problem).shift();
   refined_with_ = problem.form;
   factored_.reset();

@@ -87,6 +87,7 @@ class SteadyState {
   bool take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate);
   void search_another(const Problem& problem, const Eigen::VectorXd& drawn, double seconds);
 
+  std::vector<int> still_; // entries of q that keep_where_started() put back
   Workspace balance_;
   std::optional<KktForm> factored_;     // the form that is, at this state
   std::optional<KktForm> refined_with_; // the form whose factors refine() left, beside it

@@ -5,7 +5,8 @@
 namespace flyball {
 
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
-  constexpr double near = 1e-6; // least pivot: beside it rounding still tells the directions that are left
+  constexpr double near =
+      1e-8; // least pivot: half the digits, to which a pose beside a singular one is known
   constexpr double aside = 1e-4, grows = 10;
   const DenseKkt* dense = w.matrices(problem);
   if (!dense || problem.system.rows == 0 || problem.system.nv == 0) return false;
