@@ -89,7 +89,8 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
     const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (link.v < 0) continue;
-    const double size = link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v];
+    // A 64th of that of a number: some laws press by stiffnesses that leave no more between both sides.
+    const double size = (link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v]) / 64;
     const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
     const auto slope = [&](double by) { // of all that ask for the same
       const std::vector<double> all = slopes(by);
