@@ -437,15 +437,19 @@ struct Simulator::State {
   // Where a slip turns back as the loops come to a singular position it has not stopped: the step is taken
   // back, and the way there halved until it can be leapt over.
   bool comes_to_singular_position(const StepOutcome& outcome) {
-    constexpr int most = 60; // halvings
     const auto first = static_cast<int>(stops.size() + flips.size());
-    if (halvings >= most || std::ranges::none_of(outcome.events, [&](int e) { return e >= first; }))
-      return false;
+    if (std::ranges::none_of(outcome.events, [&](int e) { return e >= first; })) return false;
     if (settle(outcome.time, nullptr) && equations->independence() >= 0.01 * best_independence) return false;
+    return take_back(outcome.time);
+  }
+  // The last step, which is to end halfway at most.
+  bool take_back(double end) {
+    constexpr int most = 200;
+    if (halvings >= most) return false;
     ++halvings;
     y = whole;
     start_stepper(began);
-    before_singular = began + (outcome.time - began) / 2;
+    before_singular = began + (end - began) / 2;
     return true;
   }
 
@@ -605,9 +609,11 @@ struct Simulator::State {
       if (taken >= review_at) review_method();
       stepper->state_at(stepped_to, whole);
       began = stepped_to;
-      const StepOutcome outcome = stepper->step(before_singular > began ? std::min(t, before_singular) : t);
+      const double end = before_singular > began ? std::min(t, before_singular) : t;
+      const StepOutcome outcome = stepper->step(end);
       if (outcome.kind == StepOutcome::failed) {
         torn = interrupt();
+        if (!torn && free && take_back(end)) continue; // friction may turn round just there
         return torn ? false : diverge(outcome.time, reason_of(outcome));
       }
       stepped_to = outcome.time;
