@@ -148,16 +148,18 @@ bool has_anchor(const Coordinate& c) {
 
 namespace {
 
-// How far the shapes of what slides extend from its point along the slide, to the farther side.
-double slider_reach(const Assembly& assembly, std::size_t index, const Vec3& axis) {
+// How far the shapes of what slides extend from its point along the slide, back and forth.
+std::array<double, 2> slider_reach(const Assembly& assembly, std::size_t index, const Vec3& axis) {
   const auto [parent, child] = assembly.joint_bodies[index];
   const int slider = child >= 0 ? child : parent;
-  if (slider < 0) return 0;
+  if (slider < 0) return {0, 0};
   const Body& body = assembly.mechanism.bodies[static_cast<std::size_t>(slider)];
-  if (body.shapes.empty()) return 0;
+  if (body.shapes.empty()) return {0, 0};
   const Bounds bounds = shape_bounds(body);
-  const double middle = axis.dot(bounds.center() - assembly.mechanism.joints[index].at);
-  return std::abs(middle) + axis.cwiseAbs().dot(0.5 * (bounds.upper - bounds.lower));
+  const double sense = slider == child ? 1 : -1; // the other way round where the joint's child is ground
+  const double middle = sense * axis.dot(bounds.center() - assembly.mechanism.joints[index].at);
+  const double half = axis.cwiseAbs().dot(0.5 * (bounds.upper - bounds.lower));
+  return {std::max(half - middle, 0.0), std::max(half + middle, 0.0)};
 }
 
 } // namespace
@@ -166,8 +168,8 @@ SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t 
   const Joint& joint = assembly.mechanism.joints[index];
   const Coordinate& c = joint.coordinates[coordinate];
   const double unit = assembly.scale.unit, travel = assembly.crank_travel[index];
-  SlideRange range{c.drawn, c.drawn, c.drawn,
-                   slider_reach(assembly, index, coordinate_axis(joint, coordinate).axis)};
+  const auto [below, above] = slider_reach(assembly, index, coordinate_axis(joint, coordinate).axis);
+  SlideRange range{c.drawn, c.drawn, c.drawn, below, above};
   const auto include = [&](double value) {
     range.from = std::min(range.from, value);
     range.to = std::max(range.to, value);
@@ -187,7 +189,7 @@ SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t 
   const double lowest = range.from, now = coordinate_value(assembly, index, coordinate);
   if (std::isfinite(now)) include(now);
   if (has_anchor(c)) {
-    const double towards = from_zero ? side : 1, clear = range.reach + 3 * unit;
+    const double towards = from_zero ? side : 1, clear = below + 3 * unit;
     const double length = std::max({6 * unit, clear, 1.6 * std::abs(c.drawn - free)});
     const double least = from_zero ? 2 * unit : clear; // one that starts at zero may be pressed flat
     range.anchor = from_zero ? 0 : lowest - length;

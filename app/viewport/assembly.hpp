@@ -78,7 +78,7 @@ struct SlideRange {
   // Where the other end of its spring and damper sits: outside what the coordinate takes, so that it always
   // lies on the same side. It gives way only to poses beyond all that.
   double anchor = 0;
-  double reach = 0; // m, how far the shapes of what slides extend along the slide from its point
+  double below = 0, above = 0; // m, how far the shapes of what slides extend from its point either way
 };
 SlideRange slide_range(const Assembly& assembly, std::size_t joint, std::size_t coordinate);
 // Whether a spring or damper acts along the slide, and so has its anchor there.

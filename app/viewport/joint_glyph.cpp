@@ -133,9 +133,9 @@ void draw_prismatic(Sketch& sketch, const Assembly& assembly, std::size_t index,
   const SlideRange range = slide_range(assembly, index, joint.coordinates.size() - 1);
   const Vec3 axis = (end == 1 ? 1 : -1) * p.axis;
   // A spring's own plate is the end of the rail; elsewhere there is room for what slides.
-  const double room = std::max(2.2 * u, range.reach + 0.6 * u);
   const auto end_at = [&](double value, double sense) {
     const bool plate = has_anchor(c) && value == range.anchor;
+    const double room = std::max(2.2 * u, (sense < 0 ? range.below : range.above) + 0.6 * u);
     return Vec3(rail + (value - c.drawn + (plate ? 0 : sense * room)) * axis);
   };
   const Vec3 from = end_at(range.from, -1), to = end_at(range.to, 1);
