@@ -180,8 +180,10 @@ std::string names_of(const std::vector<FrictionForce>& frictions, bool slipping)
 }
 
 void add_message(FrictionState& state, std::string text) {
-  if (state.solution.message != "Converged.") text += " " + state.solution.message;
-  state.solution.message = std::move(text);
+  constexpr std::string_view plain = "Converged.";
+  std::string& message = state.solution.message;
+  const std::string rest = message.starts_with(plain) ? message.substr(plain.size()) : " " + message;
+  message = std::move(text) + rest;
 }
 
 std::optional<FrictionState> held(const Mechanism& mechanism,
