@@ -13,8 +13,10 @@ namespace {
 
 // As many decimals as the error leaves, at most `most`.
 std::string rounded(double value, double error, int most) {
-  const int decimals = error > 0 ? static_cast<int>(std::floor(-std::log10(error))) : most;
-  return fmt::format("{:.{}f}", value, std::clamp(decimals, 0, most));
+  const int decimals =
+      std::clamp(error > 0 ? static_cast<int>(std::floor(-std::log10(error))) : most, 0, most);
+  if (std::abs(value) < 0.5 * std::pow(10, -decimals)) value = 0; // no sign
+  return fmt::format("{:.{}f}", value, decimals);
 }
 
 const char* unit_of(bool angle) {
@@ -24,8 +26,10 @@ const char* unit_of(bool angle) {
 std::string range_text(const DriveTorque& d) {
   if (!d.varying) return "";
   if (!d.range) return "  (changes with the phase)";
+  const double size = std::max(std::abs(d.range->least), std::abs(d.range->most));
+  const double mean = std::abs(d.range->mean) < 1e-12 * size ? 0 : d.range->mean; // beyond its nine digits
   return fmt::format("  at the drawn phase; over all phases {:.9g} to {:.9g}, mean {:.9g} {}", d.range->least,
-                     d.range->most, d.range->mean, unit_of(d.angle));
+                     d.range->most, mean, unit_of(d.angle));
 }
 
 std::string flags(bool varying, bool nonunique) {
