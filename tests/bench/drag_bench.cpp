@@ -3,6 +3,7 @@
 // card's. What a slider's move costs beside the solve in a net of 10 000 point masses. And what a mouse event
 // costs while a body is pulled by hand.
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/app.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"

@@ -52,9 +52,11 @@ Result run_one(const Case& c, Slot& slot, bool other_starts) {
     if (other_starts && out.verdict.outcome == Outcome::refused && c.other_starts)
       out.verdict.remark += c.other_starts(slot.cancel);
   } catch (const std::exception& e) {
-    out.verdict = {.remark = std::string("an exception: ") + e.what()};
+    out.verdict = {};
+    out.verdict.remark = std::string("an exception: ") + e.what();
   } catch (...) {
-    out.verdict = {.remark = "an unknown exception"};
+    out.verdict = {};
+    out.verdict.remark = "an unknown exception";
   }
   slot.name = nullptr;
   out.wall_s = now() - slot.since;
