@@ -12,7 +12,6 @@
 
 using namespace flyball;
 using namespace flyball::test;
-using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
@@ -49,7 +48,7 @@ void expect_motion(const Mechanism& m, const Solution& s, const std::string& joi
   INFO(motion.message);
   const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
   REQUIRE(track != motion.coordinates.end());
-  CHECK_THAT(track->rate.back(), WithinAbs(rate(s, joint), 1e-6));
+  CHECK_THAT(track->rate.back(), WithinRel(rate(s, joint), 1e-7));
 }
 
 } // namespace
