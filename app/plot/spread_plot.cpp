@@ -15,8 +15,8 @@ constexpr double fewest_bins = 8, most_bins = 60;
 
 // Of values that differ by no more than rounding.
 bool are_alike(const SpreadStatistics& s) {
-  constexpr double rounding = 1e-12;
-  return !(s.most - s.least > rounding * std::max(std::abs(s.least), std::abs(s.most)));
+  constexpr double relative = 1e-12, absolute = 1e-15;
+  return !(s.most - s.least > std::max(relative * std::max(std::abs(s.least), std::abs(s.most)), absolute));
 }
 
 // All of them at one value: a bar without width.

@@ -32,7 +32,7 @@ constexpr bool is_flat(Primitive primitive, int detail) {
 }
 
 // By detail: the sides of what is round.
-inline constexpr std::array detail_sides{4, 6, 10, 16, 24, 40, 96};
+inline constexpr std::array detail_sides{4, 6, 10, 16, 24, 40, 128};
 
 // Of the tube, its hole's radius; of the coils, their turns.
 inline constexpr double tube_hole = 0.62;

@@ -136,14 +136,16 @@ TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
     CHECK((bar[1][0] + bar[2][0]) / 2 == Approx(0).margin(1e-12));
     CHECK(narrow.curves.empty());
   }
-  SECTION("samples that are all alike have one bar") {
+  SECTION("samples that are all alike stand at one value, to which no width is given") {
     for (double& value : answer.values[0])
       value = 3;
     answer.fate.assign(1000, SampleFate::followed);
     answer.counts = {};
     add_statistics(tolerances, 1, answer);
     const Plot flat = histogram_plot(answer, 0);
-    REQUIRE(flat.bands.size() == 1);
-    CHECK(count(flat.bands[0]) == 1000);
+    CHECK(flat.bands.empty());
+    REQUIRE(flat.curves.size() == 1);
+    CHECK(flat.curves[0].points[0] == std::array<double, 2>{3, 0});
+    CHECK(flat.curves[0].points[1] == std::array<double, 2>{3, 1000});
   }
 }

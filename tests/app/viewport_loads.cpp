@@ -205,8 +205,8 @@ TEST_CASE("arrows of springs and links of a mechanism stand beside what would hi
     const Joint& joint = assembly.joint(load.part.index);
     const auto [first, second] = assembly.joint_bodies[static_cast<std::size_t>(load.part.index)];
     if (load.kind == LoadKind::spring) {
-      ++springs; // outside the collar, whose radius is 38 mm
-      CHECK(std::hypot(arrow.from.x(), arrow.from.z()) > 0.038 + 0.2 * u);
+      ++springs; // outside the collar, whose radius is 22 mm
+      CHECK(std::hypot(arrow.from.x(), arrow.from.z()) > 0.022 + 0.2 * u);
     } else if (joint.type == JointType::distance) {
       ++links; // on the link's side of the collar, beside the link
       const Vec3 a = assembly.point(first, joint.points[0]), b = assembly.point(second, joint.points[1]);
