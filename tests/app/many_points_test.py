@@ -265,12 +265,13 @@ def check_grids(folder):
 
 
 def check_turning(folder):
-    """What turns with the drives has no cell, and moves no other out of its column."""
+    """What turns with the drives has its speed for a cell, and moves no other out of its column."""
     scene, file = pathlib.Path(SCENE).with_name("governor_bearing.json"), folder / "turning.csv"
     run("sweep", scene, "--vary", f"{SPEED}=10:20:3", "--csv", file)
     head, *rows = [line.split(",") for line in file.read_text().splitlines()]
     for row in rows:
-        check(row[head.index("bearing")] == "" and row[head.index("lift")] == row[head.index("slide")], f"{row}")
+        turns = float(row[head.index("bearing.speed")]) == -float(row[head.index(SPEED)])
+        check(turns and row[head.index("lift")] == row[head.index("slide")], f"{row}")
 
 
 def check_memory(folder):

@@ -290,14 +290,13 @@ TEST_CASE("a branch of a chain or a tree is the same by elimination", "[branches
 
 TEST_CASE("a branch of a ladder of loops or springs is the same by elimination", "[branches]") {
   Compared all;
-  const int rungs = few_or_all(20, 32);
-  for (const bool loops : {true, false})
-    for (const double offset : {0., 0.15}) {
-      const Compared c = expect_same_branch(ladder(rungs, offset, loops), speed, 0.5, 9);
-      all.crossings += c.crossings;
-      all.told += c.told;
-    }
-  CHECK(all.crossings >= 2);
+  for (const auto& [loops, offset] : {std::pair(true, 0.), {false, 0.15}, {true, 0.15}, {false, 0.}}) {
+    if (!in_campaign() && loops != (offset == 0)) continue;
+    const Compared c = expect_same_branch(ladder(32, offset, loops), speed, 0.5, 9);
+    all.crossings += c.crossings;
+    all.told += c.told;
+  }
+  CHECK(all.crossings >= few_or_all(1, 2));
   CHECK(all.told > 100);
 }
 
