@@ -16,24 +16,34 @@ bool is_within(const ViewCamera& camera, ViewSize size, const Vec3& point) {
   return at && at->x() >= 0 && at->y() >= 0 && at->x() <= size.width && at->y() <= size.height;
 }
 
-// Arrows that have come are taken into view, unless a person looks at a part.
-void fit_loads(App& app, ViewSize size) {
-  if (!app.view.fit_loads) return;
+// Arrows that have come and leave a view that held everything are to be taken into it: then true. When they
+// have gone the camera goes back, if nobody has moved it since.
+bool fit_loads(App& app, ViewSize size) {
+  ViewState& view = app.view;
+  if (!view.fit_loads) return false;
   const ViewScene& scene = *shown_scene(app);
-  if (app.view.loads && scene.arrows.arrows.empty()) return; // not yet
-  app.view.fit_loads = false;
-  const ViewCamera& camera = app.view.glide ? app.view.glide->to : app.view.camera;
+  if (view.loads && scene.arrows.arrows.empty()) return false; // not yet
+  view.fit_loads = false;
+  const ViewCamera camera = settled_camera(view);
+  if (!view.loads) {
+    if (view.loads_fit && camera == (*view.loads_fit)[1]) glide_goal(view) = (*view.loads_fit)[0];
+    view.loads_fit.reset();
+    return false;
+  }
   const bool all_seen = std::ranges::all_of(scene.solid.instances, [&](const Instance& instance) {
     return is_within(camera, size, instance.position);
   });
   const bool arrows_seen = std::ranges::all_of(scene.arrows.arrows, [&](const LoadArrow& arrow) {
     return is_within(camera, size, arrow.from) && is_within(camera, size, arrow.to);
   });
-  if (app.view.loads && all_seen && !arrows_seen) fit_all(app);
+  if (!all_seen || arrows_seen) return false;
+  fit_all(app);
+  view.loads_fit = {camera, camera};
+  return true;
 }
 
 void fit_view(App& app, ViewSize size) {
-  fit_loads(app, size);
+  const bool for_loads = fit_loads(app, size);
   if (!app.view.fit) return;
   const ViewScene& scene = *shown_scene(app);
   Bounds bounds = scene.solid.bounds;
@@ -45,6 +55,7 @@ void fit_view(App& app, ViewSize size) {
     app.view.glide.reset();
     app.view.camera = initial_camera(*shown_mechanism(app, app.tool), bounds, size);
   }
+  if (for_loads) (*app.view.loads_fit)[1] = settled_camera(app.view);
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(app)) app.view.fit = false;
 }

@@ -494,7 +494,11 @@ const std::array all_commands{
             .help = "Arrows of reactions, drive torques, springs' forces and inertial loads; with one body "
                     "chosen, its free-body diagram.",
             .key = plain('A'),
-            .run = [](App& app) { app.view.fit_loads = app.view.loads = !app.view.loads; },
+            .run =
+                [](App& app) {
+                  app.view.loads = !app.view.loads;
+                  app.view.fit_loads = true;
+                },
             .checked = [](const App& app) { return app.view.loads; }},
     Command{.id = "view.grid",
             .title = "Grid",

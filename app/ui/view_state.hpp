@@ -7,6 +7,7 @@
 #include "app/ui/shown_scene.hpp"
 #include "app/viewport/camera.hpp"
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -23,11 +24,13 @@ struct ViewState {
   std::optional<Vec2> menu_at; // where, in pixels of the window; none: where its part is
   bool menu_of_part = false;   // it is that of the selected parts
   bool ghost = true, grid = true, shadow = true;
-  bool loads = false;          // arrows of what acts; see load_view.hpp
-  bool alone = false;          // no panels round it, for pictures
-  int samples = 4;             // 1: no anti-aliasing
-  bool fit = true;             // wanted at the next update
-  bool fit_loads = false;      // wanted where arrows that come leave a view that held everything
+  bool loads = false;     // arrows of what acts; see load_view.hpp
+  bool alone = false;     // no panels round it, for pictures
+  int samples = 4;        // 1: no anti-aliasing
+  bool fit = true;        // wanted at the next update
+  bool fit_loads = false; // arrows of loads have come or gone: see fit_loads()
+  // The camera before and after it took them into view.
+  std::optional<std::array<ViewCamera, 2>> loads_fit;
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found

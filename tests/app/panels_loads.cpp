@@ -110,6 +110,7 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
 TEST_CASE("arrows that come are taken into the view, unless a part is looked at") {
   Robot robot({1280, 900});
   App& app = robot.app;
+  const double drawn_from = app.view.camera.distance;
   const auto all_seen = [&] {
     return std::ranges::all_of(shown_scene(app)->arrows.arrows, [&](const LoadArrow& arrow) {
       const auto at = app.view.camera.project(arrow.to, app.view.size);
@@ -121,7 +122,10 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   robot.frames(30, 0.04);
   REQUIRE(shown_scene(app)->arrows.arrows.size() > 4);
   CHECK(all_seen());
+  CHECK(app.view.camera.distance > drawn_from);
   robot.key('A');
+  robot.frames(30, 0.04);
+  CHECK(app.view.camera.distance == drawn_from);
   app.view.camera.distance /= 4; // near to it
   const ViewCamera before = app.view.camera;
   robot.key('A');

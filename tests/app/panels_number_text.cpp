@@ -41,7 +41,7 @@ TEST_CASE("rough numbers have three digits and no exponent where none is needed"
   CHECK(rough_text(-123456) == "-123000");
   CHECK(rough_text(0.012345) == "0.0123");
   CHECK(rough_text(0) == "0");
-  CHECK(rough_text(2.345e7) == "2.35e+07");
+  CHECK(rough_text(2.361e7) == "2.36e+07");
 }
 
 TEST_CASE("every drive speed and spring constant has a slider, the scene's own first") {

@@ -107,7 +107,8 @@ void free_body_item(Session& session, Ui& ui, ViewState& view) {
   const bool on = view.loads && session.mode == Mode::explore;
   if (ImGui::MenuItem("Free-body diagram", key_text(command("view.loads").key).c_str(), on))
     later(ui, [&session, &view, on] {
-      view.fit_loads = view.loads = !on;
+      view.loads = !on;
+      view.fit_loads = true;
       if (!on) set_mode(session, Mode::explore);
     });
   note_widget(ui.widgets, "view/menu/view.loads");
