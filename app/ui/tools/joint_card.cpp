@@ -253,7 +253,10 @@ void place_card(App& app, const ViewInput& input, ImVec2 size) {
 void joint_card(App& app, const ViewInput& input) {
   if (!app.tool.joint) return;
   const float s = app.scale;
-  const ImVec2 size(264 * s, app.tool.card_height);
+  const bool bearing = app.tool.tool == Tool::bearing;
+  // It has a place for all the rows that a type and two bodies bring: more of them do not move it.
+  const float most_rows = bearing ? 0 : 12.5f * (ImGui::GetFrameHeight() + 4 * s);
+  const ImVec2 size(264 * s, std::max(app.tool.card_height, most_rows));
   place_card(app, input, size);
   ImGui::SetNextWindowSize({size.x, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -263,7 +266,6 @@ void joint_card(App& app, const ViewInput& input) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(2);
-  const bool bearing = app.tool.tool == Tool::bearing;
   heading(app, bearing ? "Bearing" : "Join");
   body_rows(app, app, app.tool);
   ImGui::Dummy({0, s});
