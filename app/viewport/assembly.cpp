@@ -189,7 +189,7 @@ SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t 
   const double lowest = range.from, now = coordinate_value(assembly, index, coordinate);
   if (std::isfinite(now)) include(now);
   if (has_anchor(c)) {
-    const double towards = from_zero ? side : 1, clear = below + 1.5 * unit;
+    const double towards = from_zero ? side : 1, clear = std::max(below + 1.5 * unit, 3 * unit);
     const double length = std::max({6 * unit, clear, 1.6 * std::abs(c.drawn - free)});
     const double least = from_zero ? 2 * unit : clear; // one that starts at zero may be pressed flat
     range.anchor = from_zero ? 0 : lowest - length;

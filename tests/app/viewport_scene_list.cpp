@@ -249,14 +249,15 @@ Mechanism meshing(double ratio, const Vec3& second) {
 // m, how far a point is from the middles of the teeth about a centre, at the least.
 double tooth_distance(const SceneList& scene, const Vec3& center, double radius, const Vec3& at) {
   double least = 1e9;
+  bool own = false; // its teeth follow its rim
   for (const Instance& i : scene.instances) {
-    if (i.primitive != Primitive::box || i.part != PartId{PartKind::joint, 2}) continue;
+    if (i.part != PartId{PartKind::joint, 2}) continue;
+    if (i.primitive == Primitive::ring) own = (i.position - center).head<2>().norm() < 1e-9;
+    if (i.primitive != Primitive::box || !own) continue;
     Vec3 out = i.position - center;
     out.z() = 0;
-    // Its own teeth stand along its radii.
-    if (std::abs(out.norm() - radius) < 0.1 * radius &&
-        out.normalized().dot(i.rotation * Vec3::UnitX()) > 1 - 1e-9)
-      least = std::min(least, (center + radius * out.normalized() - at).head<2>().norm());
+    CHECK(std::abs(out.norm() - radius) < 0.1 * radius);
+    least = std::min(least, (center + radius * out.normalized() - at).head<2>().norm());
   }
   return least;
 }
