@@ -77,7 +77,8 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
     if (!(away <= within)) break;
     --first;
   }
-  const std::string distance = rounded_text(out.distance, 2) + " (rad, or parts of the reach) from the direct solution";
+  const std::string distance =
+      rounded_text(out.distance, 2) + " (rad, or parts of the reach) from the direct solution";
   if (first == run.time.size() && is_held(run)) {
     out.message = "Friction holds it where it has come to rest, " + distance + ".";
     return out;
