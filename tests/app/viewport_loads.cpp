@@ -51,14 +51,25 @@ Steady solved(Mechanism mechanism) {
   return {std::move(mechanism), std::move(solution), analysis.turning_at(0)};
 }
 
-// How far the worst of the bodies is from balance, in parts of its largest load.
+// How far the worst of the bodies is from balance, in parts of its largest load; what carries nothing but
+// rounding of the others' loads in parts of these.
 double worst_of(const Steady& steady, std::span<const Pose> poses, const Quat& turn) {
   const auto& [mechanism, solution, turning] = steady;
   const Assembly assembly(mechanism, poses);
-  double worst = 0;
+  const double reach = assembly.scale.bounds.radius();
+  std::vector<Sum> sums;
+  double largest = 0, worst = 0; // N
   for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
-    const Sum sum = sum_of(loads_of(assembly, solution, turning, static_cast<int>(b), turn),
-                           poses[b].position, assembly.scale.bounds.radius());
+    sums.push_back(
+        sum_of(loads_of(assembly, solution, turning, static_cast<int>(b), turn), poses[b].position, reach));
+    largest = std::max(largest, sums.back().largest_force);
+  }
+  for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+    Sum& sum = sums[b];
+    if (constexpr double rounding = 1e-9; sum.largest_force < rounding * largest) {
+      sum.largest_force = largest;
+      sum.largest_moment = largest * reach;
+    }
     INFO(mechanism.name << ", " << mechanism.bodies[b].name << ": forces " << sum.force_error()
                         << ", moments " << sum.moment_error());
     CHECK(sum.force_error() < 1e-9);
