@@ -213,7 +213,7 @@ def main():
                 return windows[-1]
 
             open_bare(program, scene, folder)
-            explore(start(scene), folder)
+            explore(start(pathlib.Path(shutil.copy(scene, folder))), folder)  # pictures go beside their scene
             value = crash(start(copy))
             recover(start(copy), copy, value)
     finally:
