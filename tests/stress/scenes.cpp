@@ -102,6 +102,14 @@ Mechanism alike(Mechanism m, double length, double mass, double time) {
     f.vector *= f.type == ForceType::torque ? force * length : force;
     f.linear *= force / length * time;
     f.quadratic *= force / (length * length) * time * time;
+    // Rows of forces and torques, columns of shifts and turns.
+    const auto rescale = [&](BearingMatrix& matrix, double times) {
+      const std::size_t size = matrix.size() == 36 ? 6 : 2;
+      for (std::size_t i = 0; i < matrix.size(); ++i)
+        matrix[i] *= force * times * (i / size < 3 ? 1 : length) / (i % size < 3 ? length : 1);
+    };
+    rescale(f.bearing_stiffness, 1);
+    rescale(f.bearing_damping, time);
   }
   return m;
 }
