@@ -82,7 +82,7 @@ class Box {
   }
 
   // The place at the shares p, or the last on the straight way there. Whether it is there.
-  std::pair<Place, bool> go(const Place& from, const VectorXd& p) {
+  std::pair<Place, bool> go(Place from, const VectorXd& p) { // a copy: add() may move all places
     const auto known = std::ranges::find_if(places_, [&](const Place& place) { return place.state.p == p; });
     if (known != places_.end()) return {*known, true};
     SteadyMap::State state = from.state;
