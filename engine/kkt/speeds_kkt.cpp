@@ -39,12 +39,14 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
     columns_.col(i) = product_;
   }
   const auto place = [&](int v) { return std::ranges::find(speeds_, v) - speeds_.begin(); };
-  for (const DriveTorqueEntry& e : drive_torque_entries(system, problem.parameters, z.q, at.kinematics, true))
-    if (const auto by = place(e.column); by < count)
-      columns_(e.row, by) += e.value * unit[e.row] * unit[e.column];
   by_value_ = drive_torque_entries(system, problem.parameters, z.q, at.kinematics, false);
   for (DriveTorqueEntry& e : by_value_)
     e.value *= unit[e.row] * unit[e.column];
+  for (const DriveTorqueEntry& e : drive_torque_entries(system, problem.parameters, z.q, at.kinematics, true))
+    if (const auto by = place(e.column); by < count)
+      columns_(e.row, by) += e.value * unit[e.row] * unit[e.column];
+    else // a rate that is zero in steady states: no part of the matrix, but the law depends on it
+      by_value_.push_back({e.row, e.column, 0});
   for (Eigen::Index i = 0; i < count; ++i) {
     resists_.row(i) = columns_.row(speeds_[static_cast<std::size_t>(i)]);
     columns_.row(speeds_[static_cast<std::size_t>(i)]).setZero();

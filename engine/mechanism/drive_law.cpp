@@ -56,10 +56,12 @@ class MeasureWriter {
 
  private:
   static constexpr std::size_t longest = 20'000; // of a law
+  static constexpr std::size_t deepest = 50;     // measures, each named by the one before
 
   std::string inside(const NamedMeasure& measure) {
     if (std::ranges::find(path_, measure.name) != path_.end())
       throw ExpressionError("expected no circle of measures; " + measure.name + " leads back to itself");
+    if (path_.size() > deepest) throw ExpressionError("expected a simpler expression");
     expect_of_coordinates(measure, Expression(measure.text, Expression::Results::allowed));
     path_.push_back(measure.name);
     std::string text = write(measure.text);

@@ -336,10 +336,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   SteadyState& steady = s.steady;
   s.on_friction.reset();
   const bool on_friction = options.friction && !options.nearest && has_friction(*s.mechanism);
-  const auto find = [&](double search) {
-    steady.find(problem, s.start, s.drawn, {options.nearest, warm, search, options.progress});
-  };
-  find(on_friction ? 0 : options.search);
+  steady.find(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress});
   if (on_friction && !steady.holds && !problem.cancelled())
     if (std::optional<FrictionState> state = find_friction_state(*s.mechanism, options)) {
       state->solution.run_time_s =
@@ -347,9 +344,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
       s.on_friction = std::move(state->analysis);
       return std::move(state->solution);
     }
-  // What was left out is the search.
-  if (on_friction && (!steady.holds || (steady.stability && steady.stability->stable == false)))
-    find(options.search);
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty() &&
       !stands_on_kink(problem, steady.found.z.q, steady.elsewhere())) {

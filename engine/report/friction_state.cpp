@@ -140,14 +140,22 @@ class Attempt {
       } else {
         c->driven = false;
         c->error = 0;
-        if (holding_)
+        if (holding_) {
           force.value = holding_->joints[i].force;
-        else if (drive != s.drive_torques.end())
+        } else {
+          if (drive == s.drive_torques.end() || drive->nonunique || (drive->varying && !drive->range))
+            return false;
           force.value = largest(*drive);
-        if (!holding_ && !(std::abs(force.value.value_or(0)) <= force.limit)) return false;
+          if (!(std::abs(*force.value) <= force.limit)) return false;
+        }
       }
       if (drive != s.drive_torques.end()) s.drive_torques.erase(drive);
     }
+    for (CoordinateSolution& c : s.coordinates) // what closes a loop with those that are held stands
+      if (c.dependent && c.speed && std::abs(*c.speed) <= c.speed_error) {
+        c.driven = false;
+        c.speed.reset();
+      }
     if (slipping) s.at_constant_speed.reset(); // which prescribes the rates of what slips, too
     order_measures(s);
     return true;

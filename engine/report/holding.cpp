@@ -224,7 +224,13 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const CoordinateInfo& c = free.system.coordinates[static_cast<std::size_t>(free.find(mechanism, f))];
     standing.push_back({f, coordinate_value<double>(free.system, free.parameters, free.q, c)});
   }
-  put_into_laws(locked, standing);
+  try {
+    put_into_laws(locked, standing);
+  } catch (const SceneError& error) { // not a number there
+    out.message = "What holding takes is not found with the joints that have friction standing still: " +
+                  std::string(error.what()) + ".";
+    return out;
+  }
   locked.sliders.clear();
   locked.measures.clear();
   for (const std::size_t i : which.independent) {
@@ -297,6 +303,12 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     CoordinateForce spring = free.numbers(c).force[0];
     spring.friction = 0;
     const double own = spring.gradient(free.q[free.link(c).q]);
+    if (torque->varying && !torque->range) {
+      out.message = "What holding takes is not found: what " + out.joints[i].joint +
+                    " takes changes with the phase of drives that are too many, or slide, to try all that "
+                    "they can take.";
+      return out;
+    }
     double value = torque->value + own;
     if (torque->range) {
       const double least = torque->range->least + own, most = torque->range->most + own;

@@ -141,9 +141,10 @@ std::string message(const Found& found, const Problem& problem) {
   case Remark::unstable_and_unbounded: return "The" + falls + "; no stable state was found.";
   case Remark::left_unstable_speeds:
     return "Newton-Raphson arrived at an unstable state; " +
-           std::string(found.fallback == Fallback::search
-                           ? "this is the nearest stable one that a search all over the ranges found."
-                           : "the motion from the start, or from beside that state, leads to this one.");
+           std::string(
+               found.fallback == Fallback::search
+                   ? "this is the nearest that a search all over the ranges found and that is not unstable."
+                   : "the motion from the start, or from beside that state, leads to this one.");
   case Remark::basin_uncertain: return "A stable state, but the start may lie in the basin of another.";
   case Remark::first_does_not_hold:
     return searched("The equilibrium found first holds at one phase of the drives only");

@@ -154,11 +154,12 @@ bool torques_keep_minimum(const Problem& problem, const Eigen::MatrixXd& jacobia
   for (int v = 0; v < system.nv; ++v)
     if (std::ranges::find(speeds, v) == speeds.end()) rest.push_back(v);
   if (constraints.rows() > 0 && !constraints(Eigen::all, speeds).isZero(0)) return false;
+  const Eigen::MatrixXd resists = jacobian(speeds, speeds);
+  if (!is_minimum((resists + resists.transpose()) / 2)) return false;
+  if (rest.empty()) return true;
   if (!(jacobian(speeds, rest).cwiseAbs().maxCoeff() <=
         tolerance::symmetric * jacobian(rest, rest).cwiseAbs().maxCoeff()))
     return false;
-  const Eigen::MatrixXd resists = jacobian(speeds, speeds);
-  if (!is_minimum((resists + resists.transpose()) / 2)) return false;
   Eigen::MatrixXd stiffness = jacobian(rest, rest);
   Eigen::VectorXd terms = noise;
   if (constraints.rows() > 0) {
@@ -432,7 +433,10 @@ void judge_kinks(const FactoredState& at, Stability& out) {
       out.reason != StabilityReason::minimum && out.reason != StabilityReason::neutral;
   const bool others =
       std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law != Kink::Law::spring; });
-  if (others && by_eigenvalues) { // of one side of it
+  // What torques keep at a minimum they keep by their slopes on one side.
+  const bool kept = out.reason == StabilityReason::minimum &&
+                    std::ranges::any_of(out.kinks, [](const Kink& k) { return k.of == Kink::Of::drive; });
+  if ((others && by_eigenvalues) || kept) { // of one side of it
     out.stable.reset();
     out.reason = StabilityReason::marginal;
     out.kinks_leave_open = true;

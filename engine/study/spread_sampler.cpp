@@ -96,6 +96,7 @@ SampleFate SpreadSampler::solve(const std::vector<double>& numbers, std::span<do
   SolveOptions solve;
   solve.details = false;
   solve.search = other_states;
+  solve.friction = false; // which holds samples as drawn
   solve.cancel = options_.cancel;
   const Solution solution = Analysis(there).solve(solve);
   if (solution.status == Status::infeasible) return SampleFate::no_mechanism;

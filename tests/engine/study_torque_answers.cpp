@@ -278,6 +278,51 @@ TEST_CASE("a chain that a torque drives stands as at that speed prescribed, howe
   CHECK(std::ranges::all_of(*whole.eigenvalues, [](std::complex<double> x) { return x.real() < 0; }));
 }
 
+TEST_CASE("what a minimum at given speeds proves needs torques that fall with these alone",
+          "[torque][kinks]") {
+  SECTION("shafts alone, more than eight") {
+    Mechanism m;
+    for (int i = 0; i < 10; ++i) {
+      const std::string n = std::to_string(i);
+      m.bodies.push_back(body("r" + n, 1, {1. * i, 0, 0}, {1, 1, 1}));
+      m.joints.push_back(with_torque(revolute("s" + n, "ground", "r" + n, {1. * i, 0, 0}, {0, 0, 1}), 1,
+                                     "1 N m - 0.3 N m s * rate(s" + n + ")"));
+    }
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == true);
+    CHECK_THAT(speed_of(s, "s9"), WithinRel(10. / 3, 1e-12));
+  }
+  SECTION("kinks of torque and load together: no side alone tells") {
+    const int count = GENERATE(4, 9, 20);
+    Mechanism m = sprung_chain(count);
+    m.joints[0] = with_torque(m.joints[0], 2.5, "-0.3 N m s * abs(rate(spin) - 3 rad/s)",
+                              "0.1 N m s * abs(rate(spin) - 3 rad/s)");
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    CAPTURE(count, s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed_of(s, "spin"), WithinRel(3., 1e-9));
+    CHECK(s.stable != true); // below 3 rad/s it is braked more and more
+  }
+  SECTION("a torque by the rate of what stands") {
+    const bool details = GENERATE(false, true);
+    const int count = GENERATE(9, 20);
+    Mechanism m = sprung_chain(count);
+    m.joints[0] = with_torque(m.joints[0], 2.5, "0.9 N m - 0.1 N m s * rate(spin) + 50 N m s * rate(hinge1)",
+                              "0.2 N m s * rate(spin)");
+    validate(m);
+    SolveOptions options;
+    options.details = details;
+    const Solution s = Analysis(m).solve(options);
+    CAPTURE(count, details, s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stability_reason != StabilityReason::minimum);
+    CHECK(s.stable == false); // by eigenvalues
+  }
+}
+
 namespace {
 
 // Two sprung arms with dampers on a shaft, a rotor on one of them, and a shaft beside that a slipping clutch
