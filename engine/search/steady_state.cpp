@@ -6,6 +6,7 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <complex>
 
 namespace flyball {
 namespace {
@@ -229,6 +230,9 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
     candidate.fallback = Fallback::slow_motion;
     if (take(std::move(candidate))) return;
   }
+  // What grows in swings alone is not left for another state but hunts about this one.
+  const auto swings = [](std::complex<double> s) { return !(s.real() > 0) || s.imag() != 0; };
+  if (stability && stability->eigenvalues && std::ranges::all_of(*stability->eigenvalues, swings)) return;
   if (!(options.seconds > 0) || problem.system.nv > largest_for_answer_search) return;
   constexpr double at_most = 0.3; // of what a search costs: an unstable state is an answer, too
   const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
