@@ -2,6 +2,7 @@
 
 #include "app/document/coordinate_image.hpp"
 #include "app/document/image.hpp"
+#include "engine/mechanism/bearing_axes.hpp"
 
 #include <algorithm>
 #include <cmath>
