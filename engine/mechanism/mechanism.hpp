@@ -194,7 +194,7 @@ struct Joint {
   double ratio = 1;                  // gear of its own kind: q_b = ratio q_a + offset
   std::array<double, 2> radii{1, 1}; // m; belt: of the wheels a and b; rack: the first, below zero on the
                                      // pinion's other side
-  bool crossed = false;              // belt: the wheels turn against each other
+  bool crossed = false;              // belt: the coordinates turn against each other
   double lead = 0;                   // m a turn; screw, left-handed below zero
   Formulas formulas{};
   bool operator==(const Joint&) const = default;
