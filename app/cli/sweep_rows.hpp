@@ -1,6 +1,7 @@
 // What a row of a sweep tells, in each form: the varied numbers, the status, coordinates, measures,
-// stability, residual and run time; of all equilibria also how many there are and which one it is. Of periodic
-// motions in the place of steady states also the period and, of each value, the mean, least and most.
+// stability, residual and run time; of all equilibria also how many there are and which one it is. Of
+// periodic motions in the place of steady states also the period and, of each value, the mean, least and
+// most.
 #pragma once
 
 #include "app/cli/row_output.hpp"

@@ -206,10 +206,12 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
       if (coordinate.drive && !coordinate.drive->torque)
         controls.push_back(named_control(key("drive") + ".speed", ParameterGroup::drives,
                                          angle ? "rad/s" : "m/s", coordinate.drive->speed, speed));
-      if (coordinate.drive && coordinate.drive->torque && !drive_law(mechanism, joint, static_cast<int>(i), "torque"))
+      if (coordinate.drive && coordinate.drive->torque &&
+          !drive_law(mechanism, joint, static_cast<int>(i), "torque"))
         controls.push_back(named_control(key("drive") + ".torque", ParameterGroup::drives,
                                          angle ? "N m" : "N", *coordinate.drive->torque, torque));
-      if (coordinate.drive && coordinate.drive->load && !drive_law(mechanism, joint, static_cast<int>(i), "load"))
+      if (coordinate.drive && coordinate.drive->load &&
+          !drive_law(mechanism, joint, static_cast<int>(i), "load"))
         controls.push_back(named_control(key("drive") + ".load", ParameterGroup::drives, angle ? "N m" : "N",
                                          *coordinate.drive->load, load));
       if (coordinate.damping != 0 || damping)

@@ -35,8 +35,8 @@ Mechanism uneven_chain(double even, double odd, double speed) {
 
 bool has_drive_law(const Mechanism& mechanism) {
   return std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
-    return std::ranges::any_of(
-        joint.formulas, [&](const Formula& formula) { return is_drive_law(mechanism, formula); });
+    return std::ranges::any_of(joint.formulas,
+                               [&](const Formula& formula) { return is_drive_law(mechanism, formula); });
   });
 }
 
