@@ -61,6 +61,15 @@ std::array<double, 2> extremes_of(const SweepPoint& p, const ValueColumn& value)
   return {steady, steady};
 }
 
+// Calls add(number), with `periodic` also for the least and most.
+template <class Add>
+void add_value(const SweepColumns& columns, const SweepPoint& p, const ValueColumn& value, const Add& add) {
+  add(value_of(p, value));
+  if (columns.periodic)
+    for (const double extreme : extremes_of(p, value))
+      add(extreme);
+}
+
 std::string_view status_of(const SweepPoint& p) {
   return motion_of(p) ? "periodic" : word(p.solution.status);
 }
@@ -149,12 +158,8 @@ std::string csv_rows(const SweepColumns& columns, std::span<const SweepPoint> po
       append_number(out, number);
     };
     if (columns.periodic) add(period_of(p));
-    for (const ValueColumn& value : columns.values) {
-      add(value_of(p, value));
-      if (columns.periodic)
-        for (const double extreme : extremes_of(p, value))
-          add(extreme);
-    }
+    for (const ValueColumn& value : columns.values)
+      add_value(columns, p, value, add);
     const std::optional<bool> stable = is_stable(p);
     out += stable ? (*stable ? ",true" : ",false") : ",";
     add(residual_of(p));
@@ -219,19 +224,14 @@ std::string table_rows(const SweepColumns& columns, std::span<const SweepPoint> 
     if (columns.all)
       out += fmt::format("\t{}\t{}", p.equilibria, p.equilibria > 0 ? std::to_string(p.equilibrium) : "-");
     if (columns.periodic) out += motion_of(p) ? fmt::format("\t{:.8g}", period_of(p)) : "\t-";
-    for (const ValueColumn& value : columns.values) {
-      const auto add = [&](double number) {
+    for (const ValueColumn& value : columns.values)
+      add_value(columns, p, value, [&](double number) {
         if (std::isfinite(number))
           out += value.measure ? fmt::format("\t{:.10g}", number)
                                : fmt::format("\t{:.10f}", std::abs(number) < 5e-11 ? 0 : number); // no sign
         else
           out += value.measure ? "\t-" : "\t";
-      };
-      add(value_of(p, value));
-      if (columns.periodic)
-        for (const double extreme : extremes_of(p, value))
-          add(extreme);
-    }
+      });
     const std::optional<bool> stable = is_stable(p);
     out += stable ? (*stable ? "\tyes" : "\tno") : "\t-";
     out += std::isfinite(residual_of(p)) ? fmt::format("\t{:.1e}", residual_of(p)) : "\t-";

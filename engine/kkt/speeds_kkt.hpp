@@ -39,7 +39,7 @@ class SpeedsKkt final : public KktSystem {
   TreeKkt tree_; // with the shafts held
   MotionProducts products_;
   std::vector<int> speeds_;                // their places in q_R
-  std::vector<DriveTorqueEntry> by_value_; // of the laws, with coordinates
+  std::vector<DriveTorqueEntry> by_value_; // of the laws, with coordinates; zero: with their rates
   Eigen::MatrixXd columns_;                // b by speed, (nv, speeds), without the speeds' own rows
   Eigen::MatrixXd resists_;                // d, (speeds, speeds)
   Eigen::VectorXd inertia_;                // of each shaft
