@@ -59,6 +59,7 @@ class Paste {
       append(PartKind::body, to_.bodies, body);
     }
     name_joints();
+    name_forces();
     for (std::size_t i = 0; i < from_.joints.size(); ++i) {
       Joint& joint = from_.joints[i];
       if (joint_names_[i].empty()) continue;
@@ -68,14 +69,13 @@ class Paste {
         for (std::string& end : joint.joints)
           end = end_at(end, joints_[joint_of_end(end)]);
       for (Formula& formula : joint.formulas)
-        if (is_drive_law(from_, formula))
-          formula.text = parts_renamed_in(with_measures(from_, formula.text), ResultPart::joint,
-                                          [&](const std::string& name) { return joints_[name]; });
+        if (is_drive_law(from_, formula)) translate_law(formula.text);
       append(PartKind::joint, to_.joints, joint);
     }
-    for (Force& force : from_.forces) {
-      if (!are_there(bodies_of(force))) continue;
-      force.name = forces_.add(force.name);
+    for (std::size_t i = 0; i < from_.forces.size(); ++i) {
+      Force& force = from_.forces[i];
+      if (force_names_[i].empty()) continue;
+      force.name = force_names_[i];
       translate(bodies_of(force));
       append(PartKind::force, to_.forces, force);
     }
@@ -118,6 +118,19 @@ class Paste {
                                     [&](const std::string& end) { return joints_.has(joint_of_end(end)); }));
   }
 
+  void name_forces() {
+    for (const Force& force : from_.forces)
+      force_names_.push_back(are_there(bodies_of(force)) ? forces_.add(force.name) : "");
+  }
+
+  // What it asks of parts of the text it asks of what they are called here.
+  void translate_law(std::string& law) const {
+    for (const auto& [kind, names] : {std::pair{ResultPart::joint, &joints_},
+                                      {ResultPart::body, &bodies_},
+                                      {ResultPart::force, &forces_}})
+      law = parts_renamed_in(law, kind, [&names = *names](const std::string& name) { return names[name]; });
+  }
+
   template <class Kind>
   void append(PartKind kind, std::vector<Kind>& parts, Kind& part) {
     added_.add({kind, part.name});
@@ -127,9 +140,18 @@ class Paste {
   Mechanism& to_;
   Mechanism from_;
   PastedNames bodies_, joints_, forces_;
-  std::vector<std::string> joint_names_; // empty for those left out
+  std::vector<std::string> joint_names_, force_names_; // empty for those left out
   Selection added_;
 };
+
+// A law that stands without the scene's measures; as it is where it cannot be read.
+std::string without_measures(const Mechanism& mechanism, const std::string& law) {
+  try {
+    return with_measures(mechanism, law);
+  } catch (const ExpressionError&) {
+    return law;
+  }
+}
 
 } // namespace
 
@@ -160,7 +182,11 @@ std::string copy_text(const Mechanism& mechanism, const Selection& selection) {
         }))
       joints.insert(gear.name);
   for (const Joint& joint : mechanism.joints)
-    if (joints.contains(joint.name)) parts.joints.push_back(joint);
+    if (joints.contains(joint.name)) {
+      parts.joints.push_back(joint);
+      for (Formula& formula : parts.joints.back().formulas)
+        if (is_drive_law(mechanism, formula)) formula.text = without_measures(mechanism, formula.text);
+    }
   for (const Force& force : mechanism.forces)
     if (selection.has({PartKind::force, force.name}) || is_held(bodies_of(force)))
       parts.forces.push_back(force);

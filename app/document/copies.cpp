@@ -2,6 +2,7 @@
 
 #include "app/document/coordinate_image.hpp"
 #include "app/document/image.hpp"
+#include "app/document/law_image.hpp"
 #include "app/document/names.hpp"
 #include "app/document/references.hpp"
 #include "engine/mechanism/drive_law.hpp"
@@ -38,12 +39,19 @@ class Copier {
       mechanism_.bodies.push_back(image_of(*body, isometry));
       mechanism_.bodies.back().name = bodies[body->name];
     }
+    const auto copied = [](const Names& names) {
+      return [&names](const std::string& name) {
+        const auto copy = names.find(name);
+        return copy == names.end() ? name : copy->second;
+      };
+    };
+    const CopiedNames copied_names{copied(bodies), copied(joints), copied(forces)};
     for (const Joint* joint : joints_) {
       mechanism_.joints.push_back(joint->type == JointType::gear ? gear_image(*joint, isometry, joints)
                                                                  : image_of(*joint, isometry));
       mechanism_.joints.back().name = joints[joint->name];
       follow(bodies_of(mechanism_.joints.back()), bodies);
-      follow_in_laws(mechanism_.joints.back(), isometry, joints);
+      follow_in_laws(mechanism_.joints.back(), isometry, copied_names);
     }
     for (const Force* force : forces_) {
       const int b = body_index(before_, force->body);
@@ -93,19 +101,15 @@ class Copier {
       if (const auto copy = copies.find(name); copy != copies.end()) name = copy->second;
   }
 
-  // The torque of a copied drive is one of the copies' coordinates, and along that of the copy.
-  void follow_in_laws(Joint& image, const Isometry& isometry, const Names& joints) const {
+  // The torque of a copied drive is one of the copies' state, and along the coordinate of the copy.
+  void follow_in_laws(Joint& image, const Isometry& isometry, const CopiedNames& copies) {
     const std::vector<CoordinateImage> images = images_of_coordinates(image.type, isometry);
     for (std::size_t i = 0; i < image.coordinates.size(); ++i)
       for (const char* which : {"torque", "load"}) {
         const Formula* law = drive_law(before_, image, static_cast<int>(i), which);
         if (!law) continue;
         Formula& followed = image.formulas[static_cast<std::size_t>(law - image.formulas.data())];
-        followed.text = parts_renamed_in(with_measures(before_, law->text), ResultPart::joint,
-                                         [&](const std::string& name) {
-                                           const auto copy = joints.find(name);
-                                           return copy == joints.end() ? name : copy->second;
-                                         });
+        followed.text = law_image(before_, law->text, isometry, copies, mechanism_);
         if (images[i].sign < 0) followed.text = "-(" + followed.text + ")";
       }
   }

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/error.hpp"
 #include "engine/solve/drive_cuts.hpp"
+#include "engine/system/law_phase.hpp"
 #include "engine/system/motion.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -49,6 +50,10 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   const System steady = compile_for_drives(mechanism);
   m.system = compile_for_motion(mechanism, steady);
   m.finds_speeds = !steady.torques.empty();
+  if (asks_for_points(steady)) { // only what turns steadily tells that they do not
+    Parameters as_steady;
+    bind(steady, mechanism, as_steady);
+  }
   m.released = released(m.system);
   bind(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);

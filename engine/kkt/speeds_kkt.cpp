@@ -25,6 +25,7 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
   products_.linearize_forces(problem, z, at.kinematics, at.residual);
   size_ = system.nv;
   rows_ = 0;
+  laws_alone_ = problem.parameters.phase_free;
   mass_ = tree_.mass();
   speeds_.clear();
   for (const DriveTorqueElement& torque : system.torques)
@@ -54,11 +55,11 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
 }
 
 void SpeedsKkt::rows_times(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
-  products_.stiffness(x, product_);
+  if (!laws_alone_) products_.stiffness(x, product_);
   out.resize(static_cast<Eigen::Index>(speeds_.size()));
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const int v = speeds_[static_cast<std::size_t>(i)];
-    out[i] = product_[v];
+    out[i] = laws_alone_ ? 0 : product_[v];
     for (const DriveTorqueEntry& e : by_value_)
       if (e.row == v) out[i] += e.value * x[e.column];
   }

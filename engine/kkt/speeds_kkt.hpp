@@ -5,7 +5,9 @@
 //     [ r^T  d ] [s] = [h]        r^T x: by one product K x, of the row that the shaft's angle would have
 //
 // s = (d - r^T K^-1 b)^-1 (h - r^T K^-1 g), x = K^-1 g - K^-1 b s. Each speed costs one more solution when it
-// is factored, and each solution one product: in proportion to the bodies, as at given speeds.
+// is factored, and each solution one product: in proportion to the bodies, as at given speeds. Of one shaft
+// along gravity that turns alone no product: what turning it takes is nothing wherever its parts stand, and
+// of r the law's part is left.
 #pragma once
 
 #include "engine/kkt/motion_products.hpp"
@@ -36,7 +38,8 @@ class SpeedsKkt final : public KktSystem {
   void rows_times(const Eigen::VectorXd& x, Eigen::VectorXd& out);
   double with_speeds(const Eigen::VectorXd& x, double square, Eigen::VectorXd& product) const;
 
-  TreeKkt tree_; // with the shafts held
+  bool laws_alone_ = false; // make up r
+  TreeKkt tree_;            // with the shafts held
   MotionProducts products_;
   std::vector<int> speeds_;                // their places in q_R
   std::vector<DriveTorqueEntry> by_value_; // of the laws, with coordinates; zero: with their rates

@@ -5,8 +5,8 @@
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/given_names.hpp"
-#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unit.hpp"
 #include "engine/mechanism/unit_hint.hpp"
 
 #include <algorithm>
@@ -16,9 +16,8 @@ namespace {
 
 // Throws ExpressionError.
 ValueDimension dimension_of(const Mechanism& mechanism, const ResultCall& call) {
-  const CoordinateReference at = find_coordinate(mechanism, call);
-  const bool angle = is_angle(mechanism.joints[static_cast<std::size_t>(at.joint)].type, at.coordinate);
-  return {{.length = angle ? 0. : 1., .time = call.result == Result::rate ? -1. : 0.}, false};
+  const std::string_view unit = result_unit(find_law_quantity(mechanism, call));
+  return {parse_unit(unit).value_or(Unit{}).dimension.without_angle(), false};
 }
 
 // The measure that a law means by a name; null where a parameter is called so, or no measure.
@@ -27,13 +26,22 @@ const NamedMeasure* measure_called(const Mechanism& mechanism, std::string_view 
   return i < 0 ? nullptr : &mechanism.measures[static_cast<std::size_t>(i)];
 }
 
+// Whether it follows from where parts are and how they move, without a kink but at zero.
+bool is_of_places(Result result) {
+  using enum Result;
+  return result <= vz || (result >= speed && result <= length && result != acceleration);
+}
+
+constexpr std::string_view refusal =
+    ": a torque or load is one of coordinates, rates, places and velocities of points, distances, angles, "
+    "lengths of springs and parameters; forces and accelerations follow from the balance that it is part of";
+
 // What a measure asks for that a law may not.
-void expect_of_coordinates(const NamedMeasure& measure, const Expression& expression) {
+void expect_of_places(const NamedMeasure& measure, const Expression& expression) {
   for (const ResultCall& call : expression.results())
-    if (call.result != Result::coordinate && call.result != Result::rate)
-      throw ExpressionError("expected a measure of coordinate(), rate() and parameters alone; " +
-                            measure.name + " asks for " + std::string(result_function(call.result).name) +
-                            "(), and how that changes with the state is not among what the balance knows");
+    if (!is_of_places(call.result))
+      throw ExpressionError(measure.name + " asks for " + std::string(result_function(call.result).name) +
+                            "()" + std::string(refusal));
 }
 
 class MeasureWriter {
@@ -62,7 +70,7 @@ class MeasureWriter {
     if (std::ranges::find(path_, measure.name) != path_.end())
       throw ExpressionError("expected no circle of measures; " + measure.name + " leads back to itself");
     if (path_.size() > deepest) throw ExpressionError("expected a simpler expression");
-    expect_of_coordinates(measure, Expression(measure.text, Expression::Results::allowed));
+    expect_of_places(measure, Expression(measure.text, Expression::Results::allowed));
     path_.push_back(measure.name);
     std::string text = write(measure.text);
     path_.pop_back();
@@ -112,12 +120,21 @@ Expression read_drive_law(const Mechanism& mechanism, std::string_view text) {
   return expression;
 }
 
+bool asks_for_coordinate(const ResultCall& call) {
+  return call.result == Result::coordinate || call.result == Result::rate;
+}
+
+ResultQuantity find_law_quantity(const Mechanism& mechanism, const ResultCall& call) {
+  if (!is_of_places(call.result))
+    throw ExpressionError("column " + std::to_string(call.begin + 1) + ": found " +
+                          std::string(result_function(call.result).name) + "()" + std::string(refusal));
+  if (!asks_for_coordinate(call)) return find_quantity(mechanism, call);
+  const CoordinateReference at = find_coordinate(mechanism, call);
+  const bool angle = is_angle(mechanism.joints[static_cast<std::size_t>(at.joint)].type, at.coordinate);
+  return {call.result, 1, {ResultQuantity::Of{at.joint, at.coordinate, -1}}, angle};
+}
+
 CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall& call) {
-  if (call.result != Result::coordinate && call.result != Result::rate)
-    throw ExpressionError("column " + std::to_string(call.begin + 1) +
-                          ": expected coordinate() or rate(), found " +
-                          std::string(result_function(call.result).name) +
-                          "(): a torque or load is one of coordinates, rates and parameters");
   const ResultCall::Argument& of = call.arguments.front();
   const CoordinateReference at =
       find_coordinate(mechanism, of.index < 0 ? of.name : of.name + "." + std::to_string(of.index));

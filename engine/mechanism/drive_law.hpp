@@ -1,12 +1,12 @@
 // Torques and loads of drives as expressions of the state: "7500 N * (0.15 m - coordinate(slide))". Of what
-// measures may ask they know coordinate(joint), in rad or m as the joint labels it, and rate(joint); and the
-// measures that are made of these and of parameters alone, by name: their derivatives enter the balance. They
-// have no value by themselves, but one at every state.
+// measures may ask they know what follows from where parts are and how they move alone: coordinate(joint), in
+// rad or m as the joint labels it, rate(joint), places and velocities of points, distances, angles between
+// three points, and lengths of springs; and the measures that are made of these and of parameters, by name.
+// Their derivatives enter the balance. They have no value by themselves, but one at every state. Nothing that
+// they ask for may change as the drives turn (law_phase.hpp).
 #pragma once
 
-#include "engine/mechanism/expression.hpp"
-#include "engine/mechanism/mechanism.hpp"
-#include "engine/mechanism/number_rates.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 
 #include <optional>
 #include <string>
@@ -28,8 +28,10 @@ std::string with_measures(const Mechanism& mechanism, std::string_view text);
 // A law as it is read, its measures in their places. Throws ExpressionError.
 Expression read_drive_law(const Mechanism& mechanism, std::string_view text);
 
-// The coordinate that a law asks for. Throws ExpressionError where there is none, and where it asks for
-// something else.
+// What a law asks for. Throws ExpressionError where there is no such part, and where no law may ask for it.
+ResultQuantity find_law_quantity(const Mechanism& mechanism, const ResultCall& call);
+// Whether it is a coordinate or its rate, and which. Throws ExpressionError where there is none.
+bool asks_for_coordinate(const ResultCall& call);
 CoordinateReference find_coordinate(const Mechanism& mechanism, const ResultCall& call);
 
 // Throws SceneError at `where`, naming what is wrong: a name that is unknown or a dimension that does not

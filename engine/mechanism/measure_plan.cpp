@@ -361,6 +361,30 @@ void find_measure_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
   MeasureCompiler(mechanism, mistakes).run();
 }
 
+ResultQuantity find_quantity(const Mechanism& mechanism, const ResultCall& call) {
+  return Finder(mechanism).find(call);
+}
+
+std::string quantity_text(const Mechanism& m, const ResultQuantity& quantity) {
+  const ResultFunction& function = result_function(quantity.result);
+  const ArgumentKind kind = argument_kind(function, place(quantity.count));
+  const auto name = [&](const ResultQuantity::Of& of) {
+    switch (kind) {
+    case ArgumentKind::coordinate: return coordinate_name(m.joints[place(of.part)], of.coordinate);
+    case ArgumentKind::joint: return m.joints[place(of.part)].name;
+    case ArgumentKind::force: return m.forces[place(of.part)].name;
+    case ArgumentKind::body:
+    case ArgumentKind::point: break;
+    }
+    const std::string body = of.part < 0 ? std::string(ground_name) : m.bodies[place(of.part)].name;
+    return of.point < 0 ? body : body + "@" + m.points[place(of.point)].name;
+  };
+  std::string out(function.name);
+  for (int i = 0; i < quantity.count; ++i)
+    out += (i == 0 ? "(" : ", ") + name(quantity.of[place(i)]);
+  return out + (quantity.count == 0 ? "()" : ")");
+}
+
 std::string_view result_unit(const Mechanism& mechanism, std::string_view expression) {
   const Expression read(expression, Expression::Results::allowed);
   if (read.results().empty())

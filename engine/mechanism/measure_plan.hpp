@@ -32,6 +32,11 @@ struct ResultQuantity {
 // SI: "N m" of the torque of an angle's drive.
 std::string_view result_unit(const ResultQuantity& quantity);
 
+// Throws ExpressionError where there is no such part, or where it has not what is asked for.
+ResultQuantity find_quantity(const Mechanism& mechanism, const ResultCall& call);
+// As an expression asks for it: "distance(ball, ground@A)".
+std::string quantity_text(const Mechanism& mechanism, const ResultQuantity& quantity);
+
 class MeasurePlan {
  public:
   MeasurePlan() = default;

@@ -142,6 +142,7 @@ std::string without_standing(const Mechanism& mechanism, std::string_view law,
   std::string text = with_measures(mechanism, law);
   const Expression read(text, Expression::Results::allowed);
   for (auto call = read.results().rbegin(); call != read.results().rend(); ++call) {
+    if (!asks_for_coordinate(*call)) continue; // of places: the same where the coordinate is held
     const CoordinateReference asked = find_coordinate(mechanism, *call);
     const auto found = std::ranges::find_if(standing, [&](const Standing& x) {
       return x.at.joint == asked.joint && x.at.coordinate == asked.coordinate;

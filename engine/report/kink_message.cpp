@@ -44,26 +44,26 @@ struct Words {
 };
 
 // Of a drive's law: the slope is that with one of its inputs.
-Words words_of_drive(const System& system, const Kink& kink, bool angle) {
+Words words_of_drive(const System& system, const Mechanism& mechanism, const Kink& kink, bool angle) {
   const DriveTorqueElement& e = system.torques[kink.entry];
   const bool torque = kink.law == Kink::Law::torque;
   const DriveLaw::Input& input = (torque ? e.torque : e.load).inputs[kink.input];
-  const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-  const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-  const std::string of = coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+  const std::string_view unit = result_unit(input.quantity);
+  const bool rate = unit.ends_with("/s");
   return {torque ? angle ? "torque" : "force" : "load",
-          "slope with " + std::string(input.rate ? "rate(" : "coordinate(") + of + ")",
-          std::string(fields::force_unit(angle)) + (input.rate ? " s/" : "/") + (c.angle ? "rad" : "m")};
+          "slope with " + quantity_text(mechanism, input.quantity),
+          std::string(fields::force_unit(angle)) + (rate ? " s/" : "/") +
+              std::string(unit.substr(0, unit.find('/')))};
 }
 
-Words words_of(const System& system, const Kink& kink, bool angle) {
+Words words_of(const System& system, const Mechanism& mechanism, const Kink& kink, bool angle) {
   switch (kink.law) {
   case Kink::Law::spring: return {"spring", "stiffness", std::string(fields::stiffness_unit(angle))};
   case Kink::Law::damper: return {"damper", "damping", std::string(fields::damping_unit(angle))};
   case Kink::Law::lift: return {"lift", "slope", "1/rad"};
   case Kink::Law::drag: return {"drag", "slope", "1/rad"};
   case Kink::Law::torque:
-  case Kink::Law::load: return words_of_drive(system, kink, angle);
+  case Kink::Law::load: return words_of_drive(system, mechanism, kink, angle);
   }
   return {};
 }
@@ -74,7 +74,7 @@ std::string kink_message(const System& system, const Mechanism& mechanism, const
   std::string out;
   for (const Kink& kink : stability.kinks) {
     const Owner owner = owner_of(system, mechanism, kink);
-    const Words words = words_of(system, kink, owner.angle);
+    const Words words = words_of(system, mechanism, kink, owner.angle);
     out += std::string(out.empty() ? "" : " ") + "The " + words.law + " of " + owner.name +
            " stands on a kink of its law, where its " + words.slope + " jumps from " +
            rounded_text(kink.slopes[0], 4) + " to " + rounded_text(kink.slopes[1], 4) + " " + words.unit +

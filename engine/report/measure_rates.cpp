@@ -5,6 +5,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/system/joint_coordinates.hpp"
+#include "engine/system/point_quantity.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
@@ -18,12 +19,6 @@ constexpr int largest_for_differences = 64; // coordinates: the balance is evalu
 
 Vec3 place_of(const MeasuredState& s, const TrackedPoint& point) {
   return s.kinematics.point(point.link, point.at);
-}
-
-// v / |v|; of no length none, so that what has no rate has the rate zero.
-Vec3 direction(const Vec3& v) {
-  const double length = v.norm();
-  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
 }
 
 // Adds `factor` times a coordinate's rates.
@@ -65,30 +60,21 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
   case Result::coordinate: return add_coordinate_rates(s, place.reported, 1, out);
   case Result::x:
   case Result::y:
-  case Result::z: return along(point, axis(Result::x), &PointRates::position);
+  case Result::z:
   case Result::vx:
   case Result::vy:
-  case Result::vz: return along(point, axis(Result::vx), &PointRates::velocity);
+  case Result::vz:
+  case Result::speed:
+  case Result::distance:
+  case Result::angle:
+    return add_coordinate_rates(s.system, point_rates_of(quantity.result, numbers.points, s.kinematics),
+                                numbers.points, s.kinematics, [&](int v, double rate) { out[v] += rate; });
   case Result::ax:
   case Result::ay:
   case Result::az: return along(point, axis(Result::ax), &PointRates::acceleration);
-  case Result::speed:
-    return along(point, direction(point_motion(s.parameters, s.kinematics, point).velocity),
-                 &PointRates::velocity);
   case Result::acceleration:
     return along(point, direction(point_motion(s.parameters, s.kinematics, point).acceleration),
                  &PointRates::acceleration);
-  case Result::distance: return apart(point, numbers.points[1], 1);
-  case Result::angle: {
-    const Vec3 corner = place_of(s, numbers.points[1]);
-    const Vec3 u = place_of(s, point) - corner, w = place_of(s, numbers.points[2]) - corner;
-    const Vec3 a = u.normalized(), b = w.normalized();
-    const double sine = a.cross(b).norm(), cosine = a.dot(b); // zero: no rate, which is not a number
-    const Vec3 by_u = -(b - cosine * a) / (u.norm() * sine), by_w = -(a - cosine * b) / (w.norm() * sine);
-    along(point, by_u, &PointRates::position);
-    along(numbers.points[2], by_w, &PointRates::position);
-    return along(numbers.points[1], -by_u - by_w, &PointRates::position);
-  }
   case Result::length:
   case Result::tension: {
     const PointSpringElement& element = s.system.springs[static_cast<std::size_t>(place.elastic.spring)];

@@ -1,6 +1,7 @@
 #include "engine/report/measured_quantity.hpp"
 
 #include "engine/system/bearing.hpp"
+#include "engine/system/point_quantity.hpp"
 #include "engine/system/residual.hpp"
 
 #include <limits>
@@ -10,17 +11,6 @@ namespace {
 
 ArgumentKind kind_of(const ResultQuantity& quantity) {
   return argument_kind(result_function(quantity.result), static_cast<std::size_t>(quantity.count));
-}
-
-// A point of a body, or of the ground, from the link's origin.
-template <class N>
-BasicTrackedPoint<N> tracked(const System& system, const BasicParameters<N>& p, const Mechanism& m,
-                             const ResultQuantity::Of& of, const NumberReader<N>& read) {
-  const Vec3T<N> drawn = read(of.point >= 0 ? m.points[static_cast<std::size_t>(of.point)].at
-                                            : m.bodies[static_cast<std::size_t>(of.part)].position);
-  if (of.part < 0) return {-1, drawn - p.origin};
-  const int link = system.body_link[static_cast<std::size_t>(of.part)];
-  return {link, drawn - p.origin - p.links[static_cast<std::size_t>(link)].origin};
 }
 
 // Of a coordinate's spring.
@@ -35,13 +25,6 @@ BoundLaw law_of(const System& system, const BasicParameters<N>& p, const ResultQ
           .laws->spring;
   }
   return {};
-}
-
-template <class N>
-N angle_between(const Vec3T<N>& a, const Vec3T<N>& b) {
-  using std::atan2;
-  if (a.squaredNorm() == N(0) || b.squaredNorm() == N(0)) return std::numeric_limits<double>::quiet_NaN();
-  return atan2(N(a.cross(b).norm()), N(a.dot(b)));
 }
 
 template <class N>
@@ -74,7 +57,7 @@ void take_numbers(const ResultQuantity& quantity, const System& system, const Ba
   const ArgumentKind kind = kind_of(quantity);
   if (kind == ArgumentKind::point)
     for (std::size_t n = 0; n < static_cast<std::size_t>(quantity.count); ++n)
-      out.points[n] = tracked(system, p, m, quantity.of[n], read);
+      out.points[n] = tracked_point(system, p, m, quantity.of[n], read);
   if (kind == ArgumentKind::coordinate) {
     const Coordinate& c = m.joints[static_cast<std::size_t>(quantity.of[0].part)]
                               .coordinates[static_cast<std::size_t>(quantity.of[0].coordinate)];
@@ -105,7 +88,6 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
                  const ElasticPlace& elastic, const System& system, const BasicParameters<N>& p,
                  const Kinematics<N>& k) {
   const auto motion = [&] { return motion_of(p, k, numbers.points[0]); };
-  const auto place = [&](std::size_t i) { return k.point(numbers.points[i].link, numbers.points[i].at); };
   const auto state = [&] {
     const auto s = static_cast<std::size_t>(elastic.spring);
     return spring_state<N>(system.springs[s], p.springs[s], k);
@@ -122,17 +104,17 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
   switch (quantity.result) {
   case Result::x:
   case Result::y:
-  case Result::z: return component<N>(motion().position, quantity.result, Result::x);
+  case Result::z:
   case Result::vx:
   case Result::vy:
-  case Result::vz: return component<N>(motion().velocity, quantity.result, Result::vx);
+  case Result::vz:
+  case Result::speed:
+  case Result::distance:
+  case Result::angle: return point_quantity<N>(quantity.result, numbers.points, p, k);
   case Result::ax:
   case Result::ay:
   case Result::az: return component<N>(motion().acceleration, quantity.result, Result::ax);
-  case Result::speed: return motion().velocity.norm();
   case Result::acceleration: return motion().acceleration.norm();
-  case Result::distance: return (place(1) - place(0)).norm();
-  case Result::angle: return angle_between<N>(place(0) - place(1), place(2) - place(1));
   case Result::length: return state().length;
   case Result::tension: return state().tension;
   case Result::force_x:

@@ -86,25 +86,31 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
   const DriveLawParameters& numbers = torque ? p.torques[drive].torque : p.torques[drive].load;
   const std::size_t first = out.size();
   for (std::size_t i = 0; i < law.inputs.size(); ++i) {
-    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
-    const Link& link = system.links[static_cast<std::size_t>(c.link)];
-    if (link.v < 0) continue;
+    const DriveLaw::Input& input = law.inputs[i];
+    const double at = law_input(system, p, law, numbers, i, q, k);
+    if (stands_on_own_kink(system, p, law, numbers, i, q, k)) {
+      const double slope = drive_law_slopes(system, p, law, numbers, q, k, i, 0)[i];
+      if (slope != 0) out.push_back({Kink::Of::drive, drive, which, at, {-slope, slope}, i, {}});
+      continue;
+    }
     // A 64th of that of a number: some laws press by stiffnesses that leave no more between both sides.
-    const double size = (link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v]) / 64;
+    double size = (input.quantity.result == Result::angle ? 1 : p.length) / 64;
+    if (input.coordinate >= 0) {
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+      const Link& link = system.links[static_cast<std::size_t>(c.link)];
+      if (link.v < 0) continue;
+      size = (link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v]) / 64;
+    }
     const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
     const auto slope = [&](double by) { // of all that ask for the same
       const std::vector<double> all = slopes(by);
       double sum = 0;
       for (std::size_t j = 0; j < all.size(); ++j)
-        if (law.inputs[j].rate == law.inputs[i].rate && law.inputs[j].coordinate == law.inputs[i].coordinate)
-          sum += all[j];
+        if (law.inputs[j] == input) sum += all[j];
       return sum;
     };
     const auto jump = jump_at(slope, 0, size);
     if (!jump) continue;
-    const double at = !law.inputs[i].rate ? coordinate_value(system, p, q, c)
-                      : finds_speed(link) ? q[link.q]
-                                          : 0;
     Kink kink{Kink::Of::drive, drive, which, at, *jump, i, {slopes(-near * size), slopes(near * size)}};
     if (std::none_of(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
                      [&](const Kink& other) { return same_sides(kink, other); }))

@@ -25,7 +25,8 @@ struct Kink {
   double at = 0;                  // the deflection, rate or incidence
   std::array<double, 2> slopes{}; // before and after
   // Of a drive: which of the law's inputs crosses the kink, in DriveLaw::inputs, and the derivatives with all
-  // of them before and after. `at` is that input.
+  // of them before and after. `at` is that input. No derivatives where the input itself has none there, as a
+  // distance of zero: it grows whichever way it is left.
   std::size_t input = 0;
   std::array<std::vector<double>, 2> gradients{};
 };

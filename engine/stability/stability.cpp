@@ -145,10 +145,11 @@ bool torques_keep_minimum(const Problem& problem, const Eigen::MatrixXd& jacobia
   for (const DriveTorqueElement& torque : system.torques) {
     if (torque.keeps_momentum || torque.implied) return false;
     for (const DriveLaw* law : {&torque.torque, &torque.load})
-      for (const DriveLaw::Input& input : law->inputs)
-        if (const auto& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-            !input.rate || system.links[static_cast<std::size_t>(c.link)].drive < 0)
-          return false;
+      for (const DriveLaw::Input& input : law->inputs) {
+        if (!input.rate()) return false;
+        const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+        if (system.links[static_cast<std::size_t>(c.link)].drive < 0) return false;
+      }
     speeds.push_back(system.links[static_cast<std::size_t>(torque.link)].v);
   }
   for (int v = 0; v < system.nv; ++v)
@@ -412,6 +413,7 @@ std::optional<bool> stable_on_both_sides(const FactoredState& at, const Kink& of
 
 bool judge_kink_of_drive(const FactoredState& at, Stability& out) {
   if (out.kinks.size() != 1 || out.kinks[0].of != Kink::Of::drive) return false;
+  if (out.kinks[0].gradients[0].empty()) return false;
   const std::optional<bool> stable = stable_on_both_sides(at, out.kinks[0]);
   if (!stable) return false;
   out.stable = stable;

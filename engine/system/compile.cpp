@@ -143,7 +143,8 @@ class Compiler {
       for (const char* which : {"torque", "load"})
         read_drive_law_of(joint(j), i, which, [&](const Expression& law) {
           for (const ResultCall& call : law.results())
-            needs_coordinate_[static_cast<std::size_t>(find_coordinate(m_, call).joint)] = true;
+            if (const ResultQuantity asked = find_law_quantity(m_, call); asks_for_coordinate(call))
+              needs_coordinate_[static_cast<std::size_t>(asked.of[0].part)] = true;
         });
   }
 
@@ -564,11 +565,22 @@ class Compiler {
   }
 
   DriveLaw::Input input_of(const ResultCall& call) const {
-    const CoordinateReference at = find_coordinate(m_, call);
-    const bool rate = call.result == Result::rate;
-    const std::string name = coordinate_name(joint(at.joint), at.coordinate);
+    DriveLaw::Input out{find_law_quantity(m_, call)};
+    if (asks_for_coordinate(call)) out.coordinate = tree_coordinate(out.quantity);
+    if (call.result == Result::length) {
+      const auto spring = std::ranges::find(s_.springs, out.quantity.of[0].part, &PointSpringElement::force);
+      out.spring = static_cast<int>(spring - s_.springs.begin());
+    }
+    return out;
+  }
+
+  // Where a coordinate stands that a law asks for.
+  int tree_coordinate(const ResultQuantity& asked) const {
+    const ResultQuantity::Of& at = asked.of[0];
+    const bool rate = asked.result == Result::rate;
+    const std::string name = coordinate_name(joint(at.part), at.coordinate);
     const auto found = std::ranges::find_if(s_.coordinates, [&](const CoordinateInfo& c) {
-      return s_.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint == at.joint &&
+      return s_.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint == at.part &&
              c.index == at.coordinate;
     });
     if (found == s_.coordinates.end())
@@ -578,7 +590,7 @@ class Compiler {
       throw ExpressionError("expected a rate: the coordinate " + name + " goes on and on as its drive turns");
     if (rate && link_at(found->link).type == LinkType::spherical)
       throw ExpressionError("expected no rate of " + name + ", a component of a rotation vector");
-    return {rate, static_cast<int>(found - s_.coordinates.begin())};
+    return static_cast<int>(found - s_.coordinates.begin());
   }
 
   DriveLaw law_of(const Joint& of, int i, std::string_view which) const {
@@ -760,6 +772,7 @@ bool is_plain_tree(const System& system) {
 bool speeds_can_border(const System& system) {
   const auto plain = [&](const DriveLaw& law) {
     return std::ranges::none_of(law.inputs, [&](const DriveLaw::Input& input) {
+      if (input.coordinate < 0) return false;
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
       return system.links[static_cast<std::size_t>(c.link)].type == LinkType::spherical;
     });

@@ -1,13 +1,22 @@
 #include "engine/system/drive_torque.hpp"
 
 #include "engine/system/extended.hpp"
+#include "engine/system/point_quantity.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 #include <type_traits>
 
 namespace flyball {
 namespace {
+
+// A spring's length is the distance of its ends.
+Result of_points(const DriveLaw::Input& input) {
+  return input.spring >= 0 ? Result::distance : input.quantity.result;
+}
 
 constexpr std::size_t most_inputs = 32; // see read_drive_law
 constexpr auto as_they_come = [] {
@@ -17,21 +26,23 @@ constexpr auto as_they_come = [] {
 }();
 
 // The numbers that a law is evaluated with, at one state. N: double, or Dual for those of the mechanism with
-// their rates.
-template <class N>
+// their rates; S: N, or wider numbers of the kinematics alone.
+template <class N, class S = N>
 struct LawState {
   const System& system;
   const BasicParameters<N>& p;
   const Configuration<N>& q;
-  const Kinematics<N>& k;
+  const Kinematics<S>& k;
 
-  N input(const DriveLaw::Input& input) const {
+  N input(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t i) const {
+    const DriveLaw::Input& input = law.inputs[i];
+    if (input.coordinate < 0) return point_quantity<S>(of_points(input), numbers.points[i], p, k);
     const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-    if (!input.rate) return coordinate_value<N>(system, p, q, c);
+    if (!input.rate()) return coordinate_value<N>(system, p, q, c);
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (finds_speed(link)) return q[link.q];
     if (link.drive >= 0) return p.links[static_cast<std::size_t>(c.link)].speed * p.speed_scale;
-    if constexpr (std::is_same_v<N, double>)
+    if constexpr (std::is_same_v<S, double>)
       if (system.drives.empty()) return turning_rate(system, c.link, k);
     return 0; // at rest in a steady state
   }
@@ -43,12 +54,10 @@ struct LawState {
     if (!law.expression) return numbers.value;
     std::array<Dual, most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
-      inputs[i] = input(law.inputs[i]);
+      inputs[i] = input(law, numbers, i);
     if (varied < law.inputs.size()) inputs[varied].rate = 1;
     for (std::size_t i = 0; i < law.inputs.size() && moved < law.inputs.size(); ++i)
-      if (law.inputs[i].rate == law.inputs[moved].rate &&
-          law.inputs[i].coordinate == law.inputs[moved].coordinate)
-        inputs[i].value += by;
+      if (law.inputs[i] == law.inputs[moved]) inputs[i].value += by;
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
   }
 
@@ -57,25 +66,57 @@ struct LawState {
            value(system.torques[drive].load, p.torques[drive].load);
   }
 
+  double slope(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i) const {
+    return numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i];
+  }
+
+  // What the terms of a law may be in size: what it asks of points is a difference of places.
+  double size(const DriveLaw& law, const DriveLawParameters& numbers) const {
+    double out = std::abs(value(law, numbers).value);
+    for (std::size_t i = 0; i < law.inputs.size(); ++i)
+      if (law.inputs[i].coordinate < 0)
+        out += std::abs(slope(law, numbers, i)) * law_input_size(system, p, law, numbers, i, q, k);
+    return out;
+  }
+
   // Calls add(row, column, derivative) for all inputs of a kind.
   template <class Add>
   void add_derivatives(const DriveLaw& law, const DriveLawParameters& numbers, bool rates, double factor,
                        int row, const Add& add) const {
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
-      if (law.inputs[i].rate != rates) continue;
-      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(law.inputs[i].coordinate)];
+      const DriveLaw::Input& input = law.inputs[i];
+      if (input.coordinate < 0) {
+        add_derivatives_of_points(law, numbers, i, rates, factor, row, add);
+        continue;
+      }
+      if (input.rate() != rates) continue;
+      const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
       const Link& link = system.links[static_cast<std::size_t>(c.link)];
       if (link.v < 0) continue;
-      const double slope =
-          factor * (numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i]);
+      const double change = factor * slope(law, numbers, i);
       if (link.type != LinkType::spherical) {
-        add(row, link.v, slope);
+        add(row, link.v, change);
         continue;
       }
       const Mat3 turned = rotation_vector_rate(link, p.links[static_cast<std::size_t>(c.link)], q);
       for (int j = 0; j < 3; ++j)
-        add(row, link.v + j, slope * turned(c.index - link.coordinate, j));
+        add(row, link.v + j, change * turned(c.index - link.coordinate, j));
     }
+  }
+
+  template <class Add>
+  void add_derivatives_of_points(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
+                                 bool rates, double factor, int row, const Add& add) const {
+    const Result asked = of_points(law.inputs[i]);
+    if (rates && !is_of_velocity(asked)) return;
+    const PointQuantityRates by = point_rates_of(asked, numbers.points[i], k);
+    const double change = factor * slope(law, numbers, i);
+    // On the kink of an angle at 0 and pi there is no rate; see kinks.hpp.
+    const auto act = [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); };
+    if (rates)
+      add_velocity_rates(system, by, numbers.points[i], k, act);
+    else
+      add_coordinate_rates(system, by, numbers.points[i], k, act);
   }
 
   template <class Add>
@@ -96,10 +137,9 @@ S law_value(const System& system, const ParametersOf<S>& p, std::size_t drive, c
     return LawState<Dual>{system, p, q, k}.value(drive);
   } else if constexpr (std::is_same_v<S, double>) {
     return LawState<double>{system, p, q, k}.value(drive).value;
-  } else { // only of a steady state, whose kinematics no law asks for
-    static const Kinematics<double> none;
+  } else { // only of a steady state
     const Eigen::VectorXd rounded = q.template cast<double>();
-    return S(LawState<double>{system, p, rounded, none}.value(drive).value);
+    return S(LawState<double, S>{system, p, rounded, k}.value(drive).value);
   }
 }
 
@@ -122,8 +162,8 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
     const auto l = static_cast<std::size_t>(system.torques[i].link);
     const Link& link = system.links[l];
     const LawState<double> state{system, p, q, k};
-    force[link.v] += std::abs(state.value(system.torques[i].torque, p.torques[i].torque).value) +
-                     std::abs(state.value(system.torques[i].load, p.torques[i].load).value);
+    force[link.v] += state.size(system.torques[i].torque, p.torques[i].torque) +
+                     state.size(system.torques[i].load, p.torques[i].load);
     if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].resistance(q[link.q]));
   }
 }
@@ -131,6 +171,35 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
 double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
                     const Kinematics<double>& k) {
   return LawState<double>{system, p, q, k}.value(drive).value;
+}
+
+double law_input(const System& system, const Parameters& p, const DriveLaw& law,
+                 const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
+                 const Kinematics<double>& k) {
+  return LawState<double>{system, p, q, k}.input(law, numbers, input);
+}
+
+double law_input_size(const System& system, const Parameters& p, const DriveLaw& law,
+                      const DriveLawParameters& numbers, std::size_t i, const Eigen::VectorXd& q,
+                      const Kinematics<double>& k) {
+  const DriveLaw::Input& input = law.inputs[i];
+  const double value = std::abs(law_input(system, p, law, numbers, i, q, k));
+  const Result asked = of_points(input);
+  if (input.coordinate >= 0 || asked == Result::angle) return std::max(value, 1.);
+  if (!is_of_velocity(asked)) return value + p.length;
+  const LinkState<double>& x = k.at(numbers.points[i][0].link);
+  return x.v.norm() + x.w.norm() * p.length;
+}
+
+bool stands_on_own_kink(const System& system, const Parameters& p, const DriveLaw& law,
+                        const DriveLawParameters& numbers, std::size_t i, const Eigen::VectorXd& q,
+                        const Kinematics<double>& k) {
+  constexpr double near = 1e-8;
+  const Result asked = of_points(law.inputs[i]);
+  if (asked != Result::distance && asked != Result::angle && asked != Result::speed) return false;
+  const double value = law_input(system, p, law, numbers, i, q, k);
+  const double from_end = asked == Result::angle ? std::min(value, std::numbers::pi - value) : value;
+  return from_end <= near * law_input_size(system, p, law, numbers, i, q, k);
 }
 
 std::vector<double> drive_law_slopes(const System& system, const Parameters& p, const DriveLaw& law,

@@ -27,6 +27,18 @@ void add_drive_torque_sizes(const System& system, const Parameters& parameters, 
 double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
+// What the law of a torque or load is given for one of its inputs, what it may be in size, and whether it
+// stands where that has no slope: a distance or the speed of a point of zero, an angle of 0 or pi.
+double law_input(const System& system, const Parameters& parameters, const DriveLaw& law,
+                 const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
+                 const Kinematics<double>& kinematics);
+double law_input_size(const System& system, const Parameters& parameters, const DriveLaw& law,
+                      const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
+                      const Kinematics<double>& kinematics);
+bool stands_on_own_kink(const System& system, const Parameters& parameters, const DriveLaw& law,
+                        const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
+                        const Kinematics<double>& kinematics);
+
 // The derivatives of the law of a torque or load with its inputs, where one of them is `by` further on.
 std::vector<double> drive_law_slopes(const System& system, const Parameters& parameters, const DriveLaw& law,
                                      const DriveLawParameters& numbers, const Eigen::VectorXd& q,

@@ -7,6 +7,8 @@
 #include "engine/system/implied_rates.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/kept_momentum.hpp"
+#include "engine/system/law_phase.hpp"
+#include "engine/system/point_motion.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
@@ -330,7 +332,20 @@ class Binder {
                       BasicDriveLawParameters<N>& out) const {
     out.value = value ? read_(*value) : N(0);
     out.numbers.clear();
-    if (law.expression) read_named(m_, law.expression->names(), read_, out.numbers);
+    out.points.assign(law.inputs.size(), {});
+    if (!law.expression) return;
+    read_named(m_, law.expression->names(), read_, out.numbers);
+    for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+      const DriveLaw::Input& input = law.inputs[i];
+      if (input.spring >= 0) {
+        const auto s = static_cast<std::size_t>(input.spring);
+        const PairEnds& ends = s_.springs[s].ends;
+        out.points[i] = {{{ends.a, p_.springs[s].a}, {ends.b, p_.springs[s].b}, {}}};
+      } else if (input.coordinate < 0) {
+        for (std::size_t n = 0; n < static_cast<std::size_t>(input.quantity.count); ++n)
+          out.points[i][n] = tracked_point(s_, p_, m_, input.quantity.of[n], read_);
+      }
+    }
   }
 
   void bind_cut(const CutJoint& cut, BasicCutParameters<N>& out) const {
@@ -425,6 +440,7 @@ void bind(const System& system, const Mechanism& mechanism, Parameters& paramete
   parameters.length = reach(system, parameters);
   set_implied_rates(system, parameters);
   parameters.phase_free = phase_free(system, parameters);
+  refuse_turning_laws(system, mechanism, parameters);
 }
 
 void bind(const System& system, const Mechanism& mechanism, const NumberRates& rates, const Parameters& of,

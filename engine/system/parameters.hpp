@@ -112,6 +112,13 @@ struct BasicLinkParameters {
 template <class N>
 using BasicOffset = Vec3T<N>;
 
+// A point of a body as the passes see it.
+template <class N>
+struct BasicTrackedPoint {
+  int link = -1; // -1 is ground
+  BasicOffset<N> at = BasicOffset<N>::Zero();
+};
+
 template <class N>
 struct BasicPointSpringParameters : BasicSpringDamper<N> {
   using BasicSpringDamper<N>::stiffness, BasicSpringDamper<N>::damping, BasicSpringDamper<N>::laws;
@@ -181,6 +188,8 @@ template <class N>
 struct BasicDriveLawParameters {
   N value = 0;               // N m or N, where no expression gives it
   std::vector<Dual> numbers; // by name of the expression
+  // By input: of those that are of points.
+  std::vector<std::array<BasicTrackedPoint<N>, 3>> points{};
   // On one side of a kink: the derivatives with the inputs, in place of the expression's; empty elsewhere.
   std::vector<double> slopes{};
 };

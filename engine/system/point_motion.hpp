@@ -8,17 +8,23 @@
 
 namespace flyball {
 
-// A point of a body as the passes see it.
-template <class N>
-struct BasicTrackedPoint {
-  int link = -1;
-  BasicOffset<N> at = BasicOffset<N>::Zero();
-};
 using TrackedPoint = BasicTrackedPoint<double>;
 
 // Throws SceneError where there is no such body; "ground" is none.
 TrackedPoint find_point(const System& system, const Mechanism& mechanism, const Parameters& parameters,
                         const BodyPoint& point);
+
+// The same of a body's mass centre or of a named point that it or the ground (-1) carries, as expressions ask
+// for it.
+template <class N>
+BasicTrackedPoint<N> tracked_point(const System& system, const BasicParameters<N>& p, const Mechanism& m,
+                                   const ResultQuantity::Of& of, const NumberReader<N>& read) {
+  const Vec3T<N> drawn = read(of.point >= 0 ? m.points[static_cast<std::size_t>(of.point)].at
+                                            : m.bodies[static_cast<std::size_t>(of.part)].position);
+  if (of.part < 0) return {-1, drawn - p.origin};
+  const int link = system.body_link[static_cast<std::size_t>(of.part)];
+  return {link, drawn - p.origin - p.links[static_cast<std::size_t>(link)].origin};
+}
 
 // At evaluated kinematics: with only the drives turning as forward() leaves them, or of any motion as move()
 // does.

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "engine/mechanism/force_law.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/system/division.hpp"
 
@@ -59,8 +60,11 @@ struct DrivenCoordinate {
 // The torque (or force) or load of a drive: a number, or an expression of the state.
 struct DriveLaw {
   struct Input {
-    bool rate = false;  // of the coordinate; else its value
-    int coordinate = 0; // in System::coordinates
+    ResultQuantity quantity; // of places and velocities alone
+    int coordinate = -1;     // in System::coordinates: whose value or rate it is; -1: it is one of points
+    int spring = -1;         // in System::springs: whose points they are
+    bool rate() const { return quantity.result == Result::rate; }
+    bool operator==(const Input&) const = default;
   };
   std::optional<Expression> expression;
   std::vector<Input> inputs; // by Expression::results()

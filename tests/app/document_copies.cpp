@@ -282,6 +282,33 @@ TEST_CASE("the torque of a copied drive is one of the copies' coordinates") {
     duplicate_parts(m, {{{PartKind::joint, "spin"}}}, {1, 0, 0});
     CHECK(law("spin2") == "gain * (coordinate(slide) - 0.15 m)");
   }
+  SECTION("by places and measures") {
+    m.points.push_back({"top", {0, 0.2, 0}});
+    m.measures.push_back({"height", "", "y(collar)", "m"});
+    const auto give = [&](const std::string& text) {
+      m.joints[static_cast<std::size_t>(joint_index(m, "spin"))].formulas[0].text = text;
+    };
+    give("gain*(0.05 m - height) - 1 N*x(ball1) + 1 N*distance(ball1, ball2) + 1 N*distance(collar, "
+         "ground@top)");
+    duplicate_parts(m, bodies, {1, 0.5, 0});
+    CHECK(law("spin2") == "gain*(0.05 m - ((y(collar2) - 0.5 m))) - 1 N*(x(ball3) - 1 m) + "
+                          "1 N*distance(ball3, ball4) + 1 N*distance(collar2, ground@top2)");
+    CHECK(find_mistakes(m).empty());
+    CHECK(m.points.back().at == Vec3(1, 0.7, 0));
+    // A quarter of a turn about the vertical.
+    m = shipped("governor_engine");
+    give("1 N*x(ball1) - 1 N s*vz(ball1)");
+    circular_copy(m, bodies, {0, 0, 0}, {0, 1, 0}, 4);
+    CHECK(law("spin2") == "1 N*(-z(ball3)) - 1 N s*vx(ball3)");
+    // Elsewhere there may be no such measure.
+    m = shipped("governor_engine");
+    m.measures.push_back({"height", "", "y(collar)", "m"});
+    give("gain*(0.05 m - height)");
+    Mechanism other = shipped("governor_engine");
+    paste_text(other, copy_text(m, bodies));
+    CHECK(joint(other, "spin2").formulas[0].text == "gain*(0.05 m - (y(collar2)))");
+    CHECK(find_mistakes(other).empty());
+  }
   SECTION("in the mirror a cylindrical joint's angle turns the other way") {
     Joint& spin = m.joints[static_cast<std::size_t>(joint_index(m, "spin"))];
     spin.type = JointType::cylindrical;

@@ -5,11 +5,13 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/refine.hpp"
+#include "tests/bench/large_scenes.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -71,6 +73,19 @@ Mechanism without_gravity(Mechanism m) {
 
 Mechanism standing(Mechanism m) {
   set_parameter(m, "joints.spin.drive.speed", 0);
+  return m;
+}
+
+// Its drive gives a torque that holds the speed it is driven at, from a tenth below.
+Mechanism by_torque(Mechanism m) {
+  for (Joint& j : m.joints)
+    if (j.name == "spin") {
+      Drive& drive = *j.coordinates[0].drive;
+      drive.torque = 0;
+      j.formulas.push_back({"drive.torque", "0.5 N m s*(" + number_text(drive.speed) + " - rate(spin))"});
+      drive.speed *= 0.9;
+    }
+  validate(m);
   return m;
 }
 
@@ -170,6 +185,32 @@ void add_curve(const std::string& name, const Mechanism& mechanism, double to) {
         ->Apply(repeated);
 }
 
+// A whole answer with the sign of its stability, from the drawn pose; from beside the answer, where no state
+// is left for being unstable.
+void add_answers(const std::string& name, const Mechanism& mechanism, double speed) {
+  for (const bool beside : {false, true})
+    benchmark::RegisterBenchmark((name + (beside ? "/answer from beside" : "/answer")).c_str(),
+                                 [mechanism, speed, beside](benchmark::State& state) {
+                                   Analysis analysis(mechanism);
+                                   SolveOptions options;
+                                   options.details = false;
+                                   const Solution first = analysis.solve(options);
+                                   double found = speed;
+                                   for (const CoordinateSolution& c : first.coordinates)
+                                     if (c.speed) found = *c.speed;
+                                   if (first.status != Status::converged ||
+                                       std::abs(found - speed) > 1e-9 * speed)
+                                     state.SkipWithError(first.message.c_str());
+                                   for (const CoordinateSolution& c : first.coordinates)
+                                     if (beside && !c.driven)
+                                       options.start.emplace_back(coordinate_label(c), c.value + 0.01);
+                                   for ([[maybe_unused]] auto _ : state)
+                                     benchmark::DoNotOptimize(analysis.solve(options));
+                                   state.counters["iterations"] = analysis.solve(options).iterations;
+                                 })
+        ->Apply(repeated);
+}
+
 // A point of a sweep, from the number to the solution: by numbers that were found beforehand, and as one
 // would solve a single mechanism.
 void add_points(const std::string& name, const std::string& address, double from, double to) {
@@ -247,6 +288,14 @@ int main(int argc, char** argv) {
   add_points("governor", "joints.spin.drive.speed", 9, 20);
   add_points("governor_parametric", "parameters.L", 0.1, 0.2);
   add_points("governor_engine", "joints.spin.drive.load", -10, 10);
+  std::map<std::string, Mechanism> turned{{"governor", scene("governor")}, {"chain20", scene("chain20")}};
+  for (const int links : {200, 1000})
+    turned.emplace("chain" + std::to_string(links), bench::chain(links, 5));
+  for (const auto& [name, mechanism] : turned) {
+    const double speed = get_parameter(mechanism, "joints.spin.drive.speed");
+    add_answers(name, mechanism, speed);
+    add_answers(name + " by torque", by_torque(mechanism), speed);
+  }
   Fastest reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
@@ -260,6 +309,9 @@ int main(int argc, char** argv) {
   }
   for (const std::string name : {"pendulum", "governor", "governor_parametric"})
     print_ratio(reporter, name + "/point by itself", name + "/point of a sweep");
+  for (const auto& [name, mechanism] : turned)
+    for (const std::string part : {"/answer", "/answer from beside"})
+      print_ratio(reporter, name + " by torque" + part, name + part);
   print_ratio(reporter, "governor_engine/point of a sweep",
               "governor/point of a sweep"); // its speed is found
   for (const char* curve : {"governor/curve", "governor/curve with eigenvalues"})

@@ -576,11 +576,10 @@ TEST_CASE("a torque may name measures of coordinates and rates") {
     return std::string();
   };
   CHECK(mistake("coordinate(slide)", "gain*(N - 0.15 m)").empty());
-  CHECK_THAT(
-      mistake("y(ball1)", "gain*N"),
-      ContainsSubstring("expected a measure of coordinate(), rate() and parameters alone; M asks for y()"));
+  CHECK_THAT(mistake("1 m*reaction(slide)/(1 N)", "gain*N"),
+             ContainsSubstring("M asks for reaction(): a torque or load is one of"));
   CHECK_THAT(mistake("N", "gain*M"), ContainsSubstring("circle of measures"));
-  CHECK_THAT(mistake("coordinate(slide)", "gain*y(ball1)"),
+  CHECK_THAT(mistake("coordinate(slide)", "1 m*spring(slide)"),
              ContainsSubstring("is one of coordinates, rates"));
 }
 

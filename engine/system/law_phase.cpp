@@ -1,0 +1,101 @@
+#include "engine/system/law_phase.hpp"
+
+#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/system/drive_torque.hpp"
+#include "engine/system/point_quantity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flyball {
+namespace {
+
+constexpr double rounding = 1e-9; // of the size of a number
+
+bool is_of_points(const DriveLaw::Input& input) {
+  return input.coordinate < 0;
+}
+
+// Of no particular place, at speeds that are like the largest that are given.
+Eigen::VectorXd some_configuration(const System& system, const Parameters& p, double speed) {
+  Eigen::VectorXd q(system.nq);
+  drawn_configuration(system, p, q);
+  Eigen::VectorXd step(system.nv);
+  for (Eigen::Index v = 0; v < system.nv; ++v)
+    step[v] = 0.9 * std::sin(1.1 + 2.3 * static_cast<double>(v));
+  for (const Link& link : system.links)
+    if (link.v >= 0 && link.type == LinkType::prismatic) step[link.v] *= p.length;
+  retract<double>(system, step, q);
+  for (const Link& link : system.links)
+    if (finds_speed(link)) q[link.q] = speed * (1 + 0.4 * std::sin(0.7 + 1.9 * static_cast<double>(link.v)));
+  return q;
+}
+
+double largest_speed(const System& system, const Parameters& p) {
+  double largest = 0;
+  for (const DrivenCoordinate& d : system.drives)
+    if (const auto l = static_cast<std::size_t>(d.link); !finds_speed(system.links[l]))
+      largest = std::max(largest, std::abs(p.links[l].speed));
+  return largest > 0 ? largest : 1;
+}
+
+// An input's value, and how it changes with the rates of the coordinates.
+struct AtPhase {
+  double value = 0;
+  Eigen::VectorXd by_rates;
+};
+
+AtPhase at_phase(const System& system, const Parameters& p, const DriveLaw& law,
+                 const DriveLawParameters& numbers, std::size_t i, const Eigen::VectorXd& q,
+                 const Kinematics<double>& k) {
+  AtPhase out{law_input(system, p, law, numbers, i, q, k), Eigen::VectorXd::Zero(system.nv)};
+  if (const Result asked = law.inputs[i].quantity.result; is_of_velocity(asked))
+    add_velocity_rates(system, point_rates_of(asked, numbers.points[i], k), numbers.points[i], k,
+                       [&](int v, double rate) { out.by_rates[v] += rate; });
+  return out;
+}
+
+} // namespace
+
+bool asks_for_points(const System& system) {
+  const auto asks = [](const DriveLaw& law) { return std::ranges::any_of(law.inputs, is_of_points); };
+  return std::ranges::any_of(system.torques, [&](const DriveTorqueElement& torque) {
+    return asks(torque.torque) || asks(torque.load);
+  });
+}
+
+void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& p) {
+  if (!p.moving || !asks_for_points(system)) return;
+  const double speed = largest_speed(system, p);
+  const Eigen::VectorXd q = some_configuration(system, p, speed);
+  Kinematics<double> here, later;
+  forward<double>(system, p, q, 0, here);
+  forward<double>(system, p, q, 1.3 / speed, later);
+  const auto check = [&](const DriveLaw& law, const DriveLawParameters& numbers, const Link& link,
+                         const char* which) {
+    for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+      if (!is_of_points(law.inputs[i])) continue;
+      const AtPhase a = at_phase(system, p, law, numbers, i, q, here);
+      const AtPhase b = at_phase(system, p, law, numbers, i, q, later);
+      const double size = law_input_size(system, p, law, numbers, i, q, here);
+      if (std::abs(a.value - b.value) <= rounding * size &&
+          (a.by_rates - b.by_rates).lpNorm<Eigen::Infinity>() <= rounding * std::max(1., p.length))
+        continue;
+      const Joint& of = mechanism.joints[static_cast<std::size_t>(
+          system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)];
+      const std::string text = drive_law(mechanism, of, link.coordinate, which)->text;
+      throw SceneError("joints." + of.name + ".drive." + which,
+                       "\"=" + text + "\": expected what stays as it is while drives turn, found " +
+                           quantity_text(mechanism, law.inputs[i].quantity) + ", which changes with them");
+    }
+  };
+  for (std::size_t t = 0; t < system.torques.size(); ++t) {
+    const DriveTorqueElement& e = system.torques[t];
+    const Link& link = system.links[static_cast<std::size_t>(e.link)];
+    check(e.torque, p.torques[t].torque, link, "torque");
+    check(e.load, p.torques[t].load, link, "load");
+  }
+}
+
+} // namespace flyball

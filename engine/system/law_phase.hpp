@@ -1,0 +1,19 @@
+// Whether what the laws of drives ask for stays as it is while the drives turn. Where it does not there is no
+// steady torque: it is refused, as the coordinate of what turns is.
+//
+// Looked at in one motion of no particular place or speeds, where two phases of it must agree: an analytic
+// function that is the same there is the same everywhere, but for coincidences of no measure.
+#pragma once
+
+#include "engine/system/parameters.hpp"
+
+namespace flyball {
+
+// Whether some law asks for places or velocities of points.
+bool asks_for_points(const System& system);
+
+// Throws SceneError for a law that asks for a place, distance, angle or velocity that changes with the phase
+// of the drives. Drives that stand still change none.
+void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& parameters);
+
+} // namespace flyball

@@ -1,0 +1,60 @@
+// Numbers that the places and velocities of points make, as measures and the laws of drives ask for them:
+// x() to vz() and speed() of a point, the distance() of two, the angle() at the second of three.
+#pragma once
+
+#include "engine/system/point_motion.hpp"
+
+#include <array>
+
+namespace flyball {
+
+template <class N>
+using BasicTrackedPoints = std::array<BasicTrackedPoint<N>, 3>;
+using TrackedPoints = BasicTrackedPoints<double>;
+
+bool is_of_velocity(Result of_points);
+
+// m, m/s or rad; not a number where an angle has no arm. Instantiated for double, Dual and Extended.
+template <class S>
+NumberOf<S> point_quantity(Result of_points, const BasicTrackedPoints<NumberOf<S>>& points,
+                           const ParametersOf<S>& parameters, const Kinematics<S>& kinematics);
+
+// How it changes with the places of its points, and with the velocity of the first: 1 or 1/m. Zero where two
+// points meet and where nothing moves, which have no slope; and not a number where an angle is 0 or pi.
+struct PointQuantityRates {
+  std::array<Vec3, 3> place{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  Vec3 velocity = Vec3::Zero();
+};
+PointQuantityRates point_rates_of(Result of_points, const TrackedPoints& points,
+                                  const Kinematics<double>& kinematics);
+
+// v / |v|; of no length none.
+inline Vec3 direction(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+// Calls add(v, rate) with the rates along the coordinates of q_R, several times for one where it moves
+// several of the points: of the motion in which only the drives turn.
+template <class Add>
+void add_coordinate_rates(const System& system, const PointQuantityRates& of, const TrackedPoints& points,
+                          const Kinematics<double>& k, const Add& add) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!of.place[i].isZero(0))
+      visit_point_rates(system, k, points[i],
+                        [&](int v, const PointRates& rates) { add(v, of.place[i].dot(rates.position)); });
+  if (!of.velocity.isZero(0))
+    visit_point_rates(system, k, points[0],
+                      [&](int v, const PointRates& rates) { add(v, of.velocity.dot(rates.velocity)); });
+}
+
+// The same along the rates of the coordinates.
+template <class Add>
+void add_velocity_rates(const System& system, const PointQuantityRates& of, const TrackedPoints& points,
+                        const Kinematics<double>& k, const Add& add) {
+  if (!of.velocity.isZero(0))
+    visit_point_rates(system, k, points[0],
+                      [&](int v, const PointRates& rates) { add(v, of.velocity.dot(rates.position)); });
+}
+
+} // namespace flyball
