@@ -18,6 +18,7 @@
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -31,11 +32,20 @@
 namespace flyball::cli {
 namespace {
 
+// Whether a coordinate stands in some states and slips in others: then its speed shows both.
+bool slips(const ResponseDiagram& d, std::ptrdiff_t coordinate) {
+  return std::ranges::any_of(d.branches, [&](const ResponseBranch& branch) {
+    return !branch.points.empty() && !branch.points.front().frictions.empty() &&
+           branch.points.front().coordinates[static_cast<std::size_t>(coordinate)].speed.has_value();
+  });
+}
+
 // What to draw: what is named, else the first free coordinate. Throws SceneError naming those there are.
 PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, const std::string& name) {
   const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
   const auto free = std::ranges::find_if(all, is_found);
-  if (name.empty() && free != all.end()) return {static_cast<std::size_t>(free - all.begin()), false};
+  if (name.empty() && free != all.end())
+    return {static_cast<std::size_t>(free - all.begin()), false, free->speed || slips(d, free - all.begin())};
   if (const auto found = find_plotted(m, all, name)) return *found;
   const std::string known = plotted_names(m, all);
   throw SceneError("--plot " + name,
@@ -68,9 +78,13 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   const std::string unit = parameter_unit(m, address);
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const auto& points = d.branches[b].points;
-    out += fmt::format("  branch {}: {} points from {:.6g} to {:.6g} {}, ends at {}{}\n", b, points.size(),
-                       points.front().parameter, points.back().parameter, unit, d.branches[b].end,
-                       d.branches[b].connected ? "" : ", not connected");
+    const std::string_view friction = friction_word(points.front().frictions);
+    out += fmt::format("  branch {}: {} points from {:.6g} to {:.6g} {}{}, ends at {}{}\n", b, points.size(),
+                       points.front().parameter, points.back().parameter, unit,
+                       friction.empty()     ? ""
+                       : friction == "held" ? ", held by friction"
+                                            : ", slips",
+                       d.branches[b].end, d.branches[b].connected ? "" : ", not connected");
   }
   for (std::size_t i = 0; i < d.special.size(); ++i) {
     const SpecialPoint& s = d.special[i];
@@ -141,7 +155,7 @@ void add_branch(CLI::App& app, Ending& ending) {
       BranchOptions follow;
       follow.all = options->all;
       follow.progress = progress->reporter();
-      diagram = follow_branches(mechanism, range.address, range.from, range.to, follow);
+      diagram = follow_response(mechanism, range.address, range.from, range.to, follow);
       if (has_friction(mechanism))
         ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
       hunting = describe_hunting(mechanism, range.address, diagram);

@@ -17,14 +17,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array special_types{SpecialPointType::fold, SpecialPointType::branch_point,
-                                   SpecialPointType::hopf, SpecialPointType::flutter,
-                                   SpecialPointType::parametric};
+constexpr std::array special_types{SpecialPointType::fold,       SpecialPointType::branch_point,
+                                   SpecialPointType::hopf,       SpecialPointType::flutter,
+                                   SpecialPointType::parametric, SpecialPointType::slip};
 
 Json point_json(const ResponsePoint& p) {
   Json out = {{"parameter", p.parameter}, {"coordinates", coordinates_json(p.coordinates)}};
   if (std::ranges::any_of(p.coordinates, [](const CoordinateSolution& c) { return c.speed.has_value(); }))
     out["speeds"] = speeds_json(p.coordinates);
+  if (!p.frictions.empty()) out["rests_on_friction"] = frictions_json(p.frictions);
   if (!p.measures.empty()) out["measures"] = measures_json(p.measures);
   out["stable"] = p.stable ? Json(*p.stable) : Json(nullptr);
   out["stability_reason"] = p.stability_reason ? Json(word(*p.stability_reason)) : Json(nullptr);
@@ -44,9 +45,10 @@ std::string point_cells(std::span<const ValueColumn> values, int branch, const R
   return out + fmt::format(",{},{}", p.stable ? (*p.stable ? "true" : "false") : "", special);
 }
 
-// The band at a point, or nothing where there is none.
-std::string band_cells(std::span<const ValueColumn> values, const RibbonPoint& point) {
-  std::string out;
+// What a point has of friction: whether it rests on that, and the band, or nothing where there is none.
+std::string friction_cells(std::span<const ValueColumn> values, const ResponsePoint& p,
+                           const RibbonPoint& point) {
+  std::string out = "," + std::string(friction_word(p.frictions));
   for (const ValueColumn& value : values) {
     const BandExtent* extent = find_extent(point, value.name);
     out += extent ? "," + csv_number(extent->low) + "," + csv_number(extent->high) : ",,";
@@ -85,6 +87,8 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
           points[i++]["slow_change"][extent.name] = {{"forth", way.forth}, {"back", way.back}};
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
+    if (k < ribbons.size() && !ribbons[k].empty() && !ribbons[k].front().no_way.empty())
+      out["branches"].back()["slow_change_message"] = ribbons[k].front().no_way;
   }
   for (std::size_t i = 0; i < d.special.size(); ++i) {
     const SpecialPoint& s = d.special[i];
@@ -105,19 +109,20 @@ std::string diagram_csv(const Mechanism& m, const std::string& address, const Re
   for (const ValueColumn& value : values)
     out += "," + csv_field(value.name);
   out += ",stable,special";
+  if (!ribbons.empty()) out += ",rests_on_friction";
   if (!ribbons.empty())
     for (const ValueColumn& value : values)
       out += "," + csv_field(value.name + ".low") + "," + csv_field(value.name + ".high");
   out += "\n";
-  const auto bands = [&](const RibbonPoint& point) {
-    return (ribbons.empty() ? "" : band_cells(values, point)) + "\n";
+  const auto friction = [&](const ResponsePoint& p, const RibbonPoint& point) {
+    return (ribbons.empty() ? "" : friction_cells(values, p, point)) + "\n";
   };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
     for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
       out += point_cells(values, static_cast<int>(b), d.branches[b].points[i], "") +
-             bands(ribbons.empty() ? RibbonPoint{} : ribbons[b][i]);
+             friction(d.branches[b].points[i], ribbons.empty() ? RibbonPoint{} : ribbons[b][i]);
   for (const SpecialPoint& s : d.special)
-    out += point_cells(values, s.branch, s.at, word(s.type)) + bands({});
+    out += point_cells(values, s.branch, s.at, word(s.type)) + friction(s.at, {});
   return out;
 }
 
@@ -130,6 +135,7 @@ std::vector<Column> BranchColumns::columns() const {
     out.push_back({value.name});
   out.insert(out.end(),
              {{"stable", CellKind::verdict}, {"special", CellKind::word}, {"note", CellKind::text}});
+  if (bands) out.push_back({"rests_on_friction", CellKind::word});
   for (std::size_t i = 0; bands && i < values.size(); ++i)
     out.insert(out.end(), {{values[i].name + ".low"}, {values[i].name + ".high"}});
   return out;
@@ -143,11 +149,11 @@ std::string csv_rows(const BranchColumns& columns, const GridBranches& place) {
   grid += word(d.status);
   if (d.branches.empty())
     return grid + std::string(columns.values.size() + 5, ',') + csv_field(printable(d.message)) +
-           std::string(columns.bands ? 2 * columns.values.size() : 0, ',') + "\n";
+           std::string(columns.bands ? 1 + 2 * columns.values.size() : 0, ',') + "\n";
   const auto add = [&](int branch, const ResponsePoint& p, std::string_view special, const std::string& words,
                        const RibbonPoint& band) {
     out += grid + "," + point_cells(columns.values, branch, p, special) + "," + words +
-           (columns.bands ? band_cells(columns.values, band) : "") + "\n";
+           (columns.bands ? friction_cells(columns.values, p, band) : "") + "\n";
   };
   for (std::size_t b = 0; b < d.branches.size(); ++b)
     for (std::size_t i = 0; i < d.branches[b].points.size(); ++i)
@@ -169,17 +175,26 @@ std::string json_rows(const BranchColumns& columns, const GridBranches& place) {
   return json_row(row.dump(2));
 }
 
+namespace {
+
+// Joints slip only where there is friction.
+bool has_column(const BranchColumns& columns, SpecialPointType type) {
+  return type != SpecialPointType::slip || columns.bands;
+}
+
+} // namespace
+
 std::vector<std::string> table_head(const BranchColumns& columns, const Mechanism& mechanism) {
   std::vector<std::string> head;
   for (const Variation& v : columns.over)
     head.push_back(named_with_unit(v.address, parameter_unit(mechanism, v.address)));
   head.insert(head.end(), {"status", "branches", "points"});
   for (const SpecialPointType type : special_types)
-    head.emplace_back(word(type));
+    if (has_column(columns, type)) head.emplace_back(word(type));
   return head;
 }
 
-std::string table_rows(const BranchColumns&, const GridBranches& place) {
+std::string table_rows(const BranchColumns& columns, const GridBranches& place) {
   const ResponseDiagram& d = place.diagram;
   std::string out;
   for (const double value : place.parameters)
@@ -189,7 +204,8 @@ std::string table_rows(const BranchColumns&, const GridBranches& place) {
     points += branch.points.size();
   out += fmt::format("{}\t{}\t{}", word(d.status), d.branches.size(), points);
   for (const SpecialPointType type : special_types)
-    out += fmt::format("\t{}", std::ranges::count(d.special, type, &SpecialPoint::type));
+    if (has_column(columns, type))
+      out += fmt::format("\t{}", std::ranges::count(d.special, type, &SpecialPoint::type));
   return out + "\n";
 }
 

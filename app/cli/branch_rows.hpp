@@ -20,8 +20,8 @@ using Ribbons = std::vector<std::vector<RibbonPoint>>;
 // `hunting` tells have that as "hunting".
 nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons,
                                     const HopfPoints& hunting);
-// All of a table: branch, parameter, values, `stable`, `special`; with ribbons then `NAME.low` and
-// `NAME.high` of each value.
+// All of a table: branch, parameter, values, `stable`, `special`; with ribbons then
+// `rests_on_friction` (see friction_word()), and `NAME.low` and `NAME.high` of each value.
 std::string diagram_csv(const Mechanism& mechanism, const std::string& address,
                         const ResponseDiagram& diagram, const Ribbons& ribbons = {});
 
@@ -29,15 +29,14 @@ struct BranchColumns {
   std::vector<Variation> over;
   std::string address; // of the number that is varied along branches
   std::vector<ValueColumn> values;
-  bool bands = false; // of dry friction, of each value
+  bool bands = false; // there is dry friction: whether a state rests on it, and its band of each value
 
   std::vector<Column> columns() const;
 };
 
 // Of one place, as row_output.hpp wants them. A row each point and special point, or one that says why there
 // is none. `note`: why a branch begins or ends, in words, at its ends; at Hopf points "soft", "hard" or
-// "undecided". With bands then `NAME.low` and
-// `NAME.high` of each value.
+// "undecided". With bands then as of diagram_csv().
 std::string csv_rows(const BranchColumns& columns, const GridBranches& place);
 std::string json_rows(const BranchColumns& columns, const GridBranches& place);
 // One row, with how many branches there are and how many special points of each kind.

@@ -19,23 +19,32 @@ Json or_null(const std::optional<double>& value) {
   return value ? number_json(*value) : Json(nullptr);
 }
 
+std::string bound(double value) {
+  return std::isfinite(value) ? fmt::format("{:.12g}", value) : std::string("no bound");
+}
+
 std::string percent(double part) {
   return fmt::format("{:.4g} %", 100 * part);
 }
 
 } // namespace
 
-Json to_json(const FrictionReport& f) {
+Json to_json(const FrictionBand& band) {
   Json out;
-  out["band"] = f.band.found ? Json::object() : Json(nullptr);
-  for (const BandExtent& extent : f.band.extents)
+  out["band"] = band.found ? Json::object() : Json(nullptr);
+  for (const BandExtent& extent : band.extents)
     out["band"][extent.name] = {number_json(extent.low), number_json(extent.high)};
-  out["band_error_estimate"] = f.band.found ? Json::object() : Json(nullptr);
-  for (const BandExtent& extent : f.band.extents)
+  out["band_error_estimate"] = band.found ? Json::object() : Json(nullptr);
+  for (const BandExtent& extent : band.extents)
     out["band_error_estimate"][extent.name] = or_null(extent.error);
-  out["band_whole"] = f.band.whole;
-  out["band_folds"] = f.band.folds;
-  out["band_message"] = f.band.message;
+  out["band_whole"] = band.whole;
+  out["band_folds"] = band.folds;
+  out["band_message"] = band.message;
+  return out;
+}
+
+Json to_json(const FrictionReport& f) {
+  Json out = to_json(f.band);
   Json& holding = out["holding"] = {{"takes", or_null(f.drawn.takes)},
                                     {"at_least", number_json(f.drawn.at_least)},
                                     {"first", f.drawn.first.empty() ? Json(nullptr) : Json(f.drawn.first)},
@@ -54,6 +63,15 @@ Json to_json(const FrictionReport& f) {
   return out;
 }
 
+std::string band_lines(const FrictionBand& band) {
+  std::string out;
+  for (const BandExtent& extent : band.extents)
+    out += fmt::format("\n   friction holds {} from {} to {} {}", printable(extent.name), bound(extent.low),
+                       bound(extent.high), extent.unit);
+  if (!band.message.empty()) out += "\n   " + printable(band.message);
+  return out;
+}
+
 std::string to_text(const FrictionReport& f) {
   std::size_t width = 0;
   for (const BandExtent& extent : f.band.extents)
@@ -61,9 +79,6 @@ std::string to_text(const FrictionReport& f) {
   for (const HeldJoint& joint : f.drawn.joints)
     width = std::max(width, coordinate_label(joint).size());
   std::string out = "\nband within which friction holds it\n";
-  const auto bound = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:.12g}", value) : std::string("no bound");
-  };
   for (const BandExtent& extent : f.band.extents)
     out += fmt::format("  {:{}}  {:>18} to {:<18} {}{}\n", printable(extent.name), width, bound(extent.low),
                        bound(extent.high), extent.unit,

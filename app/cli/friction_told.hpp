@@ -15,4 +15,9 @@ namespace flyball::cli {
 nlohmann::ordered_json to_json(const FrictionReport& friction);
 std::string to_text(const FrictionReport& friction);
 
+// Of one band: {"band", "band_error_estimate", "band_whole", "band_folds", "band_message"}.
+nlohmann::ordered_json to_json(const FrictionBand& band);
+// Indented lines that follow what they are about, each with a line end before it.
+std::string band_lines(const FrictionBand& band);
+
 } // namespace flyball::cli

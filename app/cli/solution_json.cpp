@@ -121,12 +121,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     put(out["drive_torques"], d.joint, d.index, d.count, number_json(d.value));
-  if (!s.frictions.empty()) out["rests_on_friction"] = Json::object();
-  for (const FrictionForce& f : s.frictions)
-    put(out["rests_on_friction"], f.joint, f.index, f.count,
-        {{"force", f.value ? number_json(*f.value) : Json(nullptr)},
-         {"limit", number_json(f.limit)},
-         {"slips", f.slips}});
+  if (!s.frictions.empty()) out["rests_on_friction"] = frictions_json(s.frictions);
   out["drive_torque_ranges"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     if (d.varying) {
@@ -212,6 +207,16 @@ Json measures_json(const std::vector<MeasureSolution>& measures) {
     if (!m.value) entry["reason"] = m.reason;
     if (m.nonunique) entry["nonunique"] = true;
   }
+  return out;
+}
+
+Json frictions_json(const std::vector<FrictionForce>& frictions) {
+  Json out = Json::object();
+  for (const FrictionForce& f : frictions)
+    put(out, f.joint, f.index, f.count,
+        {{"force", f.value ? number_json(*f.value) : Json(nullptr)},
+         {"limit", number_json(f.limit)},
+         {"slips", f.slips}});
   return out;
 }
 

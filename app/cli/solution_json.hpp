@@ -37,6 +37,9 @@ nlohmann::ordered_json coordinates_json(const std::vector<CoordinateSolution>& c
 // {joint: value or array}: of drives by torque, as found.
 nlohmann::ordered_json speeds_json(const std::vector<CoordinateSolution>& coordinates);
 
+// {joint: {"force", "limit", "slips"}}.
+nlohmann::ordered_json frictions_json(const std::vector<FrictionForce>& frictions);
+
 // {"equilibria": [as above], "search": {"bounds", "starts", "complete"}}.
 nlohmann::ordered_json to_json(const Mechanism& mechanism, const AllSolutions& all);
 

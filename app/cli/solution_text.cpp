@@ -207,7 +207,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   return out + "\n";
 }
 
-std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
+std::string to_text(const Mechanism& mechanism, const AllSolutions& all, std::span<const std::string> more) {
   std::string out = fmt::format("{}: {} equilibria from {} starts. {}\n", printable(mechanism.name),
                                 all.equilibria.size(), all.starts, printable(all.message));
   out += "searched";
@@ -225,6 +225,8 @@ std::string to_text(const Mechanism& mechanism, const AllSolutions& all) {
       else if (!c.driven)
         out += fmt::format("\n   {} = {} {}  ± {:.1g}", shown_label(c), rounded(c.value, c.error, 17),
                            c.angle ? "rad" : "m", c.error);
+    if (!s.frictions.empty()) out += "\n   " + printable(s.message);
+    if (i < more.size()) out += more[i];
   }
   return out;
 }

@@ -17,6 +17,22 @@
 #include <memory>
 
 namespace flyball::cli {
+namespace {
+
+// Of each state the band about it; of one that rests on friction none.
+std::vector<std::optional<FrictionBand>> bands_of(const Mechanism& mechanism, const AllSolutions& all,
+                                                  const ReportProgress& progress) {
+  std::vector<std::optional<FrictionBand>> out(all.equilibria.size());
+  for (std::size_t i = 0; has_friction(mechanism) && i < out.size(); ++i) {
+    report_progress(progress, "friction", static_cast<double>(i) / static_cast<double>(out.size()));
+    const Solution& state = all.equilibria[i];
+    if (state.frictions.empty())
+      out[i] = find_friction_band(mechanism, {.start = start_values(state.coordinates)});
+  }
+  return out;
+}
+
+} // namespace
 
 void add_solve(CLI::App& app, Ending& ending) {
   struct Options {
@@ -77,11 +93,19 @@ void add_solve(CLI::App& app, Ending& ending) {
     try {
       if (options->all) {
         const AllSolutions all = Analysis(mechanism).solve_all(solve);
+        const auto bands = bands_of(mechanism, all, solve.progress);
         progress.reset();
-        if (options->json)
-          print_json(with_warnings(to_json(mechanism, all), mechanism));
-        else
-          print_text(to_text(mechanism, all) + "\n");
+        if (options->json) {
+          nlohmann::ordered_json told = to_json(mechanism, all);
+          for (std::size_t i = 0; i < bands.size(); ++i)
+            if (bands[i]) told["equilibria"][i]["friction"] = to_json(*bands[i]);
+          print_json(with_warnings(std::move(told), mechanism));
+        } else {
+          std::vector<std::string> more;
+          for (const auto& band : bands)
+            more.push_back(band ? band_lines(*band) : "");
+          print_text(to_text(mechanism, all, more) + "\n");
+        }
         ending = end_with(!all.equilibria.empty(), options->scene.file, all.message);
         return;
       }

@@ -78,6 +78,10 @@ std::optional<bool> is_stable(const SweepPoint& p) {
   return motion_of(p) ? motion_of(p)->stable : p.solution.stable;
 }
 
+std::string_view friction_of(const SweepPoint& p) {
+  return motion_of(p) ? "" : friction_word(p.solution.frictions);
+}
+
 double residual_of(const SweepPoint& p) {
   return motion_of(p) ? motion_of(p)->residual : p.solution.residual;
 }
@@ -112,6 +116,8 @@ nlohmann::ordered_json json_of(const SweepColumns& columns, const SweepPoint& p)
     else if (!c.driven)
       row["coordinates"][coordinate_label(c)] = c.value;
   }
+  if (steady && !p.solution.frictions.empty())
+    row["rests_on_friction"] = frictions_json(p.solution.frictions);
   if (steady && !p.solution.measures.empty()) row["measures"] = measures_json(p.solution.measures);
   const std::optional<bool> stable = is_stable(p);
   row["stable"] = stable ? nlohmann::ordered_json(*stable) : nlohmann::ordered_json(nullptr);
@@ -131,6 +137,7 @@ std::vector<Column> SweepColumns::columns() const {
     out.push_back({variation.address});
   out.push_back({"status", CellKind::word});
   if (all) out.insert(out.end(), {{"equilibria"}, {"equilibrium"}});
+  if (friction) out.push_back({"rests_on_friction", CellKind::word});
   if (periodic) out.push_back({"period_s"});
   for (const ValueColumn& value : values) {
     out.push_back({value.name});
@@ -153,6 +160,7 @@ std::string csv_rows(const SweepColumns& columns, std::span<const SweepPoint> po
       out += ',' + std::to_string(p.equilibria) + ',';
       if (p.equilibria > 0) out += std::to_string(p.equilibrium);
     }
+    if (columns.friction) (out += ',') += friction_of(p);
     const auto add = [&](double number) {
       out += ',';
       append_number(out, number);
@@ -179,6 +187,8 @@ std::string npz_rows(const SweepColumns& columns, std::span<const SweepPoint> po
     numbers([v](const SweepPoint& p) { return p.parameters[v]; });
   for (const SweepPoint& p : points)
     append_word(out, status_of(p));
+  for (std::size_t i = 0; columns.friction && i < points.size(); ++i)
+    append_word(out, friction_of(points[i]));
   if (columns.periodic) numbers(period_of);
   for (const ValueColumn& value : columns.values) {
     numbers([&](const SweepPoint& p) { return value_of(p, value); });
@@ -205,6 +215,7 @@ std::vector<std::string> table_head(const SweepColumns& columns, const Mechanism
     head.push_back(named_with_unit(v.address, parameter_unit(mechanism, v.address)));
   head.emplace_back("status");
   if (columns.all) head.insert(head.end(), {"equilibria", "equilibrium"});
+  if (columns.friction) head.emplace_back("friction");
   if (columns.periodic) head.emplace_back("period [s]");
   for (const ValueColumn& value : columns.values) {
     head.push_back(named_with_unit(value.name, value.unit));
@@ -223,6 +234,7 @@ std::string table_rows(const SweepColumns& columns, std::span<const SweepPoint> 
     out += status_of(p);
     if (columns.all)
       out += fmt::format("\t{}\t{}", p.equilibria, p.equilibria > 0 ? std::to_string(p.equilibrium) : "-");
+    if (columns.friction) (out += '\t') += friction_of(p).empty() ? "-" : friction_of(p);
     if (columns.periodic) out += motion_of(p) ? fmt::format("\t{:.8g}", period_of(p)) : "\t-";
     for (const ValueColumn& value : columns.values)
       add_value(columns, p, value, [&](double number) {

@@ -1,7 +1,7 @@
 // What a row of a sweep tells, in each form: the varied numbers, the status, coordinates, measures,
-// stability, residual and run time; of all equilibria also how many there are and which one it is. Of
-// periodic motions in the place of steady states also the period and, of each value, the mean, least and
-// most.
+// stability, residual and run time; of all equilibria also how many there are and which one it is. Where
+// there is dry friction whether the state rests on it: "held" or "slips". Of periodic motions in the place of
+// steady states also the period and, of each value, the mean, least and most.
 #pragma once
 
 #include "app/cli/row_output.hpp"
@@ -20,6 +20,7 @@ struct SweepColumns {
   bool all = false;  // of all equilibria
   bool times = true; // run times, which are others in every run
   bool periodic = false;
+  bool friction = false; // there is some
 
   std::vector<Column> columns() const;
 };

@@ -1,7 +1,9 @@
 #include "app/cli/value_columns.hpp"
 
-#include "engine/report/analysis.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/friction_state.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball::cli {
@@ -9,9 +11,15 @@ namespace flyball::cli {
 std::vector<ValueColumn> value_columns(const Mechanism& mechanism) {
   std::vector<ValueColumn> values;
   const std::vector<CoordinateSolution> all = Analysis(mechanism).summary().coordinates;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (const auto found = found_number(all[i]))
-      values.push_back({found->name, std::string(found->unit), false, i, all[i].speed.has_value()});
+  std::vector<std::string> slipping;
+  if (has_friction(mechanism)) slipping = slipping_coordinates(mechanism);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto found = found_number(all[i]);
+    if (!found) continue;
+    values.push_back({found->name, std::string(found->unit), false, i, all[i].speed.has_value()});
+    if (!all[i].speed && std::ranges::find(slipping, found->name) != slipping.end())
+      values.push_back({found->name + ".speed", all[i].angle ? "rad/s" : "m/s", false, i, true});
+  }
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i)
     values.push_back({mechanism.measures[i].name, mechanism.measures[i].unit, true, i});
   return values;
@@ -23,8 +31,13 @@ double value_at(std::span<const CoordinateSolution> coordinates, std::span<const
   if (value.measure) return i < measures.size() ? measures[i].value.value_or(std::nan("")) : std::nan("");
   if (i >= coordinates.size()) return std::nan("");
   const CoordinateSolution& c = coordinates[i];
-  if (c.speed.has_value() != value.speed) return std::nan(""); // each has a column of its own
-  return c.speed ? *c.speed : c.driven ? std::nan("") : c.value;
+  if (value.speed) return c.speed ? *c.speed : c.driven ? std::nan("") : 0;
+  return c.speed || c.driven ? std::nan("") : c.value;
+}
+
+std::string_view friction_word(std::span<const FrictionForce> frictions) {
+  if (frictions.empty()) return "";
+  return std::ranges::any_of(frictions, &FrictionForce::slips) ? "slips" : "held";
 }
 
 } // namespace flyball::cli

@@ -1,5 +1,6 @@
 // What rows of a study tell of a steady state: a number each of its free coordinates, speeds that torques
-// give, and measures. The same columns at every point, whether it has an answer or not.
+// give, and measures. The same columns at every point, whether it has an answer or not: coordinates that may
+// slip have one for where they stand, and one for how fast they slip.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -7,6 +8,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace flyball::cli {
@@ -19,8 +21,12 @@ struct ValueColumn {
 };
 std::vector<ValueColumn> value_columns(const Mechanism& mechanism);
 
-// Not finite where there is none, or a coordinate turns with the drives.
+// Not finite where there is none, or a coordinate turns with the drives. The speed of what stands is zero.
 double value_at(std::span<const CoordinateSolution> coordinates, std::span<const MeasureSolution> measures,
                 const ValueColumn& value);
+
+// Of a state that rests on dry friction: "held" where that holds all, "slips" where something does; else
+// empty.
+std::string_view friction_word(std::span<const FrictionForce> frictions);
 
 } // namespace flyball::cli

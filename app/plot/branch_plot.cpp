@@ -23,8 +23,9 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
     plot.y.label = first.measures[shown.index].name;
     plot.y.unit = first.measures[shown.index].unit;
   } else {
-    plot.y.label = coordinate_label(first.coordinates[shown.index]);
-    plot.y.unit = first.coordinates[shown.index].angle ? "rad" : "m";
+    const CoordinateSolution& c = first.coordinates[shown.index];
+    plot.y.label = plotted_name(first, shown);
+    plot.y.unit = shown.speed ? (c.angle ? "rad/s" : "m/s") : c.angle ? "rad" : "m";
   }
   for (const ResponseBranch& b : d.branches) {
     for (std::size_t i = 0; i < b.points.size();) {
@@ -59,9 +60,12 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
 std::optional<PlottedQuantity> find_plotted(const Mechanism& m,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name) {
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (const auto found = found_number(coordinates[i]); found && found->name == name)
-      return PlottedQuantity{i, false};
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (!is_found(coordinates[i])) continue;
+    const std::string label = coordinate_label(coordinates[i]);
+    if (name == label + ".speed") return PlottedQuantity{i, false, true};
+    if (name == label) return PlottedQuantity{i, false, false};
+  }
   const int measure = measure_index(m, name);
   if (measure < 0) return std::nullopt;
   return PlottedQuantity{static_cast<std::size_t>(measure), true};
@@ -79,14 +83,14 @@ std::string plotted_names(const Mechanism& m, const std::vector<CoordinateSoluti
 
 std::string plotted_name(const ResponsePoint& point, const PlottedQuantity& quantity) {
   if (quantity.measure) return point.measures[quantity.index].name;
-  const auto found = found_number(point.coordinates[quantity.index]);
-  return found ? found->name : std::string();
+  return coordinate_label(point.coordinates[quantity.index]) + (quantity.speed ? ".speed" : "");
 }
 
 double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity) {
   if (!quantity.measure) {
     const CoordinateSolution& c = point.coordinates[quantity.index];
-    return c.speed.value_or(c.value);
+    if (quantity.speed) return c.speed.value_or(0);
+    return c.speed ? std::numeric_limits<double>::quiet_NaN() : c.value;
   }
   return point.measures[quantity.index].value.value_or(std::numeric_limits<double>::quiet_NaN());
 }

@@ -10,6 +10,7 @@ namespace flyball {
 struct PlottedQuantity {
   std::size_t index = 0;
   bool measure = false;
+  bool speed = false; // of the coordinate: how fast it goes on, not where it stands
 };
 
 // Stable parts solid, others dashed; special points are marked. The diagram has at least one point, and every
@@ -17,7 +18,8 @@ struct PlottedQuantity {
 Plot branch_plot(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
                  const PlottedQuantity& shown);
 
-// A free coordinate by its label, else a measure of the mechanism; nothing where there is none.
+// A free coordinate by its label, or its speed ("joint.speed"), else a measure of the mechanism; nothing
+// where there is none.
 std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name);
@@ -25,7 +27,8 @@ std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
 std::string plotted_names(const Mechanism& mechanism, const std::vector<CoordinateSolution>& coordinates);
 // As that takes it.
 std::string plotted_name(const ResponsePoint& point, const PlottedQuantity& quantity);
-// Not a number where a measure is undefined.
+// Not a number where a measure is undefined, or what stands is asked of a coordinate that goes on. The speed
+// of what stands is zero.
 double plotted_value(const ResponsePoint& point, const PlottedQuantity& quantity);
 
 } // namespace flyball

@@ -51,7 +51,7 @@ std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m,
   for (const bool angle : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].driven || all[i].dependent || all[i].angle != angle) continue;
-      out.push_back({i, false});
+      out.push_back({i, false, all[i].speed.has_value()});
       break;
     }
   return out;

@@ -14,6 +14,7 @@ AllSolutions find_states(const SharedMechanism& mechanism, const TaskContext<All
   options.details = false;
   options.cancel = &context.cancel;
   options.progress = context.progress;
+  options.friction = false; // of what is listed one can go to the free coordinates
   return analysis.solve_all(options);
 }
 

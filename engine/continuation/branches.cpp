@@ -354,6 +354,7 @@ std::string_view word(SpecialPointType type) {
   case SpecialPointType::hopf: return "hopf";
   case SpecialPointType::flutter: return "flutter";
   case SpecialPointType::parametric: return "parametric";
+  case SpecialPointType::slip: return "slip";
   }
   return "";
 }

@@ -23,6 +23,7 @@ struct ResponsePoint {
   std::vector<MeasureSolution> measures;         // the scene's, in its order
   bool singular_loops = false;                   // its eigenvalues belong to no modes
   std::string kinks;                             // a sentence on each law on a kink of which it stands
+  std::vector<FrictionForce> frictions;          // where the state rests on dry friction: what it rests on
 };
 
 enum class SpecialPointType {
@@ -31,6 +32,7 @@ enum class SpecialPointType {
   hopf,         // a damped pair of eigenvalues crosses the imaginary axis
   parametric,   // a real Floquet multiplier leaves the unit circle: the drives pump a motion up
   flutter,      // two undamped pairs meet on the imaginary axis and leave it, whatever is damped elsewhere
+  slip, // a state that rests on dry friction ends: a joint begins to slip, or comes to rest and sticks
 };
 std::string_view word(SpecialPointType type);
 

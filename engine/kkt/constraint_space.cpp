@@ -2,6 +2,8 @@
 
 #include "engine/linear/interruption.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 
 void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) {
@@ -27,6 +29,23 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
     basis_.bottomRows(n_ - k).applyHouseholderOnTheLeft(qr_.matrix().col(k).tail(n_ - k - 1),
                                                         qr_.coefficient(k), apply_work_.data());
   }
+}
+
+void ConstraintSpace::dependence(int k, Eigen::VectorXd& combination, Eigen::VectorXd& left) const {
+  const int column = rank_ + k;
+  // J^T P = Q [R_11 R_12; 0 R_22]
+  const Eigen::VectorXd others = qr_.matrix()
+                                     .topLeftCorner(rank_, rank_)
+                                     .triangularView<Eigen::Upper>()
+                                     .solve(Eigen::VectorXd(qr_.matrix().col(column).head(rank_)));
+  combination.setZero(rows_);
+  combination[qr_.permutation()[column]] = 1;
+  for (int i = 0; i < rank_; ++i)
+    combination[qr_.permutation()[i]] = -others[i];
+  left.setZero(n_);
+  const int above = std::min(column + 1, n_);
+  left.segment(rank_, above - rank_) = qr_.matrix().col(column).segment(rank_, above - rank_);
+  qr_.apply_q(left, std::min(rows_, n_));
 }
 
 void ConstraintSpace::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const {

@@ -22,6 +22,10 @@ class ConstraintSpace {
   // Orthonormal basis of the null space: (n, n - rank).
   const Eigen::MatrixXd& basis() const { return basis_; }
 
+  // Of dependent row k, 0 to rows() - rank() - 1: the combination of rows, itself taken once, that vanishes
+  // to the tolerance (rows), and what is left of it (n).
+  void dependence(int k, Eigen::VectorXd& combination, Eigen::VectorXd& left) const;
+
   // The shortest y with jacobian y = rhs on the independent rows.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& y) const;
   // A multiplier vector that best fits jacobian^T lambda = rhs, zero on dependent rows; allocation-free.

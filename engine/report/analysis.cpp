@@ -338,7 +338,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   const bool on_friction = options.friction && !options.nearest && has_friction(*s.mechanism);
   steady.find(problem, s.start, s.drawn, {options.nearest, warm, options.search, options.progress});
   if (on_friction && !steady.holds && !problem.cancelled())
-    if (std::optional<FrictionState> state = find_friction_state(*s.mechanism, options)) {
+    if (std::optional<StateOnFriction> state = find_friction_state(*s.mechanism, options)) {
       state->solution.run_time_s =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       s.on_friction = std::move(state->analysis);
@@ -529,7 +529,12 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });
   for (Entry& e : entries)
     out.equilibria.push_back(std::move(e.solution));
-  out.message = entries.empty() && !undetermined.empty() ? undetermined : message(out);
+  if (options.friction && has_friction(*s.mechanism) && !problem.cancelled())
+    for (Solution& state : find_friction_states(*s.mechanism, options)) {
+      const bool slips = std::ranges::any_of(state.frictions, &FrictionForce::slips);
+      if (slips || entries.empty()) out.equilibria.push_back(std::move(state)); // else bands tell of it
+    }
+  out.message = out.equilibria.empty() && !undetermined.empty() ? undetermined : message(out);
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (!entries[i].kinks.empty()) out.message += " In " + std::to_string(i + 1) + ": " + entries[i].kinks;
   return out;

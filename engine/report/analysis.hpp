@@ -31,7 +31,7 @@ struct SolveOptions {
   // of one core, counted in operations (see SearchOptions). Zero: not at all.
   double search = 0.2;
   // Where there is no steady state without dry friction, and not for `nearest`: whether one that rests on it
-  // is looked for (friction_state.hpp).
+  // is looked for (friction_state.hpp). Of solve_all: whether those are listed.
   bool friction = true;
   // Of solve_all, see SearchOptions.
   double search_time = 1;
@@ -47,7 +47,8 @@ struct SystemSummary {
   std::vector<std::string> notes; // choices worth telling: "the bearing was cut so that ..."
 };
 
-// All equilibria of a bounded search, lowest potential first where there is one, else as found.
+// All equilibria of a bounded search, lowest potential first where there is one, else as found; then steady
+// states that rest on dry friction: what slips, and where there is no other, what it holds as drawn.
 struct AllSolutions {
   std::vector<Solution> equilibria;
   struct Bound {

@@ -9,13 +9,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace flyball {
 namespace {
 
-constexpr std::size_t most_tried = 3; // joints that may slip: each forwards, backwards or not at all
+using Part = FrictionPart;
 
-enum class Part { as_it_is, holds, slips_forwards, slips_backwards };
+constexpr std::size_t most_tried = 3; // joints that may slip: each forwards, backwards or not at all
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
@@ -45,40 +46,22 @@ class Attempt {
           std::vector<Part> parts, const Holding* holding = nullptr)
       : mechanism_(mechanism), frictions_(frictions), parts_(std::move(parts)), holding_(holding) {}
 
-  // Nothing where there is no such state, or it contradicts the parts.
-  std::optional<FrictionState> solve(const SolveOptions& options) const try {
+  // Nothing where there is no such state.
+  std::optional<StateOnFriction> solve(const SolveOptions& options) const try {
     auto changed = std::make_shared<const Mechanism>(driven());
-    FrictionState out{Analysis(changed), {}};
+    StateOnFriction out{Analysis(changed), {}, parts_, {}};
     SolveOptions inner = options;
     inner.friction = inner.warm = false;
     inner.details = true; // what holding takes
     std::erase_if(inner.start, [&](const auto& named) { return plays(named.first); });
     out.solution = out.analysis.solve(inner);
-    if (out.solution.status != Status::converged || !tell(out.solution)) return std::nullopt;
+    if (out.solution.status != Status::converged || !tell(out)) return std::nullopt;
     return out;
   } catch (const SceneError&) { // drives that close a loop, say
     return std::nullopt;
   }
 
- private:
-  bool slips(std::size_t i) const {
-    return parts_[i] == Part::slips_forwards || parts_[i] == Part::slips_backwards;
-  }
-  // Positive where it slips backwards.
-  double slipping_force(std::size_t i) const {
-    const double limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-    return parts_[i] == Part::slips_forwards ? -limit : limit;
-  }
-
-  bool plays(const std::string& name) const {
-    const CoordinateReference named = find_coordinate(mechanism_, name);
-    for (std::size_t i = 0; i < frictions_.size(); ++i)
-      if (parts_[i] != Part::as_it_is && frictions_[i].joint == named.joint &&
-          frictions_[i].coordinate == named.coordinate)
-        return true;
-    return false;
-  }
-
+  // With its coordinates driven as their parts say.
   Mechanism driven() const {
     std::vector<CoordinateReference> held;
     for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -107,17 +90,39 @@ class Attempt {
     return out;
   }
 
+ private:
+  bool slips(std::size_t i) const {
+    return parts_[i] == Part::slips_forwards || parts_[i] == Part::slips_backwards;
+  }
+  // Positive where it slips backwards.
+  double slipping_force(std::size_t i) const {
+    const double limit = friction_limit(friction_at(mechanism_, frictions_[i]));
+    return parts_[i] == Part::slips_forwards ? -limit : limit;
+  }
+
+  bool plays(const std::string& name) const {
+    const CoordinateReference named = find_coordinate(mechanism_, name);
+    for (std::size_t i = 0; i < frictions_.size(); ++i)
+      if (parts_[i] != Part::none && frictions_[i].joint == named.joint &&
+          frictions_[i].coordinate == named.coordinate)
+        return true;
+    return false;
+  }
+
   static double largest(const DriveTorque& drive) {
     if (!drive.range) return drive.value;
     return std::abs(drive.range->most) > std::abs(drive.range->least) ? drive.range->most
                                                                       : drive.range->least;
   }
 
-  // Puts what was found of drives into the words of friction. False where it does not go with the parts.
-  bool tell(Solution& s) const {
+  // Puts what was found of drives into the words of friction. False where it is not found what they give.
+  bool tell(StateOnFriction& out) const {
+    Solution& s = out.solution;
+    out.margins.assign(parts_.size(), std::numeric_limits<double>::infinity());
+    out.goes = true;
     bool slipping = false;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (parts_[i] == Part::as_it_is) continue;
+      if (parts_[i] == Part::none) continue;
       const Joint& joint = mechanism_.joints[place(frictions_[i].joint)];
       const auto is_it = [&](const auto& x) {
         return x.joint == joint.name && x.index == frictions_[i].coordinate;
@@ -135,19 +140,24 @@ class Attempt {
       if (force.slips) {
         slipping = true;
         force.value = slipping_force(i);
-        if (!c->speed || !(*c->speed * *force.value < 0) || std::abs(*c->speed) <= c->speed_error)
-          return false;
+        if (!c->speed) return false;
+        out.margins[i] = parts_[i] == Part::slips_forwards ? *c->speed : -*c->speed;
+        out.goes = out.goes && out.margins[i] > c->speed_error;
       } else {
         c->driven = false;
         c->error = 0;
         if (holding_) {
           force.value = holding_->joints[i].force;
+          out.margins[i] = 1 - *holding_->takes;
         } else {
           if (drive == s.drive_torques.end() || drive->nonunique || (drive->varying && !drive->range))
             return false;
           force.value = largest(*drive);
-          if (!(std::abs(*force.value) <= force.limit)) return false;
+          out.margins[i] = force.limit > 0     ? 1 - std::abs(*force.value) / force.limit
+                           : *force.value == 0 ? 0
+                                               : -std::numeric_limits<double>::infinity();
         }
+        out.goes = out.goes && out.margins[i] >= 0;
       }
       if (drive != s.drive_torques.end()) s.drive_torques.erase(drive);
     }
@@ -187,73 +197,91 @@ std::string names_of(const std::vector<FrictionForce>& frictions, bool slipping)
   return word_list(std::vector<std::string_view>(names.begin(), names.end()), "and");
 }
 
-void add_message(FrictionState& state, std::string text) {
+// What is said of a state, in the place of "Converged.".
+void add_message(StateOnFriction& state, std::string text) {
   constexpr std::string_view plain = "Converged.";
   std::string& message = state.solution.message;
   const std::string rest = message.starts_with(plain) ? message.substr(plain.size()) : " " + message;
   message = std::move(text) + rest;
 }
 
-std::optional<FrictionState> held(const Mechanism& mechanism,
-                                  const std::vector<CoordinateReference>& frictions,
-                                  const SolveOptions& options) {
+bool any_slips(const FrictionParts& parts) {
+  return std::ranges::any_of(
+      parts, [](Part part) { return part == Part::slips_forwards || part == Part::slips_backwards; });
+}
+
+std::optional<StateOnFriction> hold_as_drawn(const Mechanism& mechanism,
+                                             const std::vector<CoordinateReference>& frictions,
+                                             const FrictionParts& parts, const SolveOptions& options) {
   const Holding holding = find_holding(mechanism, options.start, options.cancel);
-  if (!holding.takes || !(*holding.takes <= 1)) return std::nullopt;
-  std::vector<Part> parts(frictions.size(), Part::as_it_is);
-  for (const std::size_t i : holding.independent)
-    parts[i] = Part::holds;
+  if (!holding.takes) return std::nullopt;
   auto state = Attempt(mechanism, frictions, parts, &holding).solve(options);
   if (state)
-    add_message(*state, "Without friction there is no steady state. Friction holds " +
-                            names_of(state->solution.frictions, false) + " as drawn: that takes " +
-                            rounded_text(100 * *holding.takes, 3) + " % of what it can give.");
+    add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) +
+                            " as drawn: that takes " + rounded_text(100 * *holding.takes, 3) +
+                            " % of what it can give.");
   return state;
 }
 
-std::optional<FrictionState> slipping(const Mechanism& mechanism,
-                                      const std::vector<CoordinateReference>& frictions,
-                                      SolveOptions options) {
+std::string slipping_text(const std::vector<FrictionForce>& forces) {
+  const std::string holding = names_of(forces, false);
+  return names_of(forces, true) +
+         (std::ranges::count(forces, true, &FrictionForce::slips) > 1
+              ? " slip at constant rates, against which friction gives its limits"
+              : " slips at a constant rate, against which friction gives its limit") +
+         (holding.empty() ? "." : "; it holds " + holding + ".");
+}
+
+constexpr const char* without_friction = "Without friction there is no steady state. ";
+
+} // namespace
+
+std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  std::vector<FrictionParts> all{FrictionParts(frictions.size(), Part::none)};
   std::vector<std::size_t> tried;
   for (std::size_t i = 0; i < frictions.size(); ++i)
     if (may_slip(mechanism, frictions[i])) tried.push_back(i);
-  if (tried.size() > most_tried) return std::nullopt;
-  std::vector<std::vector<Part>> all{std::vector<Part>(frictions.size(), Part::as_it_is)};
+  if (tried.size() > most_tried) tried.clear();
   for (const std::size_t i : tried) {
-    std::vector<std::vector<Part>> longer;
-    for (const std::vector<Part>& parts : all)
+    std::vector<FrictionParts> longer;
+    for (const FrictionParts& parts : all)
       for (const Part part : {Part::holds, Part::slips_forwards, Part::slips_backwards}) {
         longer.push_back(parts);
         longer.back()[i] = part;
       }
     all = std::move(longer);
   }
-  const auto held_among = [](const std::vector<Part>& parts) {
-    return std::ranges::count(parts, Part::holds);
-  };
-  std::ranges::stable_sort(all, std::greater(), held_among);
-  options.search = 0;
-  std::optional<FrictionState> unstable;
-  for (const std::vector<Part>& parts : all) {
-    if (held_among(parts) == static_cast<std::ptrdiff_t>(tried.size())) continue;
-    auto state = Attempt(mechanism, frictions, parts).solve(options);
-    if (!state) continue;
-    const std::vector<FrictionForce>& forces = state->solution.frictions;
-    const std::string holding = names_of(forces, false);
-    add_message(*state, "Without friction there is no steady state. " + names_of(forces, true) +
-                            (std::ranges::count(forces, true, &FrictionForce::slips) > 1
-                                 ? " slip at constant rates, against which friction gives its limits"
-                                 : " slips at a constant rate, against which friction gives its limit") +
-                            (holding.empty() ? "." : "; it holds " + holding + "."));
-    if (state->solution.stable != false) return state;
-    if (!unstable) unstable = std::move(state);
-  }
-  return unstable;
+  std::erase_if(all, [](const FrictionParts& parts) { return !any_slips(parts); });
+  std::ranges::stable_sort(all, std::greater(),
+                           [](const FrictionParts& parts) { return std::ranges::count(parts, Part::holds); });
+  FrictionParts held(frictions.size(), Part::none);
+  for (const std::size_t i : find_holding(mechanism, {}, cancel).independent)
+    held[i] = Part::holds;
+  all.insert(all.begin(), held);
+  return all;
 }
 
-} // namespace
-
-std::optional<FrictionState> find_friction_state(const Mechanism& mechanism, const SolveOptions& options) {
+std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
+                                                const SolveOptions& options) {
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  SolveOptions inner = options;
+  std::erase_if(inner.start, [&](const auto& named) { // these stand as drawn
+    const CoordinateReference at = find_coordinate(mechanism, named.first);
+    const auto found = std::ranges::find_if(frictions, [&](CoordinateReference f) {
+      return f.joint == at.joint && f.coordinate == at.coordinate;
+    });
+    return found != frictions.end() &&
+           parts[place(static_cast<int>(found - frictions.begin()))] == Part::holds;
+  });
+  if (!any_slips(parts)) return hold_as_drawn(mechanism, frictions, parts, inner);
+  inner.search = 0;
+  auto state = Attempt(mechanism, frictions, parts).solve(inner);
+  if (state) add_message(*state, slipping_text(state->solution.frictions));
+  return state;
+}
+
+std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, const SolveOptions& options) {
   // Joints that it holds stand as drawn.
   for (const auto& [name, value] : options.start) {
     const CoordinateReference named = find_coordinate(mechanism, name);
@@ -261,8 +289,41 @@ std::optional<FrictionState> find_friction_state(const Mechanism& mechanism, con
     const Coordinate& c = mechanism.joints[place(named.joint)].coordinates[place(named.coordinate)];
     if (c.friction && c.drawn != value) return std::nullopt;
   }
-  if (auto state = held(mechanism, frictions, options)) return state;
-  return slipping(mechanism, frictions, options);
+  std::optional<StateOnFriction> unstable;
+  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel)) {
+    auto state = solve_with_parts(mechanism, parts, options);
+    if (!state || !state->goes) continue;
+    state->solution.message.insert(0, without_friction);
+    if (!any_slips(parts) || state->solution.stable != false) return state;
+    if (!unstable) unstable = std::move(state);
+  }
+  return unstable;
+}
+
+std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options) {
+  SolveOptions plain = options;
+  plain.start.clear();
+  std::vector<Solution> out;
+  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel))
+    if (auto state = solve_with_parts(mechanism, parts, plain); state && state->goes)
+      out.push_back(std::move(state->solution));
+  return out;
+}
+
+std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  std::vector<std::string> out;
+  for (const FrictionParts& parts : friction_parts(mechanism)) {
+    if (!any_slips(parts) || std::ranges::count(parts, Part::slips_backwards) > 0) continue;
+    try {
+      for (const CoordinateSolution& c :
+           Analysis(Attempt(mechanism, frictions, parts).driven()).summary().coordinates)
+        if (c.speed && std::ranges::find(out, coordinate_label(c)) == out.end())
+          out.push_back(coordinate_label(c));
+    } catch (const SceneError&) { // drives that close a loop, say
+    }
+  }
+  return out;
 }
 
 } // namespace flyball

@@ -4,23 +4,51 @@
 //   - a joint that it holds stands still, as if driven at the speed zero, and what that takes is within the
 //     limit at every phase of the drives;
 //   - one that slips has its limit for a torque, and its rate is found as that of a drive by torque; it
-//   opposes
-//     that torque.
+//     opposes that torque.
 #pragma once
 
 #include "engine/report/analysis.hpp"
 
-#include <optional>
-
 namespace flyball {
 
-struct FrictionState {
+// What dry friction does in a coordinate that has some.
+enum class FrictionPart {
+  none,  // nothing, or what its share of the limit says
+  holds, // the coordinate as it is drawn
+  slips_forwards,
+  slips_backwards,
+};
+using FrictionParts = std::vector<FrictionPart>; // by find_frictions()
+
+struct StateOnFriction {
   Analysis analysis; // of the mechanism with such joints driven so, at the state
   Solution solution; // in the mechanism's own words, with Solution::frictions
+  FrictionParts parts;
+  // By coordinate with friction, above zero where its part is as it is taken to be: of what slips the rate
+  // the way it slips (rad/s or m/s), of what is held the part of the limit that is left. Where loops leave it
+  // open how joints share, that of all; infinite of those without a part.
+  std::vector<double> margins;
+  bool goes = false; // all parts are as they are taken to be, beyond the errors of rates
 };
+
+// All parts that friction may have: at first what holds all that it can, as drawn; then those with something
+// that slips, most held first. Those alone that hold where more than three joints would have to be tried.
+std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
+                                          const std::atomic<bool>* cancel = nullptr);
+
+// The steady state with these parts, whether or not it goes with them. Nothing where there is none.
+std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
+                                                const SolveOptions& options);
 
 // Where a solve without this found no steady state. Nothing where there is none, or where more than three
 // joints would have to be tried for slipping. Throws SceneError for starts that name nothing.
-std::optional<FrictionState> find_friction_state(const Mechanism& mechanism, const SolveOptions& options);
+std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, const SolveOptions& options);
+
+// All of them, what is held as drawn first; of `options` the starts do not count.
+std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options);
+
+// Names, as of coordinate_label(), of coordinates that stand, but may go on at constant rates where friction
+// slips: those that have it, and those that loops turn with them.
+std::vector<std::string> slipping_coordinates(const Mechanism& mechanism);
 
 } // namespace flyball

@@ -180,8 +180,16 @@ std::string message(const OtherStates& others, Status first) {
 }
 
 std::string message(const AllSolutions& all) {
-  std::string text = all.equilibria.empty() ? "No steady state was found in the range searched."
-                                            : "Found by a bounded search; there may be more.";
+  const auto on_friction =
+      std::ranges::count_if(all.equilibria, [](const Solution& s) { return !s.frictions.empty(); });
+  const bool others = static_cast<std::size_t>(on_friction) < all.equilibria.size();
+  std::string text = others                   ? "Found by a bounded search; there may be more."
+                     : all.equilibria.empty() ? "No steady state was found in the range searched."
+                                              : "Without friction no steady state was found in the range "
+                                                "searched.";
+  if (on_friction > 0)
+    text += on_friction == 1 ? " One rests on friction."
+                             : " " + std::to_string(on_friction) + " rest on friction.";
   if (all.passing > 0)
     text += " " + std::to_string(all.passing) +
             (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"

@@ -48,6 +48,59 @@ void add_noise(const Problem& problem, double left, double opening, Workspace& w
   }
 }
 
+// The responses to noise forces (scaled) of this size, with signs in four patterns.
+void add_responses(const Problem& problem, const Eigen::VectorXd& size, Workspace& w,
+                   Eigen::VectorXd& error) {
+  w.residual.phi.setZero();
+  for (unsigned pattern = 0; pattern < 4; ++pattern) {
+    for (Eigen::Index i = 0; i < size.size(); ++i)
+      w.residual.f[i] = noise_sign(pattern, i) * size[i] / problem.scaling.column[i];
+    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+    if (w.scaled_step.allFinite()) error += w.scaled_step.cwiseProduct(problem.scaling.column).cwiseAbs();
+  }
+}
+
+// What the solution for the last step, |x|, rounds: that of a matrix beside K, by eps |K| (Higham, chapter
+// 9). A step is never shorter than the last digits of the coordinates, which a far one spreads to others
+// where K couples it with them (Skeel's condition, |K^-1| |K| |x|; ibid., chapter 7). `step` (scaled).
+void add_last_digits(const Problem& problem, const Unknowns& z, const DenseKkt& dense,
+                     const Eigen::VectorXd& step, Workspace& w, Eigen::VectorXd& error) {
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  constexpr double beside_the_rest = 0.01; // less adds nothing that is worth knowing
+  Eigen::VectorXd x = step.cwiseAbs();
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type != LinkType::spherical)
+      x[link.v] = std::max(x[link.v], rounding * std::abs(z.q[link.q]) / problem.scaling.column[link.v]);
+  const Eigen::VectorXd noise = rounding * (dense.stiffness().cwiseAbs() * x);
+  const Eigen::VectorXd rest =
+      2 * extended_rounding * w.magnitudes.force.cwiseProduct(problem.scaling.column);
+  if ((noise.array() > beside_the_rest * rest.array()).any()) add_responses(problem, noise, w, error);
+}
+
+// Rows that count as dependent on others carry nothing of the load, though any part of it could be theirs: to
+// them it acts by what is left of the combination that vanishes, here and within the error of the state.
+void add_shared_loads(const Problem& problem, const Unknowns& z, const DenseKkt& dense, Workspace& w,
+                      Eigen::VectorXd& error) {
+  constexpr double takes_part = 1e-9; // of a combination
+  const ConstraintSpace& rows = dense.constraints();
+  const double off = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
+  Eigen::VectorXd noise = Eigen::VectorXd::Zero(problem.system.nv), combination, left;
+  for (int k = 0; k < rows.rows() - rows.rank(); ++k) {
+    rows.dependence(k, combination, left);
+    double load = 0;
+    Eigen::VectorXd reach = Eigen::VectorXd::Zero(noise.size());
+    for (Eigen::Index i = 0; i < combination.size(); ++i) {
+      if (!(std::abs(combination[i]) > takes_part)) continue;
+      load = std::max(load, std::abs(z.lambda[i] / problem.scaling.row[i]));
+      reach = reach.cwiseMax(dense.jacobian().row(i).transpose().cwiseAbs());
+    }
+    noise += load * left.cwiseAbs();
+    for (Eigen::Index v = 0; v < noise.size(); ++v)
+      if (reach[v] > 0) noise[v] += load * off;
+  }
+  add_responses(problem, noise, w, error);
+}
+
 // Whether every axis points along one of the world's: then normalising rounds nothing.
 bool has_plain_axes(const Problem& problem) {
   for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
@@ -267,7 +320,11 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   }
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
+  const Eigen::VectorXd last_step = w.scaled_step;
   add_noise(problem, left, opening, w, error);
+  if (dense && last_step.allFinite()) add_last_digits(problem, z, *dense, last_step, w, error);
+  if (dense && dense->constraints().rank() < system.rows && error.allFinite())
+    add_shared_loads(problem, z, *dense, w, error);
   add_rounding_of_data(problem, w, estimate.data);
   error += extended_rounding * problem.scaling.column;
   estimate.singular_loops = at_singular_loops(problem, z, w);

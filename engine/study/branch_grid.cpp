@@ -3,6 +3,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/study/friction_branches.hpp"
 
 namespace flyball {
 
@@ -30,7 +31,7 @@ GridBranches GridFollower::follow(std::size_t i) const {
     Mechanism there = mechanism_;
     set_parameters(there, numbers);
     validate(there);
-    out.diagram = follow_branches(there, address_, from_, to_, options_);
+    out.diagram = follow_response(there, address_, from_, to_, options_);
     out.hunting = describe_hopf_points(there, address_, out.diagram);
     if (has_friction(there)) out.ribbons = friction_ribbons(there, address_, out.diagram);
   } catch (const SceneError& error) {

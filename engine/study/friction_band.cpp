@@ -6,6 +6,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/holding.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -337,9 +338,13 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     for (Index i = 0; i < count; ++i)
       for (const double sense : {1., -1.})
         if (measured(i)) box.go_to_corner(i, sense);
-    const CoordinateReference at = find_frictions(mechanism).front();
-    const std::string frictional =
-        coordinate_name(mechanism.joints[static_cast<std::size_t>(at.joint)], at.coordinate);
+    const bool one_motion =
+        free.size() == 1 ||
+        find_holding(mechanism, start_values(state.coordinates), options.cancel).independent.size() == 1;
+    std::vector<std::string> frictional;
+    for (const CoordinateReference& at : find_frictions(mechanism))
+      frictional.push_back(
+          coordinate_name(mechanism.joints[static_cast<std::size_t>(at.joint)], at.coordinate));
     const auto shares = [](const VectorXd& p) { return std::vector<double>(p.begin(), p.end()); };
     for (Index i = 0; i < count; ++i) {
       if (!measured(i)) continue;
@@ -351,7 +356,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
         if (const double worst = std::max(box.errors(low)[i] + below, box.errors(high)[i] + above);
             std::isfinite(worst))
           error = worst;
-      const bool stands = free.size() == 1 && name == frictional;
+      const bool stands = one_motion && std::ranges::find(frictional, name) != frictional.end();
       band.extents.push_back({name, box.unit(i), box.first().state.values[i], low.state.values[i],
                               high.state.values[i], error, shares(low.state.p), shares(high.state.p),
                               stands});

@@ -15,8 +15,8 @@ struct BandExtent {
   std::optional<double> error;    // of both, estimated; none where the curve was followed through folds
   std::vector<double> shares_low, // of the joints with friction there; empty where the curve was followed
       shares_high;                // through folds
-  bool stands =
-      false; // of the one joint with friction: it stays as it is while nothing pushes it over an end
+  bool stands = false; // a joint with friction, and that moves in one way only, as do all that have some: it
+                       // stays as it is while nothing pushes it over an end
 };
 
 struct FrictionBand {

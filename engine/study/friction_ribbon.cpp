@@ -2,10 +2,34 @@
 
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/mechanism/frictions.hpp"
+#include "engine/study/slow_change.hpp"
 
 #include <algorithm>
 
 namespace flyball {
+namespace {
+
+// Of several joints with friction that move by themselves.
+void add_slow_change(const Mechanism& mechanism, const std::string& address,
+                     std::span<const RibbonPlace> places, const std::atomic<bool>* cancel,
+                     std::vector<RibbonPoint>& points) {
+  if (find_frictions(mechanism).size() < 2 || points.size() < 2 || points.size() < places.size()) return;
+  for (const RibbonPoint& point : points)
+    if (point.extents.size() != points.front().extents.size() || point.extents.empty() ||
+        std::ranges::any_of(point.extents, &BandExtent::stands))
+      return;
+  std::vector<std::string> names;
+  for (const BandExtent& extent : points.front().extents)
+    names.push_back(extent.name);
+  SlowChange slow = find_slow_change(mechanism, address, places, names, cancel);
+  points.front().no_way = std::move(slow.message);
+  for (const std::vector<HysteresisPoint>& way : slow.way)
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i].slow.push_back(way[i]);
+}
+
+} // namespace
 
 std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::string& address,
                                          std::span<const RibbonPlace> places, const std::atomic<bool>* cancel,
@@ -23,6 +47,7 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
     out.push_back(std::move(point));
     if (progress) progress(out.size());
   }
+  add_slow_change(mechanism, address, places, cancel, out);
   return out;
 }
 
@@ -35,6 +60,12 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
     std::vector<RibbonPlace> places;
     for (const ResponsePoint& point : branch.points)
       places.push_back({point.parameter, start_values(point.coordinates)});
+    if (!branch.points.empty() && !branch.points.front().frictions.empty()) { // it has no band
+      out.emplace_back();
+      for (const RibbonPlace& place : places)
+        out.back().push_back({place.number, {}});
+      continue;
+    }
     out.push_back(friction_ribbon(mechanism, address, places, cancel, [&](std::size_t done) {
       if (progress) progress(done, places.size());
     }));
@@ -43,6 +74,11 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
 }
 
 std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name) {
+  std::vector<HysteresisPoint> slow;
+  for (const RibbonPoint& point : points)
+    if (const BandExtent* extent = find_extent(point, name); extent && !point.slow.empty())
+      slow.push_back(point.slow[static_cast<std::size_t>(extent - point.extents.data())]);
+  if (slow.size() == points.size()) return slow;
   std::vector<const BandExtent*> extents;
   for (std::size_t i = 0; i < points.size(); ++i) {
     extents.push_back(find_extent(points[i], name));

@@ -15,9 +15,18 @@ struct RibbonPlace {
   std::vector<std::pair<std::string, double>> start; // the state there, as of SolveOptions
 };
 
+// Where something stands as the varied number goes slowly from the first point to the last and back, again
+// and again.
+struct HysteresisPoint {
+  double forth = 0, back = 0; // rad, m, or the measure's unit
+};
+
 struct RibbonPoint {
   double number = 0;
   std::vector<BandExtent> extents; // empty where there is no band, as at a fold
+  // By extent, of several joints with friction that move by themselves (slow_change.hpp); else empty.
+  std::vector<HysteresisPoint> slow{};
+  std::string no_way{}; // of the first point: why several such joints have none
 };
 
 // `progress`: places done. Cancelled, points are missing at the end. Throws SceneError for a number that the
@@ -33,13 +42,11 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
                  const std::atomic<bool>* cancel = nullptr,
                  const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
-// Where the coordinate of the one joint with friction stands as the varied number goes slowly from the first
-// point to the last and back, again and again: it stays until an end of the band comes to it, and goes on
-// with that (a play operator: Krasnoselskii and Pokrovskii, Systems with Hysteresis, 1989). By point; empty
-// where the points have no such band, or go back in the number, as beyond a fold.
-struct HysteresisPoint {
-  double forth = 0, back = 0; // rad or m
-};
+// Of a single motion that has friction, in one joint or in several that loops tie to it: where the coordinate
+// of such a joint stands as the varied number goes slowly. It stays until an end of the band comes to it, and
+// goes on with that (a play operator: Krasnoselskii and Pokrovskii, Systems with Hysteresis, 1989). Of
+// several motions what was found of any coordinate or measure (RibbonPoint::slow). By point; empty where the
+// points have no such band, or go back in the number, as beyond a fold.
 std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name);
 
 // Null where it has none of this name.

@@ -275,6 +275,43 @@ def hunting(folder):
               abs(one["frequency_rad_s"] / two["frequency_rad_s"] - 1) < 1e-9)
 
 
+def slipping(folder):
+    """A disc on a shaft that the air brakes by 0.09 N m s: friction of 1.8 N m holds it up to 20 rad/s, then slips."""
+    body = {"mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.02]}
+    turning = {"type": "revolute", "at": [0, 0, 0], "axis": [0, 0, 1]}
+    scene = {"flyball": 2, "name": "Disc", "bodies": [dict(body, name="shaft"), dict(body, name="disc")],
+             "joints": [dict(turning, name="shaft", bodies=["ground", "shaft"], drive={"speed": 20}),
+                        dict(turning, name="free", bodies=["shaft", "disc"], friction={"limit": 1.8})],
+             "forces": [{"name": name, "type": "drag", "body": "disc", "at": [x, 0, 0], "linear": 0.5}
+                        for name, x in (("a", 0.3), ("b", -0.3))]}
+    file = folder / "slipping.json"
+    file.write_text(json.dumps(scene))
+    vary = ("--vary", "joints.shaft.drive.speed=11:31:5")
+    rows = list(csv.DictReader(run("sweep", file, *vary, "--csv", "-")[1].decode().splitlines()))
+    wanted = [("held", "0", 0), ("held", "0", 0), ("slips", "", -1), ("slips", "", -6), ("slips", "", -11)]
+    check("a sweep tells whether friction holds, and how fast it slips", len(rows) == 5 and all(
+        (row["rests_on_friction"], row["free"]) == w[:2] and abs(float(row["free.speed"]) - w[2]) < 1e-9
+        for row, w in zip(rows, wanted)))
+    points = json.loads(run("sweep", file, *vary, "--json")[1])["points"]
+    check("a sweep tells in JSON what it rests on",
+          [p["rests_on_friction"]["free"]["slips"] for p in points] == [False, False, True, True, True])
+    vary = ("--vary", "joints.shaft.drive.speed=11:31")
+    rows = list(csv.DictReader(run("branch", file, *vary, "--csv", "-")[1].decode().splitlines()))
+    slip = [row for row in rows if row["special"] == "slip"]
+    check("a branch goes from what is held to what slips", {row["rests_on_friction"] for row in rows} == {"held", "slips"}
+          and len(slip) == 1 and abs(float(slip[0]["joints.shaft.drive.speed"]) - 20) < 1e-9
+          and all(abs(float(row["free.speed"]) - min(0, 20 - float(row["joints.shaft.drive.speed"]))) < 1e-8
+                  for row in rows))
+    code, out, error = run("branch", file, *vary, "--svg", "-")
+    check("a branch draws how fast it slips", code == 0 and b"free.speed" in out and b"slip 20" in out)
+    code, out, _ = run("solve", file, "--all", "--set", "joints.shaft.drive.speed=25")
+    check("all: what slips", code == 0 and b"free slips at a constant rate" in out)
+    friction = pathlib.Path(SCENE).parent / "governor_friction.json"
+    found = json.loads(run("solve", friction, "--all", "--json")[1])["equilibria"]
+    band = json.loads(run("solve", friction, "--json")[1])["friction"]["band"]
+    check("all: each has its band", any(e["friction"]["band"] == band for e in found))
+
+
 def parts(folder):
     """What a killed program left is removed by the next that writes there; what another one writes stays."""
     own = folder / "parts"
@@ -296,7 +333,7 @@ def parts(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for part in (reasons, periodic, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
+    for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
                  hunting, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()

@@ -4,14 +4,18 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/study/friction_branches.hpp"
 #include "engine/study/friction_report.hpp"
+#include "engine/study/sweep.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/friction_scenes.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <string>
 
 using namespace flyball;
 using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
@@ -164,4 +168,93 @@ TEST_CASE("friction in the planet of a differential that slips, against the moti
   REQUIRE(s.status == Status::converged);
   CHECK(s.frictions.at(0).slips);
   expect_motion(m, s, "planet");
+}
+
+TEST_CASE("the load of a clutch rises: it holds up to T / w, then slips, in a sweep and in a branch") {
+  const double limit = 0.5, speed = 20, change = limit / speed;
+  const std::string load = "joints.brake.damping";
+  const Mechanism m = disc_on_shaft(turning("clutch", "shaft", R"("friction": {"limit": 0.5})") + ", " +
+                                    turning("brake", "ground", R"("damping": 0.01)"));
+  for (const SweepPoint& p : sweep(m, std::vector<Variation>{{load, 0.01, 0.09, 5}})) {
+    const double c = p.parameters[0];
+    CAPTURE(c);
+    REQUIRE(p.solution.status == Status::converged);
+    REQUIRE(p.solution.frictions.size() == 1);
+    CHECK(p.solution.frictions[0].slips == (c > change));
+    CHECK_THAT(rate(p.solution, "brake"), WithinRel(c > change ? limit / c : speed, 1e-12));
+  }
+  for (const bool rises : {true, false}) {
+    CAPTURE(rises);
+    const ResponseDiagram d =
+        rises ? follow_response(m, load, 0.01, 0.1) : follow_response(m, load, 0.1, 0.01);
+    INFO(d.message);
+    REQUIRE(d.status == Status::converged);
+    REQUIRE(d.branches.size() == 2);
+    REQUIRE(d.special.size() == 1);
+    CHECK(d.special[0].type == SpecialPointType::slip);
+    CHECK_THAT(d.special[0].at.parameter, WithinRel(change, 1e-10));
+    CHECK(d.special[0].branch == 0);
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::vector<ResponsePoint>& points = d.branches[b].points;
+      const bool slips = (b == 0) != rises;
+      CHECK_THAT((b == 0 ? points.back() : points.front()).parameter, WithinRel(change, 1e-10));
+      REQUIRE(points.size() > 8);
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const ResponsePoint& p = points[i];
+        REQUIRE(p.frictions.size() == 1);
+        CHECK(p.frictions[0].slips == slips);
+        CHECK(p.stable == true);
+        CHECK_THAT(p.frictions[0].value.value(), WithinRel(slips ? limit : p.parameter * speed, 1e-9));
+        const CoordinateSolution& clutch = p.coordinates.at(1);
+        REQUIRE(clutch.joint == "clutch");
+        REQUIRE(clutch.speed.has_value() == slips);
+        if (slips) CHECK_THAT(*clutch.speed, WithinAbs(limit / p.parameter - speed, 1e-9));
+        // Straight lines between points are no farther off than they are drawn.
+        if (!slips || i == 0) continue;
+        const double middle = (p.parameter + points[i - 1].parameter) / 2;
+        CHECK_THAT((*clutch.speed + *points[i - 1].coordinates[1].speed) / 2,
+                   WithinAbs(limit / middle - speed, 0.005 * speed));
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "a branch goes on where a steady state without friction ends, by what friction holds and lets slip") {
+  // The spring gives 1 N m at most, which balances 0.09 w up to w = 11.1; as drawn it gives nothing, and
+  // friction 2 N m.
+  const Mechanism m = disc_on_shaft(
+      turning("free", "shaft",
+              R"json("friction": {"limit": 2}, "spring": {"force": "=1 N m*tanh(deflection/(1 rad))"})json"),
+      paddles);
+  const ResponseDiagram d = follow_response(m, "joints.shaft.drive.speed", 5, 30);
+  INFO(d.message);
+  REQUIRE(d.branches.size() == 2);
+  CHECK(d.branches[0].points.front().frictions.empty());
+  CHECK(d.branches[0].points.back().parameter < 1 / 0.09);
+  const std::vector<ResponsePoint>& held = d.branches[1].points;
+  CHECK(held.front().parameter == Approx(d.branches[0].points.back().parameter).epsilon(1e-9));
+  CHECK(d.branches[1].begin == "a steady state without friction begins");
+  CHECK_THAT(held.back().parameter, WithinRel(2 / 0.09, 1e-9));
+}
+
+TEST_CASE("all steady states: what slips is listed, and bands tell of what friction holds") {
+  const AllSolutions slipping =
+      Analysis(disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 0.5})"), paddles)).solve_all();
+  INFO(slipping.message);
+  REQUIRE(slipping.equilibria.size() == 1);
+  CHECK(slipping.equilibria[0].frictions.at(0).slips);
+  CHECK_THAT(rate(slipping.equilibria[0], "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
+  CHECK_THAT(slipping.message, ContainsSubstring("Without friction no steady state was found"));
+  CHECK_THAT(slipping.message, ContainsSubstring("One rests on friction."));
+
+  const AllSolutions held =
+      Analysis(disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 5})"), paddles)).solve_all();
+  REQUIRE(held.equilibria.size() == 1);
+  CHECK_FALSE(held.equilibria[0].frictions.at(0).slips);
+
+  const AllSolutions pendulum = Analysis(rubbing_pendulum(1.5)).solve_all();
+  REQUIRE(pendulum.equilibria.size() == 2);
+  for (const Solution& s : pendulum.equilibria)
+    CHECK(s.frictions.empty());
 }

@@ -1,0 +1,275 @@
+#include "engine/study/friction_branches.hpp"
+
+#include "engine/continuation/branch_follower.hpp"
+#include "engine/linear/interruption.hpp"
+#include "engine/linear/root_bracket.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/report/friction_state.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace flyball {
+namespace {
+
+constexpr int friction_intervals = 60; // of the range, of which each may be halved
+constexpr int most_friction_halvings = 7;
+constexpr double friction_bend = 2e-3; // of a value: how far from the straight line a point may lie
+constexpr double friction_border = 1e-13; // of the range: how closely ends are located
+constexpr int most_edge_steps = 120;
+
+// A state with given parts at a value of the number, whether it goes with them or not.
+struct FrictionPlace {
+  double number = 0;
+  ResponsePoint point;
+  std::vector<double> margins;
+  bool goes = false;
+};
+
+ResponsePoint response_point_of(const Solution& s, double number) {
+  ResponsePoint out;
+  out.parameter = number;
+  out.coordinates = s.coordinates;
+  out.stable = s.stable;
+  out.stability_reason = s.stability_reason;
+  if (s.eigenvalues) out.eigenvalues = *s.eigenvalues;
+  out.floquet = s.floquet;
+  out.reactions = s.reactions;
+  out.drive_torques = s.drive_torques;
+  out.measures = s.measures;
+  out.singular_loops = s.singular_loops;
+  out.frictions = s.frictions;
+  return out;
+}
+
+// What is followed of a state: where coordinates stand, or how fast they go on.
+std::vector<double> values_of(const FrictionPlace& place) {
+  std::vector<double> out;
+  for (const CoordinateSolution& c : place.point.coordinates)
+    out.push_back(c.speed ? *c.speed : c.driven ? 0 : c.value);
+  return out;
+}
+
+class FrictionFollower {
+ public:
+  FrictionFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
+                   const BranchOptions& options, ResponseDiagram& diagram)
+      : mechanism_(mechanism), address_(address), from_(from), to_(to), options_(options), out_(diagram) {
+    for (const ResponseBranch& branch : diagram.branches) {
+      const auto [low, high] = std::ranges::minmax(branch.points, {}, &ResponsePoint::parameter);
+      covered_.emplace_back(low.parameter, high.parameter);
+    }
+  }
+
+  void follow() {
+    std::vector<Run> runs;
+    for (const FrictionParts& parts : friction_parts(mechanism_, options_.cancel))
+      follow(parts, runs);
+    std::ranges::stable_sort(
+        runs, {}, [&](const Run& run) { return (run.places.front().number - from_) / (to_ - from_); });
+    for (Run& run : runs)
+      add(std::move(run));
+    if (runs.empty()) return;
+    const std::string count =
+        std::to_string(runs.size()) + (runs.size() == 1 ? " branch rests" : " branches rest");
+    out_.message = out_.status == Status::converged
+                       ? out_.message + " " + count + " on friction."
+                       : count + " on friction: without it there is no steady state.";
+    out_.status = Status::converged;
+  }
+
+ private:
+  struct Edge {
+    FrictionPlace last; // that goes
+    std::string why;    // it goes no farther
+    bool slips = false; // a joint begins to slip, or sticks
+  };
+  struct Run {
+    std::vector<FrictionPlace> places;
+    std::string begin, end;
+    bool slips_at_begin = false, slips_at_end = false;
+  };
+
+  double number(int i) const {
+    return i == friction_intervals ? to_ : from_ + (to_ - from_) * i / friction_intervals;
+  }
+  double range() const { return std::abs(to_ - from_); }
+
+  bool covered(double number) const {
+    return std::ranges::any_of(
+        covered_, [&](const auto& part) { return part.first <= number && number <= part.second; });
+  }
+
+  // `beside`: a place from which to begin; null: none.
+  std::optional<FrictionPlace> at(const FrictionParts& parts, double number,
+                                  const FrictionPlace* beside) const try {
+    interruption_point();
+    SolveOptions solve;
+    solve.cancel = options_.cancel;
+    solve.nearest = beside != nullptr;
+    solve.search = 0;
+    if (beside) solve.start = start_values(beside->point.coordinates);
+    auto state = solve_with_parts(with_parameter(mechanism_, address_, number), parts, solve);
+    if (!state) return std::nullopt;
+    return FrictionPlace{number, response_point_of(state->solution, number), std::move(state->margins),
+                         state->goes};
+  } catch (const SceneError&) { // of numbers of which no mechanism can be made
+    return std::nullopt;
+  }
+
+  void follow(const FrictionParts& parts, std::vector<Run>& runs) const {
+    Run run;
+    std::optional<FrictionPlace> before;
+    const auto close = [&](std::string why, bool slips) {
+      run.end = std::move(why);
+      run.slips_at_end = slips;
+      if (!run.places.empty()) runs.push_back(std::move(run));
+      run = {};
+    };
+    for (int i = 0; i <= friction_intervals; ++i) {
+      std::optional<FrictionPlace> now;
+      if (!covered(number(i))) {
+        if (before) now = at(parts, number(i), &*before);
+        if (!now) now = at(parts, number(i), nullptr);
+      }
+      const bool went = before && before->goes, goes = now && now->goes;
+      if (went && !goes) {
+        Edge edge = find_edge(parts, *before, number(i), now ? &*now : nullptr);
+        if (edge.last.number != before->number) append(parts, run, std::move(edge.last));
+        close(std::move(edge.why), edge.slips);
+      } else if (goes && !went) {
+        if (i == 0) {
+          run.places.push_back(*now);
+        } else {
+          Edge edge = find_edge(parts, *now, number(i - 1), before ? &*before : nullptr);
+          run.places.push_back(edge.last);
+          run.begin = std::move(edge.why);
+          run.slips_at_begin = edge.slips;
+          if (edge.last.number != now->number) append(parts, run, *now);
+        }
+      } else if (goes) {
+        if (!append(parts, run, *now)) {
+          close("solving leads to no state beside it, as at a fold", false);
+          run.places.push_back(*now);
+          run.begin = "solving leads to no state beside it, as at a fold";
+        }
+      }
+      before = std::move(now);
+    }
+    close("the end of the range", false);
+  }
+
+  // The next place of a run, with those between that it takes. False where they do not hang together.
+  bool append(const FrictionParts& parts, Run& run, FrictionPlace next) const {
+    std::vector<FrictionPlace> between;
+    const bool whole = refine(parts, run.places.back(), next, most_friction_halvings, between);
+    if (!whole) return false;
+    std::ranges::move(between, std::back_inserter(run.places));
+    run.places.push_back(std::move(next));
+    return true;
+  }
+
+  // Places between two of which no three that follow one another bend by more than is drawn.
+  bool refine(const FrictionParts& parts, const FrictionPlace& a, const FrictionPlace& b, int halvings,
+              std::vector<FrictionPlace>& out) const {
+    std::optional<FrictionPlace> middle = at(parts, a.number + (b.number - a.number) / 2, &a);
+    if (!middle || !middle->goes) return false;
+    const std::vector<double> from = values_of(a), to = values_of(b), here = values_of(*middle);
+    double most = 0;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      const double size = std::max({1e-3, std::abs(from[i]), std::abs(to[i])});
+      most = std::max(most, std::abs(here[i] - (from[i] + to[i]) / 2) / size);
+    }
+    if (most <= friction_bend) return true; // it is on the line that is drawn
+    if (halvings == 0) return most <= 0.05;
+    std::vector<FrictionPlace> before, after;
+    if (!refine(parts, a, *middle, halvings - 1, before) || !refine(parts, *middle, b, halvings - 1, after))
+      return false;
+    std::ranges::move(before, std::back_inserter(out));
+    out.push_back(std::move(*middle));
+    std::ranges::move(after, std::back_inserter(out));
+    return true;
+  }
+
+  // Where between a place that goes and a value at which there is none, or one that does not go, it ends.
+  Edge find_edge(const FrictionParts& parts, const FrictionPlace& good, double bad_number,
+                 const FrictionPlace* bad) const {
+    constexpr double never = -std::numeric_limits<double>::infinity();
+    const auto margin = [&](const FrictionPlace& place) {
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < place.margins.size(); ++i)
+        if (std::isfinite(good.margins[i]))
+          least = std::min(least, place.margins[i] / std::max(good.margins[i], 1e-300));
+      return least;
+    };
+    Edge edge{good, {}, false};
+    double low = margin(good), high = bad ? margin(*bad) : never;
+    if (!(low > 0) || !(high < 0)) low = 1, high = never; // within the errors of a rate
+    RootBracket bracket(good.number, low, bad_number, high);
+    bool is_covered = covered(bad_number);
+    edge.slips = std::isfinite(high);
+    for (int i = 0; i < most_edge_steps && bracket.width() > friction_border * range(); ++i) {
+      const double here = bracket.next();
+      if (here == bracket.low() || here == bracket.high()) break;
+      const bool ends = covered(here);
+      const std::optional<FrictionPlace> there = ends ? std::nullopt : at(parts, here, &edge.last);
+      const double value = there ? margin(*there) : never;
+      if (!(value < 0)) {
+        edge.last = *there;
+      } else {
+        edge.slips = std::isfinite(value);
+        is_covered = ends;
+      }
+      if (value == 0) break;
+      bracket.take(here, value);
+    }
+    edge.why = edge.slips   ? "a joint with friction begins to slip, or sticks"
+               : is_covered ? "a steady state without friction begins"
+                            : "solving leads to no state beside it, as at a fold";
+    return edge;
+  }
+
+  void add(Run run) {
+    const int branch = static_cast<int>(out_.branches.size());
+    const auto tell_slip = [&](const FrictionPlace& place) {
+      const bool known = std::ranges::any_of(out_.special, [&](const SpecialPoint& s) {
+        return s.type == SpecialPointType::slip && std::abs(s.at.parameter - place.number) < 1e-9 * range();
+      });
+      if (!known) out_.special.push_back({SpecialPointType::slip, place.point, branch});
+    };
+    if (run.slips_at_begin) tell_slip(run.places.front());
+    if (run.slips_at_end) tell_slip(run.places.back());
+    ResponseBranch& to = out_.branches.emplace_back();
+    for (FrictionPlace& place : run.places)
+      to.points.push_back(std::move(place.point));
+    to.begin = std::move(run.begin);
+    to.end = std::move(run.end);
+  }
+
+  const Mechanism& mechanism_;
+  const std::string& address_;
+  double from_, to_;
+  const BranchOptions& options_;
+  ResponseDiagram& out_;
+  std::vector<std::pair<double, double>> covered_; // by branches without friction
+};
+
+} // namespace
+
+ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
+                                double to, const BranchOptions& options) {
+  ResponseDiagram out = follow_branches(mechanism, address, from, to, options);
+  if (!has_friction(mechanism)) return out;
+  const auto begin = std::chrono::steady_clock::now();
+  const Interruptible scope(options.cancel);
+  try {
+    FrictionFollower(mechanism, address, from, to, options, out).follow();
+  } catch (const Interrupted&) { // what was found stays
+  }
+  out.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return out;
+}
+
+} // namespace flyball
