@@ -47,6 +47,11 @@ PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, c
   if (name.empty() && free != all.end())
     return {static_cast<std::size_t>(free - all.begin()), false, free->speed || slips(d, free - all.begin())};
   if (const auto found = find_plotted(m, all, name)) return *found;
+  for (std::size_t i = 0; i < all.size(); ++i) { // in the first state it does the other
+    if (!slips(d, static_cast<std::ptrdiff_t>(i))) continue;
+    for (const bool speed : {false, true})
+      if (name == coordinate_label(all[i]) + (speed ? ".speed" : "")) return {i, false, speed};
+  }
   const std::string known = plotted_names(m, all);
   throw SceneError("--plot " + name,
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);

@@ -60,12 +60,9 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
 std::optional<PlottedQuantity> find_plotted(const Mechanism& m,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name) {
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (!is_found(coordinates[i])) continue;
-    const std::string label = coordinate_label(coordinates[i]);
-    if (name == label + ".speed") return PlottedQuantity{i, false, true};
-    if (name == label) return PlottedQuantity{i, false, false};
-  }
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    if (const auto found = found_number(coordinates[i]); found && found->name == name)
+      return PlottedQuantity{i, false, coordinates[i].speed.has_value()};
   const int measure = measure_index(m, name);
   if (measure < 0) return std::nullopt;
   return PlottedQuantity{static_cast<std::size_t>(measure), true};

@@ -18,8 +18,8 @@ struct PlottedQuantity {
 Plot branch_plot(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
                  const PlottedQuantity& shown);
 
-// A free coordinate by its label, or its speed ("joint.speed"), else a measure of the mechanism; nothing
-// where there is none.
+// What is found of a coordinate by its name (found_number()), else a measure of the mechanism; nothing where
+// there is none.
 std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name);
