@@ -27,7 +27,8 @@ constexpr int most_slow_corrections = 12;
 constexpr double same_round = 1e-10;                         // scaled
 constexpr double stands_still = 1e-12, stands_nearly = 1e-9; // scaled: how exactly a joint is held
 constexpr double longest_share_step = 0.25;
-constexpr double no_slow_rate = 1e-9;       // of the largest of its kind
+constexpr double other_rate = 1e-6;   // of the largest of its kind: two ways that differ by more are two
+constexpr double no_slow_rate = 1e-9; // of the largest of its kind
 constexpr double rounding_of_share = 1e-12; // of the limit
 
 // Where no slow way goes on, with the reason.
@@ -109,6 +110,9 @@ class SlowWay {
     return map_.rates().col(0).head(joints_) + map_.rates().block(0, 1, joints_, joints_) * shares;
   }
 
+  // How fast the joints would go with the number if none stood.
+  double free_rate() const { return map_.rates().col(0).head(joints_).norm(); }
+
   // The state with the numbers `p` but for those in `unknown` (columns), at which joints that stand do so
   // where they are kept. `beyond`: the joint whose share would pass its limit.
   Outcome hold(VectorXd p, const std::vector<Index>& unknown, const std::vector<Index>& stand,
@@ -184,9 +188,8 @@ class SlowWay {
 
   // Of those that slip, whose rate is against its share no longer; -1: none.
   Index first_to_turn(const VectorXd& moves, double sense) const {
-    const double size = moves.lpNorm<Eigen::Infinity>();
     Index worst = -1;
-    double most = no_slow_rate * size;
+    double most = no_slow_rate * std::max(moves.norm(), free_rate());
     for (Index i = 0; i < joints_; ++i)
       if (slips(i) && sense * moves[i] * share(i) > most) {
         most = sense * moves[i] * share(i);
@@ -276,8 +279,9 @@ class SlowWay {
       std::vector<bool> slips;
       VectorXd shares, moves;
     };
-    std::vector<Choice> found;
+    std::vector<Choice> all, found;
     bool open = false;
+    double share_size = 1 / map_.range()[0], move_size = free_rate(); // of rates
     for (unsigned bits = 0; bits < (1U << limits.size()); ++bits) {
       Choice choice{std::vector<bool>(static_cast<std::size_t>(joints_), false), {}, {}};
       for (std::size_t k = 0; k < limits.size(); ++k)
@@ -292,30 +296,32 @@ class SlowWay {
       }
       choice.shares = sense * *shares;
       choice.moves = sense * joint_rates(*shares);
-      const double share_size = no_slow_rate * choice.shares.lpNorm<Eigen::Infinity>(),
-                   move_size = no_slow_rate * choice.moves.lpNorm<Eigen::Infinity>();
+      share_size = std::max(share_size, choice.shares.norm());
+      move_size = std::max(move_size, choice.moves.norm());
+      all.push_back(std::move(choice));
+    }
+    for (Choice& choice : all) {
       const bool goes = std::ranges::all_of(limits, [&](Index i) {
-        return choice.slips[static_cast<std::size_t>(i)] ? share(i) * choice.moves[i] <= move_size
-                                                         : share(i) * choice.shares[i] <= share_size;
+        return choice.slips[static_cast<std::size_t>(i)]
+                   ? share(i) * choice.moves[i] <= no_slow_rate * move_size
+                   : share(i) * choice.shares[i] <= no_slow_rate * share_size;
       });
       if (goes) found.push_back(std::move(choice));
     }
     if (found.empty()) throw NoWay{open ? tied() : jumps()};
-    const auto differ = [](const VectorXd& a, const VectorXd& b) {
-      return (a - b).norm() > 1e-6 * (a.norm() + b.norm());
-    };
     for (const Choice& other : found)
-      if (differ(other.moves, found.front().moves) || differ(other.shares, found.front().shares))
+      if ((other.moves - found.front().moves).norm() > other_rate * move_size ||
+          (other.shares - found.front().shares).norm() > other_rate * share_size)
         throw NoWay{"At " + rounded_text(now_.p[0], 6) +
                     " several joints are at their limits, and can slip in more than one way."};
-    // Of choices alike in their rates what slips most: it may stand again.
-    const auto most = std::ranges::max_element(
+    // Of choices alike in their rates what stands most: it slips when its share comes to the limit.
+    const auto chosen = std::ranges::min_element(
         found, {}, [](const Choice& choice) { return std::ranges::count(choice.slips, true); });
     for (Index i = 0; i < joints_; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (slips_[k] && !most->slips[k]) kept_[i] = now_.values[i];
+      if (slips_[k] && !chosen->slips[k]) kept_[i] = now_.values[i];
     }
-    slips_ = most->slips;
+    slips_ = chosen->slips;
   }
 
   SteadyMap map_;
