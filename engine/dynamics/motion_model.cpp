@@ -44,6 +44,11 @@ bool has_pairs(const System& system) {
          !system.turning_air.empty();
 }
 
+void bind_motion(const System& system, const Mechanism& mechanism, Parameters& out) {
+  bind(system, mechanism, out);
+  out.moving = true; // whether drives turn or not
+}
+
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
   MotionModel m;
   m.mechanism = mechanism;
@@ -55,9 +60,8 @@ MotionModel make_motion_model(const Mechanism& mechanism, bool damped) {
     bind(steady, mechanism, as_steady);
   }
   m.released = released(m.system);
-  bind(m.system, mechanism, m.parameters);
+  bind_motion(m.system, mechanism, m.parameters);
   set_scaling(m.system, m.parameters, m.scaling);
-  m.parameters.moving = true;
   const bool dense = !m.system.torques.empty() || !m.system.bearings.empty() ||
                      !m.system.turning_air.empty(); // the matrices alone know
   m.along_tree = is_tree(m.system) && m.system.nv > few && !dense;

@@ -28,6 +28,9 @@ bool has_pairs(const System& system);
 // Compiles. Throws SceneError.
 MotionModel make_motion_model(const Mechanism& mechanism, bool damped);
 
+// Of the model's system, by the numbers of a mechanism that differs from its own in nothing else.
+void bind_motion(const System& system, const Mechanism& mechanism, Parameters& out);
+
 // "joint" or "joint.index" as `name`; -1 where there is none.
 int coordinate_called(const System& system, std::string_view name);
 // The name of the coordinate that entry v of a tangent vector (driven ones after the free) belongs to.

@@ -259,11 +259,15 @@ void Recorder::record_measures(TransmittedForces& forces) {
   std::size_t motor = 0;
   for (std::size_t d = 0; d < system.drives.size(); ++d)
     if (system.drives[d].motor == static_cast<int>(d)) forces.drives[d] = run_.drives[motor++].torque.back();
+  torques_.clear();
+  for (; motor < run_.drives.size(); ++motor)
+    torques_.push_back(run_.drives[motor].torque.back());
   const bool accelerated = measures_.needs_accelerations() && !equations_->has_massless();
   const Kinematics<double>& kinematics =
       accelerated ? equations_->accelerated_kinematics() : equations_->kinematics();
-  const Eigen::VectorXd& values = measures_.evaluate({system, model_->parameters, equations_->configuration(),
-                                                      kinematics, &forces, accelerated, values_, rates_});
+  const Eigen::VectorXd& values =
+      measures_.evaluate({system, model_->parameters, equations_->configuration(), kinematics, &forces,
+                          accelerated, values_, rates_, torques_});
   for (std::size_t i = 0; i < run_.measures.size(); ++i)
     run_.measures[i].value.push_back(values[static_cast<Eigen::Index>(i)]);
 }

@@ -54,6 +54,7 @@ class Recorder {
   std::vector<TrackedPoint> tracked_;
   MeasureSet measures_;
   std::vector<double> values_, rates_;                       // of the coordinates at a sample
+  std::vector<double> torques_;                              // of the drives that give these, likewise
   std::unordered_map<std::string, std::size_t> tree_joints_; // for reactions, by name
   std::shared_ptr<const MotionModel> model_;
   Equations* equations_ = nullptr;

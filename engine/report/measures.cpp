@@ -114,6 +114,11 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
             system.tree_joints[slot(link.tree_joint)].joint == part)
           place.drive = static_cast<int>(d);
       }
+      for (std::size_t t = 0; t < system.torques.size(); ++t) {
+        const Link& link = system.links[slot(system.torques[t].link)];
+        if (link.coordinate == coordinate && system.tree_joints[slot(link.tree_joint)].joint == part)
+          place.torque = static_cast<int>(t);
+      }
       break;
     case ArgumentKind::joint:
       for (std::size_t t = 0; t < system.tree_joints.size(); ++t)
@@ -185,13 +190,18 @@ double MeasureSet::value(const MeasuredState& s, std::size_t i) const {
   case Result::moment_y:
   case Result::moment_z: return joint().torque[slot_of(quantity.result, Result::moment_x)];
   case Result::moment: return joint().torque.norm();
-  case Result::torque: return place.drive < 0 ? none : s.forces->drives[slot(place.drive)];
-  case Result::power:
-    return place.drive < 0 ? none : s.forces->drives[slot(place.drive)] * s.rate(place.reported);
+  case Result::torque: return torque(s, place);
+  case Result::power: return torque(s, place) * s.rate(place.reported);
   default:
     if (!s.accelerated && asks_for_acceleration(quantity.result)) return none;
     return quantity_value(quantity, numbers, place.elastic, s.system, s.parameters, s.kinematics);
   }
+}
+
+double MeasureSet::torque(const MeasuredState& s, const Place& place) {
+  if (place.drive >= 0) return s.forces->drives[slot(place.drive)];
+  if (place.torque >= 0 && !s.torques.empty()) return s.torques[slot(place.torque)];
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 void MeasureSet::evaluate_quantities(const MeasuredState& state) {

@@ -11,7 +11,8 @@
 namespace flyball {
 
 // A state that measures are taken of. Of a steady state coordinates and rates are found where they are asked
-// for; of a motion they are given, by System::reported.
+// for; of a motion they are given, by System::reported, and with them what drives by torque give, by
+// System::torques: there these are no drives of the system.
 struct MeasuredState {
   const System& system;
   const Parameters& parameters;
@@ -19,7 +20,7 @@ struct MeasuredState {
   const Kinematics<double>& kinematics;
   const TransmittedForces* forces = nullptr; // needed where MeasureSet::needs_forces()
   bool accelerated = true;                   // the kinematics' accelerations are known
-  std::span<const double> coordinates{}, rates{};
+  std::span<const double> coordinates{}, rates{}, torques{};
 
   // Of a coordinate of a joint, as listed: rad or m, as the joint labels it, and rad/s or m/s.
   double coordinate(int listed) const;
@@ -82,6 +83,7 @@ class MeasureSet {
   // Where a quantity is found in the system.
   struct Place {
     int reported = -1, tree = -1, cut = -1, drive = -1;
+    int torque = -1; // of System::torques
     ElasticPlace elastic;
     bool differenced = false; // its rates along coordinates are found by differences
     // Those by numbers, too: of forces, whose multipliers follow, and of joints that close loops.
@@ -89,6 +91,8 @@ class MeasureSet {
   };
   void find_places(const Mechanism& mechanism, const System& system);
   double value(const MeasuredState& state, std::size_t quantity) const;
+  // What the drive at a place gives (N m or N); not a number where nothing drives.
+  static double torque(const MeasuredState& state, const Place& place);
   void evaluate_quantities(const MeasuredState& state);
   Clearance clearance_of(const Kinematics<double>& kinematics, std::size_t quantity) const;
   // Adds the rates of a quantity to a row of quantity_rates_.

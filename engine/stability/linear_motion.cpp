@@ -1,6 +1,8 @@
 #include "engine/stability/linear_motion.hpp"
 
+#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/stability/phase_stiffness.hpp"
 
 #include <algorithm>
 
@@ -32,11 +34,33 @@ double fastest_drive(const Problem& problem) {
   return fastest;
 }
 
+// From the balance's Jacobian, whose columns are for the speeds that are found and whose rows for the momenta
+// that are kept.
+void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian) {
+  for (const DriveTorqueElement& torque : system.torques) {
+    const int v = system.links[static_cast<std::size_t>(torque.link)].v;
+    jacobian.col(v).setZero();
+    if (torque.keeps_momentum) jacobian.row(v).setZero(); // nothing acts along it, whatever the state
+  }
+}
+
 } // namespace
+
+Scaling motion_scaling(const Problem& problem) {
+  if (problem.system.torques.empty()) return problem.scaling;
+  Parameters at_unit_speeds = problem.parameters;
+  for (std::size_t i = 0; i < problem.system.links.size(); ++i)
+    if (const Link& link = problem.system.links[i]; finds_speed(link))
+      at_unit_speeds.links[i].speed = link.type == LinkType::revolute ? 1 : at_unit_speeds.length;
+  Scaling out;
+  set_scaling(problem.system, at_unit_speeds, out);
+  return out;
+}
 
 LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
   const System& system = problem.system;
-  const Problem dense{system, problem.parameters, problem.scaling, problem.cancel};
+  const Scaling scaling = motion_scaling(problem);
+  const Problem dense{system, problem.parameters, scaling, problem.cancel};
   Unknowns z{q, Eigen::VectorXd::Zero(system.rows)};
   evaluate(dense, z, t, w);
   LinearMotion out;
@@ -51,20 +75,47 @@ LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, dou
   linearize(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual, w.dense.linearization);
   make_stiffness_of_motion(system, w.dense.linearization.stiffness);
   linearize_motion(system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
-  const auto s = problem.scaling.column.asDiagonal();
+  const auto s = scaling.column.asDiagonal();
   out.mass = s * w.dense.linearization.mass * s;
   out.velocity = s * w.dense.linearization.velocity * s;
   out.stiffness = s * w.dense.linearization.stiffness * s;
-  out.force = w.magnitudes.force.cwiseProduct(problem.scaling.column);
+  out.force = w.magnitudes.force.cwiseProduct(scaling.column);
   return out;
 }
 
-void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian) {
-  for (const DriveTorqueElement& torque : system.torques) {
-    const int v = system.links[static_cast<std::size_t>(torque.link)].v;
-    jacobian.col(v).setZero();
-    if (torque.keeps_momentum) jacobian.row(v).setZero(); // nothing acts along it, whatever the state
+ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const System& system = problem.system;
+  Linearization& l = w.dense.linearization;
+  linearize_motion(system, problem.parameters, z.q, w.kinematics, l);
+  ReducedMotion out;
+  if (system.torques.empty()) {
+    out.basis = w.dense.constraints().basis();
+    out.unit = problem.scaling.column;
+    out.stiffness = w.dense.reduced();
+  } else {
+    const Scaling scaling = motion_scaling(problem);
+    out.unit = scaling.column;
+    ConstraintSpace space;
+    Eigen::MatrixXd jacobian(system.rows, system.nv);
+    if (system.rows > 0) jacobian = scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal();
+    space.factor(jacobian, rank_tolerance(problem, w.residual.phi));
+    out.basis = space.basis();
+    const Eigen::VectorXd change = scaling.column.cwiseQuotient(problem.scaling.column);
+    Eigen::MatrixXd stiffness = change.asDiagonal() * w.dense.stiffness() * change.asDiagonal();
+    make_stiffness_of_motion(system, stiffness);
+    const PhaseStiffness phases = phase_stiffness(problem, z, w.elsewhere());
+    out.of_angles = !phases.entries.empty();
+    for (std::size_t i = 0; i < phases.entries.size(); ++i) {
+      const int v = phases.entries[i];
+      stiffness.col(v) =
+          out.unit[v] * phases.columns.col(static_cast<Eigen::Index>(i)).cwiseProduct(out.unit);
+    }
+    out.stiffness = large::projected(stiffness, out.basis);
   }
+  const auto s = out.unit.asDiagonal();
+  out.mass = large::projected(s * l.mass * s, out.basis);
+  out.velocity = large::projected(s * l.velocity * s, out.basis);
+  return out;
 }
 
 Eigen::MatrixXd cyclic_directions(const System& system, const Eigen::MatrixXd& basis, bool keep_momentum) {

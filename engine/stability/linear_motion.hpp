@@ -7,8 +7,13 @@
 
 namespace flyball {
 
-// In scaled coordinates (n = nv), the multipliers of that phase included. Where speeds are found
-// (drive_torque.hpp) what turns so is a coordinate like others here, a cyclic one: no force depends on it.
+// The units of the linearised motion: those of the balance (Scaling), but what turns at a speed that is found
+// (drive_torque.hpp) is a coordinate like others here, a cyclic one, since no force depends on it, and is
+// measured by its angle or way. By the speed its inertia would count by the square of the unit of time, and
+// beside what others have either would be lost.
+Scaling motion_scaling(const Problem& problem);
+
+// In these units (n = nv), the multipliers of that phase included.
 struct LinearMotion {
   Eigen::MatrixXd mass, velocity, stiffness; // (n, n)
   Eigen::MatrixXd basis;                     // (n, k), orthonormal: null space of the constraints
@@ -18,9 +23,17 @@ struct LinearMotion {
 // At the configuration q and the time t (s) along the drives, from their drawn angles.
 LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
 
-// From the balance's Jacobian, whose columns are for the speeds that are found and whose rows for the momenta
-// that are kept.
-void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian);
+// The same at the drawn phase, on the null space of the constraints: of a dense problem that is evaluated and
+// factored at z in `w`, with its best multipliers.
+struct ReducedMotion {
+  Eigen::MatrixXd mass, velocity, stiffness; // (k, k)
+  Eigen::MatrixXd basis;                     // (n, k), orthonormal
+  Eigen::VectorXd unit;                      // (n), rad or m per unit of it
+  // Whether the angle of something that turns at a speed that is found matters (phase_stiffness.hpp): then it
+  // is none of the cyclic ones.
+  bool of_angles = false;
+};
+ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w);
 
 // Directions on the null space `basis` (n, k) of the constraints, orthonormal, by column: of what turns at
 // speeds that are found by a torque, or keeps its momentum. Along each the motion has an eigenvalue zero, of

@@ -1,8 +1,8 @@
 #include "engine/stability/modes.hpp"
 
 #include "engine/kkt/coordinate_gradient.hpp"
-#include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/stability/linear_motion.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
@@ -14,23 +14,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// M, D and K on the null space of the constraints, scaled, in units of time that make M and K alike.
-struct ReducedMotion {
-  Eigen::MatrixXd mass, velocity, stiffness;
+// In units of time that make M and K alike.
+struct TimedMotion : ReducedMotion {
   double rate = 1; // 1/s per unit of s
 };
 
-ReducedMotion reduced_motion(const FactoredState& at) {
-  const Problem& problem = at.problem;
-  Workspace& w = at.w;
-  linearize_motion(problem.system, problem.parameters, at.z.q, w.kinematics, w.dense.linearization);
-  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
-  const auto& s = problem.scaling.column;
-  ReducedMotion out;
-  out.mass = large::projected(s.asDiagonal() * w.dense.linearization.mass * s.asDiagonal(), basis);
-  out.velocity = large::projected(s.asDiagonal() * w.dense.linearization.velocity * s.asDiagonal(), basis);
-  out.stiffness = problem.system.torques.empty() ? large::projected(w.dense.stiffness(), basis)
-                                                 : stiffness_of_motion(problem, w.dense.stiffness(), basis);
+TimedMotion timed_motion(const FactoredState& at) {
+  TimedMotion out{reduced_motion(at.problem, at.z, at.w)};
   const double m = out.mass.norm(), k = out.stiffness.norm();
   if (m > 0 && k > 0) out.rate = std::sqrt(k / m);
   out.velocity *= out.rate;
@@ -66,7 +56,7 @@ bool iterate(const Eigen::MatrixXcd& beside, Eigen::MatrixXcd& x) {
   return x.allFinite();
 }
 
-Shapes null_shapes(const ReducedMotion& motion, Complex s, Eigen::Index count) {
+Shapes null_shapes(const TimedMotion& motion, Complex s, Eigen::Index count) {
   const Eigen::Index n = motion.mass.rows();
   Eigen::MatrixXcd a = s * s * motion.mass.cast<Complex>() + s * motion.velocity.cast<Complex>() +
                        motion.stiffness.cast<Complex>();
@@ -166,7 +156,8 @@ void sort_modes(std::vector<VibrationMode>& modes) {
 
 std::vector<VibrationMode> find_modes(const FactoredState& at) {
   const Stability stability = find_stability(at, true);
-  const ReducedMotion motion = reduced_motion(at);
+  const TimedMotion motion = timed_motion(at);
+  const Eigen::VectorXd of_balance = motion.unit.cwiseQuotient(at.problem.scaling.column);
   if (!stability.eigenvalues || stability.floquet)
     return {};                                        // a motion that turns with the drives has no shapes
   std::vector<Complex> left = *stability.eigenvalues; // by size of the imaginary part
@@ -194,7 +185,7 @@ std::vector<VibrationMode> find_modes(const FactoredState& at) {
       const double residual = shapes.residuals[static_cast<std::size_t>(j)];
       if (j > 0 && !(residual <= 1e-10)) break;
       modes.push_back(describe_mode(at.problem, at.z.q,
-                                    at.w.dense.constraints().basis() * shapes.vectors.col(j),
+                                    of_balance.cwiseProduct(motion.basis * shapes.vectors.col(j)),
                                     cluster[static_cast<std::size_t>(j)], residual));
     }
   }

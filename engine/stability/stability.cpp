@@ -8,6 +8,7 @@
 #include "engine/solve/existence.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
+#include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/play.hpp"
 #include "engine/stability/routh.hpp"
@@ -112,22 +113,56 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return potential.positive_definite();
 }
 
-// On the null space of the constraints, at the momenta that are kept: of a dense problem that is factored at
-// z.
-std::optional<LinearPencil> steady_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
-  linearize_motion(problem.system, problem.parameters, z.q, w.kinematics, w.dense.linearization);
-  const Eigen::MatrixXd& basis = w.dense.constraints().basis();
-  const auto s = problem.scaling.column.asDiagonal();
-  LinearPencil motion{large::projected(s * w.dense.linearization.mass * s, basis),
-                      large::projected(s * w.dense.linearization.velocity * s, basis),
-                      w.dense.reduced(),
-                      {}};
-  if (problem.system.torques.empty()) return motion;
-  motion.stiffness = stiffness_of_motion(problem, w.dense.stiffness(), basis);
-  motion.directions = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
-  if (!keeps_momentum(problem.system)) return motion;
-  return at_given_momenta(motion.mass, motion.velocity, motion.stiffness,
-                          cyclic_directions(problem.system, basis, true));
+// On the null space of the constraints, at the momenta that are kept, and the phases of what torques drive
+// among these directions: of a dense problem that is factored at z.
+struct SteadyMotion : LinearPencil {
+  Eigen::MatrixXd phases; // orthonormal, by column
+};
+
+// Of these directions in which phases change those along which nothing else does: two shafts that a spring
+// ties turn together, and not the one against the other.
+std::optional<Eigen::MatrixXd> free_phases(const Problem& problem, const Unknowns& z,
+                                           const ReducedMotion& motion, const Eigen::MatrixXd& phases,
+                                           Workspace& w) {
+  if (!motion.of_angles || phases.cols() == 0) return phases;
+  const auto effect = singular_vectors(motion.stiffness * phases);
+  if (!effect) return {};
+  Eigen::MatrixXd out(phases.rows(), 0);
+  for (Eigen::Index i = 0; i < phases.cols(); ++i) {
+    if (i < effect->values.size() && effect->values[i] > tolerance::neutral_force * motion.stiffness.norm())
+      continue;
+    const Eigen::VectorXd direction = phases * effect->right.col(i);
+    Eigen::VectorXd turned = (motion.basis * direction).cwiseProduct(motion.unit);
+    turned /= turned.lpNorm<Eigen::Infinity>();
+    if (!balanced_along(problem, z, turned, w)) continue;
+    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+    out.rightCols<1>() = direction;
+  }
+  return out;
+}
+
+std::optional<SteadyMotion> steady_motion(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const System& system = problem.system;
+  ReducedMotion motion = reduced_motion(problem, z, w);
+  SteadyMotion out;
+  if (!keeps_momentum(system)) {
+    if (!system.torques.empty()) {
+      auto phases =
+          free_phases(problem, z, motion, cyclic_directions(system, motion.basis, false), w.elsewhere());
+      if (!phases) return {};
+      out.phases = std::move(*phases);
+    }
+    out.mass = std::move(motion.mass);
+    out.velocity = std::move(motion.velocity);
+    out.stiffness = std::move(motion.stiffness);
+    return out;
+  }
+  auto reduced = at_given_momenta(motion.mass, motion.velocity, motion.stiffness,
+                                  cyclic_directions(system, motion.basis, true));
+  if (!reduced) return {};
+  static_cast<LinearPencil&>(out) = std::move(*reduced);
+  out.phases = out.directions.transpose() * cyclic_directions(system, motion.basis, false);
+  return out;
 }
 
 // Whether torques that depend on the speeds they give alone, and fall as these grow, keep what stands at a
@@ -177,27 +212,17 @@ bool torques_keep_minimum(const Problem& problem, const Eigen::MatrixXd& jacobia
 }
 
 // Without those of the phases of what torques drive.
-std::optional<std::vector<Complex>> eigenvalues_with_found_speeds(const Problem& problem,
-                                                                  const Eigen::MatrixXd& basis,
-                                                                  const LinearPencil& motion) {
-  const Eigen::MatrixXd cyclic =
-      motion.directions.transpose() * cyclic_directions(problem.system, basis, false);
-  if (cyclic.cols() == 0)
+std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const SteadyMotion& motion) {
+  if (motion.phases.cols() == 0)
     return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
-  auto out =
-      eigenvalues_without_cyclic(motion.mass, motion.velocity, motion.stiffness, cyclic, problem.cancel);
+  auto out = eigenvalues_without_cyclic(motion.mass, motion.velocity, motion.stiffness, motion.phases,
+                                        problem.cancel);
   if (out) return out;
   // Something has no mass: all of them, and those nearest to zero left out.
   out = pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
-  for (Eigen::Index i = 0; out && i < cyclic.cols(); ++i)
+  for (Eigen::Index i = 0; out && i < motion.phases.cols(); ++i)
     if (!out->empty()) out->erase(std::ranges::min_element(*out, {}, [](Complex x) { return std::abs(x); }));
   return out;
-}
-
-std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const Eigen::MatrixXd& basis,
-                                                   const LinearPencil& motion) {
-  if (!problem.system.torques.empty()) return eigenvalues_with_found_speeds(problem, basis, motion);
-  return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
 }
 
 } // namespace
@@ -206,14 +231,7 @@ std::optional<std::vector<Complex>> motion_eigenvalues(const Problem& problem, c
                                                        Workspace& w) {
   const auto motion = steady_motion(problem, z, w);
   if (!motion) return {};
-  return eigenvalues_of(problem, w.dense.constraints().basis(), *motion);
-}
-
-Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
-                                    const Eigen::MatrixXd& basis) {
-  Eigen::MatrixXd stiffness = jacobian;
-  make_stiffness_of_motion(problem.system, stiffness);
-  return large::projected(stiffness, basis);
+  return eigenvalues_of(problem, *motion);
 }
 
 double real_part_rounding(Complex s, double largest) {
@@ -262,7 +280,9 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   Workspace& w = at.w;
   const bool varies =
       motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters), w.elsewhere());
-  const bool potential = has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
+  const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty();
+  // The potential at given speeds tells nothing of their angles.
+  const bool potential = !of_angles && has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();
   const Eigen::MatrixXd& reduced = w.dense.reduced();
   ReducedHessian symmetric; // where there is a potential, whatever Newton used
@@ -297,12 +317,16 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
         out.neutral.push_back(i);
   }
   std::ranges::sort(out.neutral);
+  // Multipliers take such angles for cyclic, and where momentum is kept the row of what acts is not at hand.
+  out.angles_leave_open = of_angles && (varies || keeps_momentum(problem.system));
+  if (out.angles_leave_open) return out;
   if (varies) {
     classify_by_multipliers(problem, at.z, neutral_count, w.elsewhere(), out);
     return out;
   }
 
-  const bool kept = torques_keep_minimum(problem, w.dense.stiffness(), w.dense.jacobian(), w.dense.noise());
+  const bool kept =
+      !of_angles && torques_keep_minimum(problem, w.dense.stiffness(), w.dense.jacobian(), w.dense.noise());
   if (kept) {
     out.stable = true;
     out.reason = StabilityReason::minimum;
@@ -316,7 +340,7 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   auto motion = steady_motion(problem, at.z, w);
   if (!motion) return out;
   if (potential && problem.system.torques.empty()) motion->stiffness = (reduced + reduced.transpose()) / 2;
-  out.eigenvalues = eigenvalues_of(problem, basis, *motion);
+  out.eigenvalues = eigenvalues_of(problem, *motion);
   if (!problem.system.torques.empty() && problem.system.conserves && is_minimum(motion->stiffness)) {
     out.stable = true;
     out.reason = StabilityReason::minimum;

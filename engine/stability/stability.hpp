@@ -22,8 +22,11 @@ struct Stability {
   std::optional<std::vector<std::complex<double>>> eigenvalues;
   std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
-  std::vector<int> neutral;      // coordinates of q_R that take part in directions nothing resists
-  std::vector<Kink> kinks;       // of laws, on which it stands
+  std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
+  std::vector<Kink> kinks;  // of laws, on which it stands
+  // The angle of something at a found speed matters (phase_stiffness.hpp), and what it makes of the motion is
+  // not told: of what keeps its momentum, or turns unlike others.
+  bool angles_leave_open = false;
   bool kinks_leave_open = false; // stable or not: the sides differ, or there is no potential to compare them
 };
 
@@ -38,12 +41,6 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
 // Whether the linearised motion turns with the drives, as far as is known: comparing it over the phases
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
-
-// Where speeds are found, the coordinates that turn so are cyclic in the linearised motion
-// (drive_torque.hpp): the stiffness K on the null space `basis` of the constraints, from the scaled Jacobian
-// of the balance, whose columns are for their speeds.
-Eigen::MatrixXd stiffness_of_motion(const Problem& problem, const Eigen::MatrixXd& jacobian,
-                                    const Eigen::MatrixXd& basis);
 
 // Eigenvalues (1/s) of the motion linearised at the drawn phase, whatever it is at others: of a dense problem
 // that is evaluated and factored at z in the workspace, with its best multipliers. Nothing where they cannot

@@ -15,11 +15,13 @@ using State = SteadyMap::State;
 
 // All scaled: numbers by their ranges, goals as goals.hpp says.
 constexpr int most_iterations = 200;
-constexpr double goal_tolerance = 1e-12;  // a goal is reached
-constexpr double number_tolerance = 1e-9; // a shorter step of the numbers is the last
-constexpr int most_tries = 60;            // of a step, each shorter than the one before
-constexpr double longest_step = 0.2;      // of a number in one step
-constexpr double longest_way = 0.3;       // of the state in one step
+constexpr double goal_tolerance = 1e-12;                // a goal is reached
+constexpr double number_tolerance = 1e-9;               // a shorter step of the numbers is the last
+constexpr int most_tries = 60;                          // of a step, each shorter than the one before
+constexpr double longest_step = 0.2;                    // of a number in one step
+constexpr double longest_way = 0.3;                     // of the state in one step
+constexpr double kept_tolerance = 100 * goal_tolerance; // goals are reached, with the rounding of measures
+constexpr double least_tolerance = 1e-7; // of the change that could still be taken back, the goals kept
 
 std::vector<std::string> wanted_of(std::span<const Goal> goals) {
   if (goals.empty()) throw SceneError("goals", "expected one or more");
@@ -82,47 +84,61 @@ class GoalSeeker {
     return out;
   }
 
+  // How far the numbers are from the reference, in parts of their ranges.
+  Eigen::VectorXd change(const Eigen::VectorXd& p) const {
+    return (p - reference_).cwiseQuotient(map_.range());
+  }
+
+  // Of the goals with the change, at the state whose rates were found last.
+  Eigen::MatrixXd slopes() const {
+    return scales_.cwiseInverse().asDiagonal() * map_.rates() * map_.range().asDiagonal();
+  }
+
+  bool find_slopes(const State& state) { return map_.find_rates(state) && map_.rates().allFinite(); }
+
+  // The part of a step that is taken at once.
+  double part_at_once(const Eigen::VectorXd& step) const {
+    const double way = map_.way(step.cwiseProduct(map_.range()));
+    return std::min({1., longest_step / std::max(longest_step, step.lpNorm<Eigen::Infinity>()),
+                     longest_way / std::max(longest_way, way)});
+  }
+
+  std::optional<State> stepped(const State& from, const Eigen::VectorXd& step) {
+    return map_.step_to(from, map_.inside(from.p + step.cwiseProduct(map_.range())));
+  }
+
   void seek(State now) {
-    const Eigen::VectorXd origin = reference_.cwiseQuotient(map_.range()),
-                          lower = map_.lower().cwiseQuotient(map_.range()) - origin,
-                          upper = map_.upper().cwiseQuotient(map_.range()) - origin;
+    const Eigen::VectorXd lower = change(map_.lower()), upper = change(map_.upper());
     Eigen::VectorXd left = away(now);
     double damping = 0;
     bool singular = false, stuck = false;
     for (; out_.iterations < most_iterations; ++out_.iterations) {
       interruption_point();
-      if (!map_.find_rates(now) || !map_.rates().allFinite()) {
+      if (left.norm() <= goal_tolerance) break;
+      if (!find_slopes(now)) {
         singular = true;
         break;
       }
-      const Eigen::MatrixXd slopes =
-          scales_.cwiseInverse().asDiagonal() * map_.rates() * map_.range().asDiagonal();
-      const double steepness = slopes.norm();
-      const Eigen::VectorXd at = now.p.cwiseQuotient(map_.range()) - origin;
+      const Eigen::MatrixXd slope = slopes();
+      const double steepness = slope.norm();
+      const Eigen::VectorXd at = change(now.p);
       std::optional<State> next;
       Eigen::VectorXd next_left;
       double taken = 0;
       for (int tries = 0; tries < most_tries; ++tries) {
-        Eigen::VectorXd step = least_change(slopes, slopes * at - left, lower, upper, damping, at) - at;
-        const double way = map_.way(step.cwiseProduct(map_.range()));
-        step *= std::min({1., longest_step / std::max(longest_step, step.lpNorm<Eigen::Infinity>()),
-                          longest_way / std::max(longest_way, way)});
+        Eigen::VectorXd step = least_change(slope, slope * at - left, lower, upper, damping, at) - at;
+        step *= part_at_once(step);
         taken = step.lpNorm<Eigen::Infinity>();
-        // At the goals, or at the nearest: nothing to be gained any more.
-        const Eigen::VectorXd promised = slopes * step;
-        if (!(taken > number_tolerance) &&
-            (left.norm() <= goal_tolerance || (left + promised).norm() > (1 - 1e-6) * left.norm()))
-          break;
-        next = map_.step_to(now, map_.inside(now.p + step.cwiseProduct(map_.range())));
+        // At the nearest: nothing to be gained any more.
+        const Eigen::VectorXd promised = slope * step;
+        if (!(taken > number_tolerance) && (left + promised).norm() > (1 - 1e-6) * left.norm()) break;
+        next = stepped(now, step);
         if (next) next_left = away(*next);
         if (next && next_left.allFinite()) {
           // Where the goals do not go as their rates promise, the state has left its branch or is about to.
           const bool follows =
               (next_left - left - promised).norm() <= 0.5 * promised.norm() + 10 * goal_tolerance;
-          // Nearer, or as near as curvature lets a step be that only shortens the way from the reference.
-          if (follows &&
-              (next_left.norm() <= (1 - 1e-3) * left.norm() || next_left.norm() <= goal_tolerance ||
-               (next_left.norm() < 0.1 * taken && (at + step).norm() < at.norm())))
+          if (follows && (next_left.norm() <= (1 - 1e-3) * left.norm() || next_left.norm() <= goal_tolerance))
             break;
         }
         next.reset();
@@ -136,11 +152,65 @@ class GoalSeeker {
       damping = damping > 1e-9 * steepness ? damping / 10 : 0;
       now = std::move(*next);
       left = std::move(next_left);
-      if (left.norm() <= goal_tolerance && taken <= 1e-6) break;
     }
-    out_.reached = left.lpNorm<Eigen::Infinity>() <= 100 * goal_tolerance; // rounding of measures
+    out_.reached = left.lpNorm<Eigen::Infinity>() <= kept_tolerance;
+    if (out_.reached) shorten(now);
     tell_state(map_, now, free_, goals_, options_.details, out_);
     if (out_.status == Status::converged) out_.message = sentence(singular, stuck);
+  }
+
+  // Along the states that keep the goals to where the change is least. Half its square falls there by the
+  // square of d, the way to the least change that the slopes promise, and d has no slope of the goals. Steps
+  // of d as long as the last one tells (Barzilai and Borwein, Two-point step size gradient methods, 1988),
+  // and back to the goals from where they lead; ends where d is nothing, or where no state follows.
+  void shorten(State& now) {
+    const Eigen::VectorXd lower = change(map_.lower()), upper = change(map_.upper());
+    Eigen::VectorXd last_d, last_step;
+    for (; out_.iterations < most_iterations; ++out_.iterations) {
+      interruption_point();
+      if (!find_slopes(now)) return;
+      const Eigen::VectorXd at = change(now.p);
+      const Eigen::MatrixXd slope = slopes();
+      const Eigen::VectorXd d = least_change(slope, slope * at, lower, upper, 0, at) - at;
+      if (!(d.lpNorm<Eigen::Infinity>() > least_tolerance)) return;
+      double length = 1;
+      if (last_d.size() > 0)
+        if (const double bend = last_step.dot(last_d - d); bend > 0)
+          length = std::clamp(last_step.squaredNorm() / bend, 0.1, 10.);
+      length *= part_at_once(length * d);
+      std::optional<State> next;
+      for (; length > least_tolerance; length /= 2) {
+        next = stepped(now, length * d);
+        if (next && back_to_goals(*next) &&
+            change(next->p).squaredNorm() <= at.squaredNorm() - 1e-3 * length * d.squaredNorm())
+          break;
+        next.reset();
+        if (!find_slopes(now)) return;
+      }
+      if (!next) return;
+      last_d = d;
+      last_step = change(next->p) - at;
+      now = std::move(*next);
+    }
+  }
+
+  // By the shortest steps, to where the goals are kept; whether they are.
+  bool back_to_goals(State& state) {
+    constexpr int most = 12;
+    for (int i = 0;; ++i) {
+      const Eigen::VectorXd left = away(state);
+      if (!left.allFinite()) return false;
+      if (left.norm() <= goal_tolerance) return true;
+      const bool kept = left.lpNorm<Eigen::Infinity>() <= kept_tolerance;
+      if (i == most || !find_slopes(state)) return kept;
+      const Eigen::VectorXd at = change(state.p),
+                            step =
+                                least_change(slopes(), -left, change(map_.lower()) - at,
+                                             change(map_.upper()) - at, 0, Eigen::VectorXd::Zero(at.size()));
+      std::optional<State> next = stepped(state, part_at_once(step) * step);
+      if (!next || !(away(*next).norm() < left.norm())) return kept;
+      state = std::move(*next);
+    }
   }
 
   std::string sentence(bool singular, bool stuck) const {

@@ -4,9 +4,11 @@
 // numbers along the steady states (the implicit function theorem), the numbers go where J promises the goals
 // by the least change from where they were, each in parts of its range: Gauss-Newton within bounds, damped as
 // of Levenberg and Marquardt where the goals do not follow (Nocedal and Wright, Numerical Optimization, 2006,
-// chapter 10). The state is predicted by its rates and corrected by Newton-Raphson. What cannot be reached
-// ends at the nearest that can: the least sum of squares, angles in rad, lengths in parts of the mechanism's
-// reach, measures in parts of the larger of wanted and first value.
+// chapter 10). From where they are reached the numbers go on along the states that keep them to where their
+// change from where they were is least: nearby, which need not be the least of all. The state is predicted by
+// its rates and corrected by Newton-Raphson. What cannot be reached ends at the nearest that can: the least
+// sum of squares, angles in rad, lengths in parts of the mechanism's reach, measures in parts of the larger
+// of wanted and first value.
 #pragma once
 
 #include "engine/study/steady_map.hpp"

@@ -1,6 +1,7 @@
 #include "engine/study/motion_outputs.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
 
 #include <algorithm>
@@ -52,7 +53,11 @@ Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters&
     evaluate_residual<double>(system, p, q, at.lambda, kinematics_, residual_);
     forces = transmitted_forces(system, p, at.lambda, kinematics_, residual_);
   }
-  const MeasuredState state{system, p, at.q, kinematics_, &forces, accelerated_, coordinates_, rates_};
+  torques_.clear();
+  for (std::size_t i = 0; i < system.torques.size(); ++i)
+    torques_.push_back(drive_torque(model_.released, p, i, at.q, kinematics_));
+  const MeasuredState state{system,       p,      at.q,    kinematics_, &forces, accelerated_,
+                            coordinates_, rates_, torques_};
   return measures_.evaluate(state).tail(static_cast<Eigen::Index>(count_));
 }
 
@@ -77,7 +82,7 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
     const double before = number;
     number += step * direction.change;
     numbers_.set(set_);
-    bind(model_.system, varied_, parameters_);
+    bind_motion(model_.system, varied_, parameters_);
     measures_.bind(varied_, model_.system, parameters_);
     Eigen::VectorXd out = evaluate(moved, parameters_);
     number = before;

@@ -53,7 +53,7 @@ class MotionOutputs {
   Kinematics<double> kinematics_;
   std::vector<LinkRates> carried_;
   Residual<double> residual_;
-  std::vector<double> coordinates_, rates_;
+  std::vector<double> coordinates_, rates_, torques_;
   std::vector<double> near_; // coordinates of the state, whose whole turns count
 };
 

@@ -141,6 +141,25 @@ TEST_CASE("of many numbers each moves by its part: the least change in parts of 
   CHECK(change.normalized().cross(gradient.normalized()).norm() < 1e-4);
 }
 
+TEST_CASE("numbers that one goal leaves free end at the least change, however far the way there") {
+  // The collar stands at 0.15 m + load / gain, so that the goal is a straight line in the plane of both.
+  const Mechanism m = shipped("governor_engine");
+  const FreeNumber free[]{{"parameters.gain", 1000, 20000}, {"joints.spin.drive.load", 0, 50}};
+  const double gain_range = 19000, load_range = 50, begin = get_parameter(m, "parameters.gain");
+  for (const double lift : {0.001, 0.005, 0.02}) {
+    const Goal goals[]{{"slide", 0.15 + lift}};
+    const GoalAnswer answer = seek_goals(m, free, goals);
+    INFO(answer.message);
+    CAPTURE(lift);
+    REQUIRE(answer.reached);
+    // Least ((gain - begin) / its range)^2 + (lift gain / its range)^2, within the ranges.
+    const double share = lift * gain_range / load_range,
+                 gain = std::clamp(begin / (1 + share * share), 1000., std::min(20000., 50 / lift));
+    CHECK(answer.numbers[0].value == Approx(gain).epsilon(1e-5));
+    CHECK(answer.numbers[1].value == Approx(lift * gain).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("what cannot be reached ends at the nearest that can") {
   const Mechanism m = shipped("governor_parametric");
   SECTION("a number at the end of its range") {

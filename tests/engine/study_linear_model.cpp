@@ -6,6 +6,7 @@
 #include "engine/linear/exponential.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/study/linear_model.hpp"
@@ -471,6 +472,106 @@ TEST_CASE("outputs answer to a step as the motion does", "[linear-model]") {
       CHECK(most > 0);
       CHECK(worst < 2e-4 * most);
     }
+  }
+}
+
+namespace {
+
+// A shaft by the torque 5 N m - 1 N m s w, and on a radial slide of it a body that its own inertia resists.
+Mechanism slide_on_shaft() {
+  Mechanism m;
+  m.bodies = {body("shaft", 1, {0, 0, 0}, {0.2, 0.2, 0.2}), body("bob", 0.5, {0.3, 0, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {revolute("spin", "ground", "shaft", {0, 0, 0}),
+              dampened(sprung(prismatic("slide", "shaft", "bob", {0.3, 0, 0}, {1, 0, 0}), 150, 0.3), 2)};
+  Drive& drive = m.joints[0].coordinates[0].drive.emplace();
+  drive.speed = 5;
+  drive.torque = 0;
+  drive.load = 0;
+  m.joints[0].formulas.push_back({"drive.torque", "5 N m - 1 N m s*rate(spin)"});
+  m.joints[1].coordinates[0].drawn = 0.3;
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("reactions feel at once the acceleration that a number causes", "[linear-model]") {
+  // The moment on the bob about its own mass centre is 0.1 kg m^2 times the shaft's acceleration.
+  const LinearModel shaft =
+      made(slide_on_shaft(), {"joints.spin.drive.load", "torque(spin)"}, {"moment_z(slide)", "rate(spin)"});
+  for (const Eigen::Index input : {0, 1})
+    for (const Complex s : {Complex(0, 0.3), Complex(0, 9), Complex(4, 200)}) {
+      const auto h = transfer(best_form(shaft), s);
+      REQUIRE(h);
+      check_transfer(shaft, 0, input, s, 0.1 * s * (*h)(1, input), 1e-9);
+    }
+  // At rest: what the joint gives a body is its acceleration less the force on it.
+  const double mass = 2, c = 3, k = 50;
+  Mechanism still;
+  still.bodies = {body("bob", mass, {0, 0, 0})};
+  still.joints = {dampened(sprung(prismatic("slide", "ground", "bob", {0, 0, 0}, {1, 0, 0}), k), c)};
+  const LinearModel pushed = made(still, {"force_x(bob)"}, {"reaction_x(slide)"});
+  for (const double omega : {0.3, 5., 40.}) {
+    const Complex s(0, omega), d = mass * s * s + c * s + k;
+    check_transfer(pushed, 0, 0, s, mass * s * s / d - 1., 1e-9);
+  }
+}
+
+TEST_CASE("static gains of reactions are the slopes of what solving tells", "[linear-model]") {
+  const Names outputs{"reaction_y(arm1)", "moment_y(arm1)", "reaction(slide)", "torque(spin)", "power(spin)"};
+  for (const char* scene : {"governor", "governor_engine"}) {
+    Mechanism m = shipped(scene);
+    for (const std::string& text : outputs)
+      m.measures.push_back({"output " + text, "", text, std::string(result_unit(m, text))});
+    for (const std::string& input :
+         Names{"bodies.ball1.mass", "joints.slide.spring.stiffness", "gravity.1"}) {
+      CAPTURE(scene, input);
+      const LinearModel model = made(m, {input}, outputs);
+      REQUIRE(model.gain);
+      const double at = get_parameter(m, input), step = 1e-4 * std::abs(at);
+      std::vector<double> sides[2];
+      for (const int side : {0, 1}) {
+        Mechanism beside = m;
+        set_parameter(beside, input, at + (side == 0 ? -step : step));
+        const Solution s = Analysis(beside).solve();
+        REQUIRE(s.status == Status::converged);
+        for (std::size_t i = 0; i < outputs.size(); ++i)
+          sides[side].push_back(s.measures[s.measures.size() - outputs.size() + i].value.value());
+      }
+      for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const double slope = (sides[1][i] - sides[0][i]) / (2 * step),
+                     size = std::max(std::abs(sides[0][i]) / std::abs(at), std::abs(slope));
+        CAPTURE(outputs[i], slope, (*model.gain)(static_cast<Eigen::Index>(i), 0));
+        CHECK(std::abs((*model.gain)(static_cast<Eigen::Index>(i), 0) - slope) <= 1e-5 * size + 1e-9);
+      }
+    }
+  }
+}
+
+TEST_CASE("what a drive by torque gives is an output, and a measure of the motion", "[linear-model]") {
+  Mechanism m = slide_on_shaft();
+  const LinearModel model =
+      made(m, {"joints.spin.drive.load", "torque(slide)"}, {"torque(spin)", "power(spin)", "rate(spin)"});
+  CHECK(model.outputs[0].value == Approx(0).margin(1e-9));
+  const double speed = model.outputs[2].value;
+  for (const Eigen::Index input : {0, 1})
+    for (const Complex s : {Complex(0, 0.3), Complex(0, 9)}) {
+      const auto h = transfer(best_form(model), s);
+      REQUIRE(h);
+      const Complex torque = -(*h)(2, input) - (input == 0 ? 1. : 0.); // of the law, less the load
+      check_transfer(model, 0, input, s, torque, 1e-9);
+      check_transfer(model, 1, input, s, speed * torque, 1e-9);
+    }
+  m.measures = {{"given", "", "torque(spin)", "N m"}, {"power", "", "power(spin)", "W"}};
+  SimulationOptions options;
+  options.duration = 0.3;
+  const Run run = simulate(m, options);
+  REQUIRE(run.measures.size() == 2);
+  REQUIRE(run.measures[0].value.size() == run.time.size());
+  const CoordinateTrack& spin = run.coordinates[0];
+  REQUIRE(spin.joint == "spin");
+  for (std::size_t i = 0; i < run.time.size(); ++i) {
+    CHECK(run.measures[0].value[i] == Approx(5 - spin.rate[i]).margin(1e-12));
+    CHECK(run.measures[1].value[i] == Approx((5 - spin.rate[i]) * spin.rate[i]).margin(1e-12));
   }
 }
 

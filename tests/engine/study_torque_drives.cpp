@@ -476,6 +476,79 @@ TEST_CASE("Floquet: multipliers where the speed of the period is found", "[torqu
   }
 }
 
+namespace {
+
+// In seconds of another length. A hub, on a slide of it a point mass whose damper is negative; or, `tied`, a
+// pendulum that lifts a sleeve by a rod.
+Mechanism timed_hub(double second, bool tied, bool keeps_momentum) {
+  const auto per_second = [&](double value, int times) { return value / std::pow(second, times); };
+  Mechanism m;
+  m.gravity = {0, 0, tied ? -per_second(standard_gravity, 2) : 0};
+  m.bodies = {body("hub", 1, {0, 0, 0}, {0.2, 0.2, 0.2})};
+  m.joints = {torque_driven(revolute("spin", "ground", "hub", {0, 0, 0}), per_second(5, 1),
+                            number_text(per_second(5, 2)) + " N m - " + number_text(per_second(1, 1)) +
+                                " N m s*rate(spin)")};
+  if (keeps_momentum) {
+    m.joints[0].formulas.clear();
+    m.joints[0].coordinates[0].drive->torque.reset();
+    m.joints[0].coordinates[0].drive->keeps = DriveKeeps::momentum;
+  }
+  if (tied) {
+    m.bodies.push_back(body("arm", 0.5, {0.5, 0, -0.3}, {0.1, 0.1, 0.1}));
+    m.bodies.push_back(body("sleeve", 0.3, {0, 0, -0.2}));
+    m.joints.push_back(
+        dampened(sprung(revolute("lean", "hub", "arm", {0.2, 0, 0}, {0, 1, 0}), per_second(1, 2)),
+                 per_second(0.2, 1)));
+    m.joints.push_back(
+        dampened(sprung(prismatic("slide", "hub", "sleeve", {0, 0, -0.2}, {0, 0, 1}), per_second(300, 2)),
+                 per_second(3, 1)));
+    m.joints.push_back(distance("rod", "arm", "sleeve", {0.4, 0, -0.2}, {0, 0, -0.2}));
+    return m;
+  }
+  m.bodies.push_back(body("bob", 0.5, {0.3, 0, 0}));
+  m.joints.push_back(
+      sprung(prismatic("slide", "hub", "bob", {0.3, 0, 0}, {1, 0, 0}), per_second(150, 2), 0.3));
+  m.joints[1].coordinates[0].drawn = 0.3;
+  m.joints[1].coordinates[0].damping_force = 0;
+  m.joints[1].formulas = {{"damping_force", number_text(per_second(-2, 1)) + " N s/m*rate"}};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("eigenvalues go with the unit of time, whatever turns at speeds that are found", "[torque]") {
+  for (const bool tied : {false, true})
+    for (const bool keeps_momentum : {false, true}) {
+      Analysis in_seconds(timed_hub(1, tied, keeps_momentum));
+      const Solution wanted = in_seconds.solve();
+      const std::vector<VibrationMode> modes = in_seconds.modes();
+      REQUIRE(wanted.status == Status::converged);
+      REQUIRE(wanted.eigenvalues);
+      CHECK(wanted.stable == tied);
+      double largest = 0;
+      for (const Complex s : *wanted.eigenvalues)
+        largest = std::max(largest, std::abs(s));
+      for (const double second : {1e-8, 1e-4, 1e-2, 1e3, 1e8}) {
+        CAPTURE(tied, keeps_momentum, second);
+        Analysis analysis(timed_hub(second, tied, keeps_momentum));
+        const Solution found = analysis.solve();
+        REQUIRE(found.status == Status::converged);
+        CHECK(found.stable == wanted.stable);
+        CHECK(found.stability_reason == wanted.stability_reason);
+        REQUIRE(found.eigenvalues);
+        REQUIRE(found.eigenvalues->size() == wanted.eigenvalues->size());
+        for (std::size_t i = 0; i < wanted.eigenvalues->size(); ++i)
+          CHECK(std::abs((*found.eigenvalues)[i] * second - (*wanted.eigenvalues)[i]) < 1e-9 * largest);
+        const std::vector<VibrationMode> there = analysis.modes();
+        REQUIRE(there.size() == modes.size());
+        for (std::size_t i = 0; i < modes.size(); ++i)
+          for (std::size_t k = 0; k < modes[i].amplitudes.size(); ++k)
+            CHECK(std::abs(std::abs(there[i].amplitudes[k].value) - std::abs(modes[i].amplitudes[k].value)) <
+                  1e-8);
+      }
+    }
+}
+
 TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
   Mechanism m = shipped("governor_engine");
   Joint& spin = m.joints[0];
