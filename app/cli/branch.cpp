@@ -146,13 +146,13 @@ void add_branch(CLI::App& app, Ending& ending) {
   command->callback([options, &ending] {
     check_outputs(options->scene.file,
                   {{"--csv", options->csv}, {"--svg", options->svg}, {"--png", options->png}});
-    const Range range = parse_range("--vary", options->vary);
     if (!options->over.empty())
-      return branch_over(options->scene,
-                         {range, options->over, options->all, options->json, options->csv, options->shard},
-                         ending);
+      return branch_over(
+          options->scene,
+          {options->vary, options->over, options->all, options->json, options->csv, options->shard}, ending);
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
+    const Range range = parse_range(mechanism, "--vary", options->vary);
     ResponseDiagram diagram;
     Ribbons ribbons;
     HopfPoints hunting;

@@ -18,11 +18,12 @@ void branch_over(const SceneArgument& scene, const BranchOver& wanted, Ending& e
   constexpr double most_places = 1e9;
   const std::unique_ptr<WorkSharing> sharing = share_work();
   const Mechanism mechanism = scene.load();
+  const Range vary = parse_range(mechanism, "--vary", wanted.vary);
   std::vector<Variation> over;
   nlohmann::ordered_json asked = nlohmann::ordered_json::array();
   double total = 1;
   for (const std::string& text : wanted.over) {
-    const Range range = parse_range("--over", text, true);
+    const Range range = parse_range(mechanism, "--over", text, true);
     over.push_back({range.address, range.from, range.to, range.count});
     asked.push_back({range.address, range.from, range.to, range.count});
     total *= range.count;
@@ -32,14 +33,14 @@ void branch_over(const SceneArgument& scene, const BranchOver& wanted, Ending& e
   BranchOptions options;
   options.all = wanted.all;
   try {
-    follower.emplace(mechanism, over, wanted.vary.address, wanted.vary.from, wanted.vary.to, options);
+    follower.emplace(mechanism, over, vary.address, vary.from, vary.to, options);
   } catch (const SceneError& error) {
     throw scene.in_file(error);
   }
 
-  const BranchColumns columns{over, wanted.vary.address, value_columns(mechanism), has_friction(mechanism)};
+  const BranchColumns columns{over, vary.address, value_columns(mechanism), has_friction(mechanism)};
   StudyPart part = part_of("branch", mechanism,
-                           {{"variation", {wanted.vary.address, wanted.vary.from, wanted.vary.to}},
+                           {{"variation", {vary.address, vary.from, vary.to}},
                             {"grid", std::move(asked)},
                             {"choice of branches", wanted.all ? "all" : "connected"}},
                            columns.columns(), grid_size(over));

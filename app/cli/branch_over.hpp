@@ -10,7 +10,7 @@
 namespace flyball::cli {
 
 struct BranchOver {
-  Range vary;
+  std::string vary;              // "address=from:to"
   std::vector<std::string> over; // "address=from:to:count"
   bool all = false, json = false;
   std::string csv, shard;

@@ -169,9 +169,9 @@ void add_campbell(CLI::App& app, Ending& ending) {
   command->footer("Example: flyball campbell governor.json --vary joints.spin.drive.speed=1:20 --order 1");
   command->callback([options, &ending] {
     check_outputs(options->scene.file, {{"--csv", options->csv}, {"--svg", options->svg}});
-    const Range range = parse_range("--vary", options->vary);
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
+    const Range range = parse_range(mechanism, "--vary", options->vary);
     std::vector<double> orders = options->orders;
     CampbellDiagram diagram;
     std::string unit;

@@ -197,7 +197,7 @@ void add_design(CLI::App& app, Ending& ending) {
     const Mechanism mechanism = arguments->scene.load();
     std::vector<Range> ranges;
     for (const std::string& text : arguments->vary)
-      ranges.push_back(parse_range("--vary", text));
+      ranges.push_back(parse_range(mechanism, "--vary", text));
     std::vector<std::pair<std::string, double>> wants;
     for (const std::string& text : arguments->want)
       wants.push_back(parse_assignment("--want", text));

@@ -32,8 +32,8 @@ struct HuntingArguments {
 };
 using Axes = std::array<PlaneAxis, 2>;
 
-PlaneAxis plane_axis(const std::string& text) {
-  const Range range = parse_range("--vary", text);
+PlaneAxis plane_axis(const Mechanism& mechanism, const std::string& text) {
+  const Range range = parse_range(mechanism, "--vary", text);
   return {range.address, std::min(range.from, range.to), std::max(range.from, range.to)};
 }
 
@@ -136,11 +136,11 @@ void add_hunting(CLI::App& app, Ending& ending) {
                   "parameters.gain=1000:20000");
   command->callback([options, &ending] {
     check_outputs(options->scene.file, {{"--csv", options->csv}, {"--svg", options->svg}});
-    const Axes axes{plane_axis(options->vary[0]), plane_axis(options->vary[1])};
-    if (axes[0].address == axes[1].address)
-      throw SceneError("--vary " + axes[0].address, "expected two different numbers");
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();
+    const Axes axes{plane_axis(mechanism, options->vary[0]), plane_axis(mechanism, options->vary[1])};
+    if (axes[0].address == axes[1].address)
+      throw SceneError("--vary " + axes[0].address, "expected two different numbers");
     PlaneCurves found;
     try {
       PlaneOptions follow;

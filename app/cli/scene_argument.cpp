@@ -10,6 +10,7 @@
 #include <charconv>
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <functional>
 
 namespace flyball::cli {
 
@@ -98,14 +99,15 @@ SceneError SceneArgument::in_file(const SceneError& error) const {
 namespace {
 
 // A number in SI units, or an expression with units and the scene's parameters: "18 cm", "2*L".
-double parse_value(const Mechanism& mechanism, const std::string& address, std::string_view text) {
+double parse_value(const Mechanism& mechanism, std::string_view option, const std::string& address,
+                   std::string_view text) {
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error == std::errc() && rest == end && std::isfinite(value)) return value;
   const std::string unit = parameter_unit(mechanism, address);
   if (text.starts_with('=')) text.remove_prefix(1);
-  return evaluate_expression(mechanism, text, unit, "--set " + address);
+  return evaluate_expression(mechanism, text, unit, std::string(option) + " " + address);
 }
 
 } // namespace
@@ -119,7 +121,7 @@ Mechanism SceneArgument::load() const {
         throw SceneError("--set", "expected address=value, not \"" + text + "\"");
       const std::string address = text.substr(0, equals);
       set_parameter(mechanism, address,
-                    parse_value(mechanism, address, std::string_view(text).substr(equals + 1)));
+                    parse_value(mechanism, "--set", address, std::string_view(text).substr(equals + 1)));
     }
     if (!settings.empty()) validate(mechanism);
   } catch (const SceneError& error) {
@@ -130,7 +132,11 @@ Mechanism SceneArgument::load() const {
   return mechanism;
 }
 
-Range parse_range(std::string_view option, std::string_view text, bool count) {
+namespace {
+
+using ParseNumber = std::function<double(const std::string& address, std::string_view text)>;
+
+Range range_of(std::string_view option, std::string_view text, bool count, const ParseNumber& parse) {
   const auto fail = [&] {
     return SceneError(std::string(option), std::string("expected address=from:to") + (count ? ":count" : "") +
                                                ", not \"" + std::string(text) + "\"");
@@ -147,9 +153,9 @@ Range parse_range(std::string_view option, std::string_view text, bool count) {
   if (parts.size() != (count ? 3u : 2u)) throw fail();
   Range range;
   range.address = text.substr(0, equals);
+  range.from = parse(range.address, parts[0]);
+  range.to = parse(range.address, parts[1]);
   const std::string where = std::string(option) + " " + range.address;
-  range.from = parse_number(where, parts[0]);
-  range.to = parse_number(where, parts[1]);
   if (count) {
     const double n = parse_number(where, parts[2]);
     if (n != std::floor(n) || n < 1 || n > 1e9)
@@ -159,6 +165,20 @@ Range parse_range(std::string_view option, std::string_view text, bool count) {
     throw SceneError(where, "expected two different ends");
   }
   return range;
+}
+
+} // namespace
+
+Range parse_range(std::string_view option, std::string_view text, bool count) {
+  return range_of(option, text, count, [&](const std::string& address, std::string_view number) {
+    return parse_number(std::string(option) + " " + address, number);
+  });
+}
+
+Range parse_range(const Mechanism& mechanism, std::string_view option, std::string_view text, bool count) {
+  return range_of(option, text, count, [&](const std::string& address, std::string_view number) {
+    return parse_value(mechanism, option, address, number);
+  });
 }
 
 } // namespace flyball::cli

@@ -46,13 +46,16 @@ CLI::Option* add_start(CLI::App& command, std::vector<std::string>& start);
 // A finite number, all of the text. Throws SceneError naming the option.
 double parse_number(std::string_view option, std::string_view text);
 
-// "address=from:to", two different ends; or, where `count` is wanted, "address=from:to:count". Throws
-// SceneError naming the option.
+// "address=from:to", two different ends; or, where `count` is wanted, "address=from:to:count".
 struct Range {
   std::string address;
   double from = 0, to = 0;
   int count = 1;
 };
+// With ends in SI units. Throws SceneError naming the option.
 Range parse_range(std::string_view option, std::string_view text, bool count = false);
+// With ends as --set takes values: numbers in SI units, or expressions with units and the scene's parameters.
+Range parse_range(const Mechanism& mechanism, std::string_view option, std::string_view text,
+                  bool count = false);
 
 } // namespace flyball::cli

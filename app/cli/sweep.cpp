@@ -47,7 +47,7 @@ void run(const SweepArguments& options, Ending& ending) {
   double total = 1;
   nlohmann::ordered_json asked = nlohmann::ordered_json::array();
   for (const std::string& text : options.vary) {
-    const Range range = parse_range("--vary", text, true);
+    const Range range = parse_range(mechanism, "--vary", text, true);
     variations.push_back({range.address, range.from, range.to, range.count});
     asked.push_back({range.address, range.from, range.to, range.count});
     total *= range.count;
@@ -144,8 +144,8 @@ void add_sweep(CLI::App& app, Ending& ending) {
   command
       ->add_flag(
           "--periodic", options->periodic,
-          "Where drives make the balance turn: the periodic motion in place of the steady state, with the "
-          "mean, least and most of each value")
+          "Where drives make the balance turn, or the steady state is unstable: the periodic motion in its "
+          "place, with the mean, least and most of each value")
       ->excludes(all);
   CLI::Option* csv =
       command->add_option("--csv", options->csv, "Write a table to a file (-: standard output)");

@@ -2,6 +2,7 @@
 
 #include "engine/kkt/constraint_space.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/stability/linear_motion.hpp"
@@ -22,7 +23,9 @@ constexpr double returned = 0.03;       // of the way between: near enough
 constexpr double at_rest = 1e-6;        // scaled: what moves less does not
 constexpr double off_steady = 0.01;     // scaled, from a steady state
 constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
-constexpr double alike = 1e-6;          // scaled, of motions from two angles or phases
+constexpr double alike = 1e-6;          // scaled, of motions from two angles
+constexpr double alike_in_time = 1e-9;  // and from two phases of drives: a small unbalance is one, too
+constexpr int most_periods = 20000;     // in which a drive is to stand otherwise against the others
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 
 // Of the drives by torque, with what loops and gears move along.
@@ -95,6 +98,35 @@ std::optional<double> turn_of_drives(const Flow& flow, const MotionState& state)
   return turn / fastest;
 }
 
+// The same on the average of a passage; nothing where none turns by the tenth part of a turn: what has come
+// to rest, or swings, turns at no speed.
+std::optional<double> turn_of_drives(const Flow& flow, const Passage& passage) {
+  double farthest = 0;
+  for (const DriveTorqueElement& drive : flow.model().system.torques) {
+    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
+    if (link.type == LinkType::revolute)
+      farthest = std::max(farthest, std::abs(passage.to.q[link.q] - passage.from.q[link.q]));
+  }
+  if (!(farthest > 0.1 * turn)) return {};
+  return (passage.to.time - passage.from.time) * turn / farthest;
+}
+
+// Where drives by torque that stand still do so, as "p at 0.5 rad"; none where all turn. `rate` (1/s) as
+// is_steady() has it.
+std::vector<std::string> drives_at_rest(const Flow& flow, const MotionState& state, double rate) {
+  const MotionModel& model = flow.model();
+  std::vector<std::string> out;
+  for (const DriveTorqueElement& drive : model.system.torques) {
+    if (drive.keeps_momentum || drive.implied) continue;
+    const Link& link = model.system.links[static_cast<std::size_t>(drive.link)];
+    if (std::abs(state.u[link.v]) > at_rest * rate * model.scaling.column[link.v]) continue;
+    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    out.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
+                  rounded_text(state.q[link.q], 5) + (link.type == LinkType::revolute ? " rad" : " m"));
+  }
+  return out;
+}
+
 // The first time that a motion comes near where it began, having been away.
 struct Return {
   double farthest = 0, nearest = std::numeric_limits<double>::infinity(); // scaled
@@ -115,6 +147,24 @@ Return first_return(const StateChart& begin, const std::vector<MotionState>& tra
   return out;
 }
 
+// Whether motions from beside a state go alike when they begin then (s) as at first; `rate` (1/s) is the
+// fastest drive's.
+bool goes_alike_at(Flow& flow, const MotionState& state, double rate, const std::array<double, 3>& times) {
+  const double span = 0.1 / rate;
+  const StateChart chart(flow.problem(), state, rate, {});
+  MotionState beside =
+      chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
+  beside.time = 0;
+  const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
+  if (!here) return false;
+  const StateChart after(flow.problem(), here->to, rate, {});
+  return std::ranges::all_of(times, [&](double time) {
+    beside.time = time;
+    const auto there = flow.pass(beside, span, step_tolerance * 1e-3);
+    return there && after.distance(there->to) < alike_in_time;
+  });
+}
+
 } // namespace
 
 bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate) {
@@ -122,6 +172,17 @@ bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double 
   return std::ranges::all_of(states, [&](const MotionState& state) {
     return (state.u - states.front().u).cwiseQuotient(unit).lpNorm<Eigen::Infinity>() <= at_rest * rate;
   });
+}
+
+std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate) {
+  const std::string motion = start == CycleStart::steady ? "The motion that leaves the steady state"
+                                                         : "The motion from the drawn pose";
+  const std::vector<std::string> resting = drives_at_rest(flow, state, rate);
+  if (resting.empty())
+    return motion + " settles in " + (start == CycleStart::steady ? "another one." : "a steady state.");
+  return motion + " settles, and its drive by a torque comes to rest: " +
+         word_list(std::vector<std::string_view>(resting.begin(), resting.end()), "and") +
+         ". To have that as a steady state leave the drive out; a spring of a constant force is a torque, too.";
 }
 
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) {
@@ -147,19 +208,23 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) 
 }
 
 bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period) {
-  const double rate = turn / period, span = 0.1 / rate;
-  const StateChart chart(flow.problem(), state, rate, {});
-  MotionState beside =
-      chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
-  beside.time = 0;
-  const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
-  if (!here) return false;
-  const StateChart after(flow.problem(), here->to, rate, {});
-  return std::ranges::all_of(std::array{0.21, 0.56, 0.83}, [&](double part) {
-    beside.time = part * period;
-    const auto there = flow.pass(beside, span, step_tolerance * 1e-3);
-    return there && after.distance(there->to) < alike;
+  return goes_alike_at(flow, state, turn / period, {0.21 * period, 0.56 * period, 0.83 * period});
+}
+
+bool goes_alike_without(Flow& flow, const MotionState& state, double period, double speed) {
+  // After whole periods of the others, where this one stands as nearly as it comes to these parts of a turn.
+  std::array<double, 3> times{};
+  std::ranges::transform(std::array{0.21, 0.56, 0.83}, times.begin(), [&](double part) {
+    double best = 0, nearest = 1;
+    for (int k = 1; k <= most_periods; ++k) {
+      const double turns = k * period * speed / turn, off = std::abs(std::remainder(turns - part, 1.));
+      if (off >= nearest) continue;
+      nearest = off;
+      best = k * period;
+    }
+    return best;
   });
+  return goes_alike_at(flow, state, std::max(turn / period, std::abs(speed)), times);
 }
 
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
@@ -199,14 +264,13 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     state = passage->to;
     state->time = 0;
     // What turns may have become faster or slower.
-    if (!swing.period) period = turn_of_drives(flow, *state).value_or(*period);
+    if (!swing.period) period = turn_of_drives(flow, *passage).value_or(*period);
     const std::vector<MotionState> trace = flow.trace(*state, 3 * *period, 3 * samples, step_tolerance);
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
     const Return back = first_return(chart, trace);
     if (is_steady(flow, trace, turn / *period))
-      return refused(leaves ? "The motion that leaves the steady state settles in another one."
-                            : "The motion from the drawn pose settles in a steady state.");
+      return refused(settled_message(flow, start, *state, turn / *period));
     const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
     before = back.farthest;
     if (back.sample == 0 || back.nearest > returned * back.farthest || (grows && look + 1 < looks)) continue;

@@ -9,6 +9,16 @@ namespace flyball {
 // Whether all rates stay as they are, scaled by `rate` (1/s): everything rests or turns evenly.
 bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate);
 
+enum class CycleStart {
+  steady, // the motion that leaves the steady state where that is unstable; where it is stable its swing
+          // alone
+  drawn,  // the motion from the drawn pose
+};
+
+// What is told of a motion that has become steady where a cycle was looked for: a sentence or two. `rate` as
+// above; a drive by a torque that has come to rest is told with where it stands.
+std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate);
+
 // Angles of what torques drive, as scaled directions (nv, any), at all of which the motion goes on alike:
 // these need not return after a period.
 Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
@@ -17,6 +27,10 @@ Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
 // then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning
 // shaft.
 bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period);
+
+// The same of one of several drives, at `speed` (rad/s), where the others have this period (s): then theirs
+// is the motion's, as with a balanced rotor beside an unbalanced one.
+bool goes_alike_without(Flow& flow, const MotionState& state, double period, double speed);
 
 struct CycleGuess {
   double period = 0;           // s
@@ -32,12 +46,6 @@ struct CycleGuess {
 struct CycleOutcome {
   std::optional<CycleGuess> guess;
   std::string trouble; // where there is none: a sentence
-};
-
-enum class CycleStart {
-  steady, // the motion that leaves the steady state where that is unstable; where it is stable its swing
-          // alone
-  drawn,  // the motion from the drawn pose
 };
 
 // A motion is followed until it nearly returns and grows no more, or for as long as the flow allows. The

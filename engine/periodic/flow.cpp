@@ -101,7 +101,8 @@ std::optional<Passage> Flow::pass(const MotionState& from, double duration, doub
 
 std::vector<MotionState> Flow::trace(const MotionState& from, double duration, int samples,
                                      double tolerance) {
-  const Run run = record(from, duration, samples, tolerance);
+  if (spent() || cancelled()) return {};
+  const Run run = sampled_run(from_state(from, tolerance), duration, samples);
   std::vector<MotionState> out;
   for (std::size_t i = 0; i < run.time.size(); ++i)
     out.push_back(sampled(model_, run, i, run.time[i]));
@@ -109,17 +110,23 @@ std::vector<MotionState> Flow::trace(const MotionState& from, double duration, i
 }
 
 Run Flow::record(const MotionState& from, double duration, int samples, double tolerance) {
+  SimulationOptions options = from_state(from, tolerance);
+  options.measures = true;
+  options.max_steps = SimulationOptions{}.max_steps;
+  return sampled_run(options, duration, samples);
+}
+
+Run Flow::sampled_run(SimulationOptions options, double duration, int samples) {
   try {
-    SimulationOptions options = from_state(from, tolerance);
     options.duration = duration;
     options.rate = samples / duration;
-    options.measures = true;
-    options.max_steps = SimulationOptions{}.max_steps;
     Simulator simulator(mechanism_, options);
     const bool well = simulator.advance(simulator.time() + duration * (1 + 1e-12));
-    evaluations_ += simulator.run().statistics.evaluations;
-    if (well && simulator.run().time.size() == static_cast<std::size_t>(samples) + 1) return simulator.run();
-    trouble_ = simulator.run().message;
+    const Run& run = simulator.run();
+    evaluations_ += run.statistics.evaluations;
+    if (well && run.time.size() == static_cast<std::size_t>(samples) + 1) return run;
+    trouble_ = run.message;
+    if (run.statistics.steps >= options.max_steps) evaluations_ = std::max(evaluations_, most_);
   } catch (const SceneError& error) {
     trouble_ = error.what();
   }

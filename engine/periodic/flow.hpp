@@ -35,11 +35,11 @@ class Flow {
   // Where a state is after `duration` (s). `tolerance` as SimulationOptions has it; nothing where there is no
   // way there.
   std::optional<Passage> pass(const MotionState& from, double duration, double tolerance);
-  // The motion with all its outputs, sampled `samples` times and at its start. Without samples where it
-  // fails.
+  // The motion with all its outputs, sampled `samples` times and at its start, whatever patience is left.
+  // Without samples where it fails.
   Run record(const MotionState& from, double duration, int samples, double tolerance);
 
-  // Its states alone.
+  // Its states alone; none where it takes more than what is left.
   std::vector<MotionState> trace(const MotionState& from, double duration, int samples, double tolerance);
 
   // Explicit steps keep to smaller tolerances than implicit ones do.
@@ -54,6 +54,7 @@ class Flow {
  private:
   std::optional<MotionState> begin(const SimulationOptions& options, double time);
   SimulationOptions from_state(const MotionState& state, double tolerance) const;
+  Run sampled_run(SimulationOptions options, double duration, int samples);
 
   Mechanism mechanism_;
   MotionModel model_;

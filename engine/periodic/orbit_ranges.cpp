@@ -14,27 +14,51 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double rounding = 4096 * std::numeric_limits<double>::epsilon(); // of the steps of a period
 
-// The greatest value of sign * the polynomial through seven samples about the greatest one.
-double extreme(std::span<const double> values, std::size_t stride, double sign) {
-  const std::size_t n = (values.size() - 1) / stride;
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < n; ++i)
-    if (sign * values[i * stride] > sign * values[best * stride]) best = i;
-  const auto at = [&](int k) { // samples on from the best
-    return values[(best + n + static_cast<std::size_t>(k + static_cast<int>(n))) % n * stride];
-  };
-  if (n < 7) return values[best * stride];
+// Every `stride`-th of the values at even distances over a period, as they are or upside down.
+struct PeriodSamples {
+  std::span<const double> values; // the last one that of the first again
+  std::size_t stride = 1;
+  double sign = 1;
+
+  std::size_t count() const { return (values.size() - 1) / stride; }
+  // The k-th on from the i-th, -count() <= k.
+  double at(std::size_t i, int k = 0) const {
+    const std::size_t n = count();
+    return sign * values[(i + n + static_cast<std::size_t>(k + static_cast<int>(n))) % n * stride];
+  }
+};
+
+// The greatest value of the polynomial through the seven samples about one, no further than the next ones.
+double crest_about(const PeriodSamples& period, std::size_t at) {
+  if (period.count() < 7) return period.at(at);
   const auto polynomial = [&](double x) {
     double sum = 0;
     for (int i = -3; i <= 3; ++i) {
       double weight = 1;
       for (int j = -3; j <= 3; ++j)
         if (j != i) weight *= (x - j) / (i - j);
-      sum += weight * at(i);
+      sum += weight * period.at(at, i);
     }
-    return sign * sum;
+    return sum;
   };
-  return sign * std::max(golden_section(-1, 1, 1e-9, polynomial).value, sign * values[best * stride]);
+  return std::max(golden_section(-1, 1, 1e-9, polynomial).value, period.at(at));
+}
+
+// The highest crest. That need not be the one with the highest sample: of several that are nearly as high
+// samples hit some better than others.
+double highest_crest(const PeriodSamples& period) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < period.count(); ++i)
+    if (period.at(i) > period.at(best)) best = i;
+  double most = crest_about(period, best);
+  for (std::size_t i = 0; i < period.count(); ++i) {
+    const double before = period.at(i, -1), here = period.at(i), after = period.at(i, 1);
+    if (here < before || here <= after) continue;
+    // What a parabola rises above the sample, twice, and some more where it is one of its highest: a bound.
+    const double bend = 2 * here - before - after, slope = after - before;
+    if (here + slope * slope / (4 * bend) + bend / 64 > most) most = std::max(most, crest_about(period, i));
+  }
+  return most;
 }
 
 PeriodicRange range_with(std::span<const double> values, std::size_t stride) {
@@ -43,8 +67,8 @@ PeriodicRange range_with(std::span<const double> values, std::size_t stride) {
   for (std::size_t i = 0; i < n; ++i)
     out.mean += values[i * stride];
   out.mean /= static_cast<double>(n);
-  out.least = extreme(values, stride, -1);
-  out.most = extreme(values, stride, 1);
+  out.least = -highest_crest({values, stride, -1});
+  out.most = highest_crest({values, stride, 1});
   return out;
 }
 

@@ -9,7 +9,7 @@ namespace flyball {
 
 // Of values at even distances over a period, the last one that of the first again. The mean by the
 // trapezoidal rule, which a smooth periodic function makes exact; extremes of polynomials of degree six
-// through the samples about. `error` is estimated: what half of the
+// through the samples about each local one that could be the furthest. `error` is estimated: what half of the
 // samples would have told otherwise.
 PeriodicRange range_over_period(std::span<const double> values);
 

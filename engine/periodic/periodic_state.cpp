@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numbers>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -30,51 +31,57 @@ constexpr double least_swing = 0.01;  // scaled, of the first guess around a sta
 constexpr double furthest = 64;       // times as far is the last guess of a limit cycle
 constexpr int pulling_periods = 32;   // in which a push on and on is to outweigh what dies out
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
-constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 8192;
+constexpr double pumping = 1.5;       // times as far after twice as many periods: what is pumped up goes on
+constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 16384;
+constexpr double fine_enough = 1e-6; // of the largest rates: half of the samples tell the same
+constexpr double gains = 4;          // times: what less is gained by twice the samples are kinks
+constexpr double coarse_gaps = 10, coarse_steps = 100; // times the tolerance, of what tells the errors
 
 double tolerance_of(const Flow& flow) {
   return flow.is_stiff() ? 1e-10 : 1e-12;
 }
 
-// The period of the drives, or why there is none.
+// The drives that turn, with the period that they have in common, or why they have none.
 struct DrivePeriod {
+  std::vector<double> speeds; // rad/s
+  std::vector<std::string> names;
   double period = 0, fastest = 0; // s; rad/s
   std::string trouble;            // a sentence
 };
 
+void find_common_period(DrivePeriod& drives) {
+  drives.period = common_period(drives.speeds, most_turns).value_or(0);
+  drives.trouble.clear();
+  if (drives.period > 0) return;
+  const std::vector<std::string_view> names(drives.names.begin(), drives.names.end());
+  drives.trouble = "The speeds of " + word_list(names, "and") + " have no common period of at most " +
+                   std::to_string(most_turns) +
+                   " turns: their motion is quasi-periodic and never comes back.";
+}
+
 DrivePeriod drive_period(const MotionModel& model) {
   DrivePeriod out;
-  std::vector<double> speeds;
-  std::vector<std::string> names;
   for (const DrivenCoordinate& d : model.system.drives) {
     const auto l = static_cast<std::size_t>(d.link);
     const Link& link = model.system.links[l];
     const double speed = model.parameters.links[l].speed;
     if (speed == 0) continue;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    names.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
+    out.names.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
     if (link.type != LinkType::revolute) {
-      out.trouble = names.back() + " slides on and on: no motion with it comes back.";
+      out.trouble = out.names.back() + " slides on and on: no motion with it comes back.";
+      out.speeds.clear();
       return out;
     }
-    speeds.push_back(speed);
+    out.speeds.push_back(speed);
     out.fastest = std::max(out.fastest, std::abs(speed));
   }
-  if (speeds.empty()) {
-    if (std::ranges::none_of(model.system.torques, [](const DriveTorqueElement& drive) {
-          return !drive.keeps_momentum && !drive.implied;
-        }))
-      out.trouble = "Nothing is driven at a speed or by a torque, so that there is no period to look for.";
-    return out;
-  }
-  const auto period = common_period(speeds, most_turns);
-  if (period)
-    out.period = *period;
-  else
-    out.trouble = "The speeds of " +
-                  word_list(std::vector<std::string_view>(names.begin(), names.end()), "and") +
-                  " have no common period of at most " + std::to_string(most_turns) +
-                  " turns: their motion is quasi-periodic and never comes back.";
+  if (!out.speeds.empty())
+    find_common_period(out);
+  else if (std::ranges::none_of(model.system.torques, [](const DriveTorqueElement& drive) {
+             return !drive.keeps_momentum && !drive.implied;
+           }))
+    out.trouble = "Nothing is driven at a speed or by a torque, so that there is no period to look for.";
   return out;
 }
 
@@ -100,6 +107,7 @@ class Search {
                     "beside shows them.";
       return out;
     }
+    leave_out_even_drives();
     if (!drives_.trouble.empty()) {
       out.status = PeriodicStatus::not_periodic;
       out.message = drives_.trouble;
@@ -117,8 +125,24 @@ class Search {
 
  private:
   double rate() const { return drives_.fastest; }
-  // Nothing prescribed turns: the motion has a period of its own, if it has one.
-  bool of_its_own() const { return drives_.period == 0; }
+  // Nothing prescribed turns, or nothing depends on where it stands: the motion has a period of its own, if
+  // it has one.
+  bool of_its_own() const { return drives_.period == 0 || untimed_; }
+
+  // Where several drives turn, those at whose angles all goes on alike have no part in the period.
+  void leave_out_even_drives() {
+    for (std::size_t i = 0; drives_.speeds.size() > 1 && i < drives_.speeds.size();) {
+      DrivePeriod rest = drives_;
+      rest.speeds.erase(rest.speeds.begin() + static_cast<std::ptrdiff_t>(i));
+      rest.names.erase(rest.names.begin() + static_cast<std::ptrdiff_t>(i));
+      find_common_period(rest);
+      const auto start = rest.trouble.empty() && rest.period != drives_.period ? flow_.drawn() : std::nullopt;
+      if (start && goes_alike_without(flow_, *start, rest.period, drives_.speeds[i]))
+        drives_ = std::move(rest);
+      else
+        ++i;
+    }
+  }
 
   // A stable one where a motion leads to it, else the one nearest to the drawn pose.
   std::optional<Candidate> find() {
@@ -131,6 +155,11 @@ class Search {
     std::optional<Candidate> first = attempt({*start}, 1);
     if (!first && end_ != ShootingEnd::pumped)
       if (const auto steady = flow_.steady()) first = attempt({*steady}, 1);
+    if (!first && !flow_.model().system.torques.empty() && !flow_.spent() && !flow_.cancelled() &&
+        goes_alike_at_phases(flow_, *start, drives_.period)) {
+      untimed_ = true;
+      if (auto cycle = find_cycle()) return cycle;
+    }
     if (!first && end_ != ShootingEnd::pumped)
       if (const auto guess = frozen(*start); !guess.empty()) first = attempt(guess, 1);
     if (options_.nearest || (first && first->stable != false) || flow_.spent() || flow_.cancelled())
@@ -176,7 +205,7 @@ class Search {
       auto cycle = complete({at_distance(*began.guess, part, how)}, how, 0);
       if (cycle && !stands(*cycle)) return cycle;
       if (cycle && start == CycleStart::drawn)
-        cycle_trouble_ = "The motion from the drawn pose settles in a steady state.";
+        cycle_trouble_ = settled_message(flow_, start, cycle->orbit.nodes.front().base(), how.rate);
       if (!began.guess->steady || flow_.spent() || flow_.cancelled()) break;
     }
     return {};
@@ -217,7 +246,12 @@ class Search {
     c.how.tolerance = tolerance_of(flow_);
     c.orbit = shoot(flow_, guess, c.how);
     end_ = c.orbit.end;
-    if (end_ == ShootingEnd::pumped) pulled_along_ = pulled_along(c.orbit.nodes.front().base());
+    if (end_ == ShootingEnd::pumped) {
+      if (grows_on(c.orbit.nodes.front().base()))
+        pulled_along_ = pulled_along(c.orbit.nodes.front().base());
+      else
+        end_ = ShootingEnd::diverged;
+    }
     if (c.orbit.end != ShootingEnd::converged) return {};
     auto beside = monodromy(flow_, c.orbit, c.how);
     // Where much grows within a segment, differences tell nothing: shorter ones keep the digits.
@@ -329,6 +363,23 @@ class Search {
     return {past.back(), best};
   }
 
+  // Whether a motion gets faster and faster, as linear theory says of what is pushed in step and nothing
+  // damps; what turns by a torque beside the drives leaves gaps, too, and settles.
+  bool grows_on(const MotionState& start) {
+    double before = 0;
+    MotionState state = start;
+    for (const int periods : {pulling_periods / 4, pulling_periods / 4, pulling_periods / 2}) {
+      const auto passage = flow_.pass(state, periods * drives_.period, settling);
+      if (!passage) return false;
+      state = passage->to;
+      const double now =
+          (state.u - start.u).cwiseQuotient(flow_.model().scaling.column).lpNorm<Eigen::Infinity>();
+      if (now <= pumping * before) return false;
+      before = now;
+    }
+    return true;
+  }
+
   // The coordinate on which something pulls on and on, so that the motion gains speed alike at every phase of
   // the drives; empty where what grows swings, and gains the opposite half a swing later.
   std::string pulled_along(const MotionState& start) {
@@ -436,6 +487,7 @@ class Search {
     out.message = words(c, out);
   }
 
+  // At first, by the turns of the fastest drive.
   int samples(const Candidate& c) const {
     const int turns =
         std::max(1, static_cast<int>(std::lround(rate() * c.orbit.period / (2 * std::numbers::pi))));
@@ -458,22 +510,45 @@ class Search {
     return whole;
   }
 
+  // The largest error of the rates' ranges that the samples leave, as a part of the fastest.
+  double uncertainty(const PeriodicState& told) const {
+    double out = 0;
+    for (const bool angle : {false, true}) {
+      double fastest = 0, error = 0;
+      for (const PeriodicCoordinate& c : told.coordinates) {
+        if (c.angle != angle || !std::isfinite(c.rate.error)) continue;
+        fastest = std::max({fastest, std::abs(c.rate.least), std::abs(c.rate.most)});
+        error = std::max(error, c.rate.error);
+      }
+      // Rounding has no scale to be compared with.
+      const double unit = angle ? 1 : flow_.model().parameters.length;
+      if (fastest > 1e-9 * unit) out = std::max(out, error / fastest);
+    }
+    return out;
+  }
+
   // Ranges, with the errors that the periodic motion of coarser steps tells.
   bool measure(const Candidate& c, PeriodicState& out) {
-    auto run = std::make_shared<Run>(recorded(c.orbit, samples(c), c.how.tolerance));
-    if (run->time.empty()) return false;
-    fill_ranges(*run, out);
-    ShootingOptions coarse = c.how;
-    coarse.period = c.orbit.period;
-    coarse.tolerance = 100 * c.how.tolerance;
-    std::vector<MotionState> states;
-    for (const StateChart& node : c.orbit.nodes)
-      states.push_back(node.base());
-    const Orbit other = shoot(flow_, states, coarse);
+    const auto other = orbit_beside(flow_, c.orbit, c.how, coarse_gaps);
+    std::shared_ptr<Run> run;
+    PeriodicState told;
+    double unsure = std::numeric_limits<double>::infinity();
+    int count = samples(c);
+    for (;; count *= 2) { // what moves faster than the drives takes more
+      run = std::make_shared<Run>(recorded(c.orbit, count, c.how.tolerance));
+      if (run->time.empty()) return false;
+      told = {};
+      fill_ranges(*run, told);
+      const double before = std::exchange(unsure, uncertainty(told));
+      if (unsure <= fine_enough || unsure > before / gains || 2 * count > most_samples) break;
+    }
+    out.coordinates = std::move(told.coordinates);
+    out.drive_torques = std::move(told.drive_torques);
+    out.measures = std::move(told.measures);
     PeriodicState beside;
-    if (other.end == ShootingEnd::converged) {
-      out.period_error = std::abs(other.period - c.orbit.period);
-      const Run also = recorded(other, samples(c), coarse.tolerance);
+    if (other) {
+      out.period_error = std::abs(other->period - c.orbit.period);
+      const Run also = recorded(*other, count, coarse_steps * c.how.tolerance);
       if (!also.time.empty()) fill_ranges(also, beside);
     }
     const bool known = beside.coordinates.size() == out.coordinates.size() &&
@@ -533,6 +608,7 @@ class Search {
   Eigen::MatrixXd alike_;                   // angles that need not return
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
+  bool untimed_ = false;       // nothing depends on where the drives stand
   bool around_stable_ = false; // a limit cycle was looked for around a stable steady state
   std::string pulled_along_;   // the coordinate; empty where the drives pump up what swings
   std::string cycle_trouble_;  // why there is none: a sentence

@@ -13,6 +13,7 @@ constexpr double nearly_closed = 1e-8;   // and so it is here, where an iteratio
 constexpr double newton_step = 1e-3;     // scaled, of differences that only Newton's method rests on:
 constexpr double newton_tolerance = 1e3; // times the tolerance is enough for them
 constexpr double largest_step = 0.5;     // scaled, of the coordinates in an iteration
+constexpr double straight = 0.1;         // of the gap: a step that leaves no more found the map nearly linear
 constexpr double singular = 1e-7;        // of the largest singular value: differences are no better
 constexpr double nearly_singular = 1e-4; // differences are to be better, to tell it from singular
 constexpr double moves = 0.01;           // of what is asked: a state that changes by less does not
@@ -63,7 +64,7 @@ class Shooter {
   }
 
   Orbit run(const std::vector<MotionState>& guess) {
-    if (!place(guess)) return ended(end_of(flow_));
+    if (!place(guess, options_.tolerance)) return ended(end_of(flow_));
     for (;;) {
       const double gap = largest_gap();
       orbit_.residual = gap;
@@ -75,11 +76,7 @@ class Shooter {
       if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
       Vector step;
       bool reachable = true;
-      for (const double coarser : {newton_tolerance, 1.}) {
-        if (!linearise(coarser * options_.tolerance)) return ended(end_of(flow_));
-        reachable = solve(step);
-        if (!doubtful_) break;
-      }
+      if (!newton(step, reachable)) return ended(end_of(flow_));
       if (gap <= closed) return ended(ShootingEnd::converged);
       if (!reachable)
         return ended(gap <= nearly_closed && is_rounding() ? ShootingEnd::converged : ShootingEnd::pumped);
@@ -89,6 +86,17 @@ class Shooter {
                                           : end_of(flow_));
       ++orbit_.iterations;
     }
+  }
+
+  std::optional<Orbit> beside(const Orbit& orbit, double coarser) {
+    std::vector<MotionState> states;
+    for (const StateChart& node : orbit.nodes)
+      states.push_back(node.base());
+    Vector step;
+    bool reachable = true;
+    if (!place(states, coarser * options_.tolerance) || !newton(step, reachable)) return {};
+    if (!place(displaced(step, orbit_.nodes, orbit_.period), options_.tolerance)) return {};
+    return std::move(orbit_);
   }
 
  private:
@@ -101,12 +109,11 @@ class Shooter {
   const StateChart& after(std::size_t i) const { return orbit_.nodes[(i + 1) % segments()]; }
 
   // Takes states as the nodes, their loops closed, and looks where each segment ends.
-  bool place(const std::vector<MotionState>& states) {
+  bool place(const std::vector<MotionState>& states, double tolerance) {
     std::vector<StateChart> nodes;
     std::vector<MotionState> ends;
     for (const MotionState& state : states) {
-      const auto passage =
-          flow_.pass(state, orbit_.period / static_cast<double>(states.size()), options_.tolerance);
+      const auto passage = flow_.pass(state, orbit_.period / static_cast<double>(states.size()), tolerance);
       if (!passage) return false;
       nodes.emplace_back(flow_.problem(), passage->from, options_.rate, options_.without);
       ends.push_back(passage->to);
@@ -121,6 +128,17 @@ class Shooter {
     for (std::size_t i = 0; i < segments(); ++i)
       gap = std::max(gap, after(i).distance(ends_[i]));
     return gap;
+  }
+
+  // The step of Newton's method, by coarse differences where these are enough. False where the flow leads
+  // nowhere.
+  bool newton(Vector& step, bool& reachable) {
+    for (const double coarser : {newton_tolerance, 1.}) {
+      if (!linearise(coarser * options_.tolerance)) return false;
+      reachable = solve(step);
+      if (!doubtful_) break;
+    }
+    return true;
   }
 
   // E_i s_i - B_(i+1) s_(i+1) + p_i dT = -r_i, where steps s_i begin with B_i s_i and end with E_i s_i, and
@@ -175,7 +193,7 @@ class Shooter {
     return svd ? static_cast<int>((svd->values.array() > moves).count()) : 0;
   }
 
-  // The shortest step that closes the gaps. False where no step closes much of them.
+  // The shortest step that closes the gaps, as far as steps do. False where no step closes much of them.
   bool solve(Vector& step) {
     step.setZero(matrix_.cols());
     doubtful_ = false;
@@ -188,9 +206,8 @@ class Shooter {
     orbit_.neutral = moving(svd->right.rightCols(svd->values.size() - rank));
     const Vector along = svd->left.transpose() * gaps_;
     unclosed_ = svd->left.rightCols(along.size() - rank);
-    if (along.tail(along.size() - rank).norm() > unreachable * gaps_.norm()) return false;
     step = -svd->right.leftCols(rank) * along.head(rank).cwiseQuotient(svd->values.head(rank));
-    return true;
+    return along.tail(along.size() - rank).norm() <= unreachable * gaps_.norm();
   }
 
   // Whether the part of the gaps that no step closes is no more than the error of the motion's steps: steps
@@ -208,29 +225,60 @@ class Shooter {
     return (unclosed_.transpose() * coarse - fine).norm() >= 0.5 * fine.norm();
   }
 
-  // The longest of the parts 1, 1/2, ... of a step after which the gaps are less.
+  // The nodes moved by a step, and the period with it.
+  std::vector<MotionState> displaced(const Vector& step, const std::vector<StateChart>& nodes,
+                                     double period) {
+    const Eigen::Index n = nodes.front().size();
+    if (options_.find_period) orbit_.period = period + step[step.size() - 1];
+    std::vector<MotionState> states;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      states.push_back(nodes[i].displaced(step.segment(n * static_cast<Eigen::Index>(i), n)));
+      if (options_.find_period)
+        states.back().time = orbit_.period * static_cast<double>(i) / static_cast<double>(nodes.size());
+    }
+    return states;
+  }
+
+  // How far a step goes along the coordinates: rad of what turns, scaled of what slides.
+  struct Extent {
+    double turned = 0, slid = 0;
+  };
+  Extent extent(const Vector& step) const {
+    const Problem problem = flow_.problem();
+    const StateChart& chart = orbit_.nodes.front();
+    Extent out;
+    for (std::size_t i = 0; i < segments(); ++i) {
+      const Vector change = orbit_.nodes[i].place_change(
+          step.segment(chart.size() * static_cast<Eigen::Index>(i), chart.size()));
+      for (const Link& link : problem.system.links) {
+        if (link.v < 0) continue;
+        const int count = link.type == LinkType::spherical ? 3 : 1;
+        const double moved = change.segment(link.v, count)
+                                 .cwiseQuotient(problem.scaling.column.segment(link.v, count))
+                                 .lpNorm<Eigen::Infinity>();
+        double& most = link.type == LinkType::prismatic ? out.slid : out.turned;
+        most = std::max(most, moved);
+      }
+    }
+    return out;
+  }
+
+  // The longest of the parts 1, 1/2, ... of a step after which the gaps are less. Where slides alone go far
+  // all of it is tried first: a motion may be many times as large as the mechanism, and the map linear.
   bool advance(const Vector& step, double gap) {
-    const Eigen::Index n = orbit_.nodes.front().size(), places = orbit_.nodes.front().positions();
-    double longest = 0;
-    for (std::size_t i = 0; i < segments(); ++i)
-      longest =
-          std::max(longest, step.segment(n * static_cast<Eigen::Index>(i), places).lpNorm<Eigen::Infinity>());
-    const double period = orbit_.period;
+    const Extent far = extent(step);
+    const double longest = std::max(far.turned, far.slid), period = orbit_.period;
     const std::vector<StateChart> nodes = orbit_.nodes;
     const std::vector<MotionState> ends = ends_;
     double part = longest > largest_step ? largest_step / longest : 1;
     if (options_.find_period)
       part = std::min(part, 0.2 * period / std::max(std::abs(step[step.size() - 1]), 1e-300));
+    else if (part < 1 && far.turned <= largest_step &&
+             place(displaced(step, nodes, period), options_.tolerance) && largest_gap() <= straight * gap)
+      return true;
     moved_ = false;
     for (int halved = 0; halved < 6; ++halved, part /= 2) {
-      if (options_.find_period) orbit_.period = period + part * step[step.size() - 1];
-      std::vector<MotionState> states;
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        states.push_back(nodes[i].displaced(part * step.segment(n * static_cast<Eigen::Index>(i), n)));
-        if (options_.find_period)
-          states.back().time = orbit_.period * static_cast<double>(i) / static_cast<double>(nodes.size());
-      }
-      if (place(states)) {
+      if (place(displaced(part * step, nodes, period), options_.tolerance)) {
         moved_ = true;
         if (largest_gap() < gap) return true;
       } else if (flow_.spent() || flow_.cancelled()) {
@@ -294,6 +342,13 @@ ShootingEnd end_of(const Flow& flow) {
 
 Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options) {
   return Shooter(flow, options).run(guess);
+}
+
+std::optional<Orbit> orbit_beside(Flow& flow, const Orbit& orbit, const ShootingOptions& options,
+                                  double coarser) {
+  ShootingOptions at = options;
+  at.period = orbit.period;
+  return Shooter(flow, at).beside(orbit, coarser);
 }
 
 std::optional<Monodromy> monodromy(Flow& flow, const Orbit& orbit, const ShootingOptions& options) {

@@ -44,6 +44,12 @@ struct Orbit {
 // From states at evenly spaced times, the first at the period's beginning; as many segments as states.
 Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options);
 
+// How far an orbit may be off: where Newton's method takes it in one step if motions are followed with
+// `coarser` times the tolerance. Nearly neutral directions make much of little gaps there, as they do of the
+// errors of the orbit's own. Nothing where the flow leads nowhere.
+std::optional<Orbit> orbit_beside(Flow& flow, const Orbit& orbit, const ShootingOptions& options,
+                                  double coarser);
+
 // What a period makes of what is beside the orbit.
 struct Monodromy {
   Eigen::MatrixXd matrix;                        // in the coordinates of the first node

@@ -47,7 +47,8 @@ class GridSolver {
   // All equilibria that a bounded search finds (Analysis::solve_all, by the search's options), each a point.
   // Where there are none, one point that says why, as solve() does.
   std::vector<SweepPoint> solve_all(std::size_t i, const SolveOptions& search);
-  // As solve(), and where drives make the balance turn the periodic motion in place of the steady state.
+  // As solve(), and the periodic motion in place of the steady state where drives make the balance turn; also
+  // a stable one where the steady state is unstable.
   SweepPoint solve_periodic(std::size_t i);
 
  private:

@@ -6,6 +6,7 @@ Usage: commands_test.py FLYBALL CASES SCENE, with a folder of cases and a scene 
 import csv
 import io
 import json
+import math
 import os
 import pathlib
 import re
@@ -233,6 +234,38 @@ def reports(folder):
     check("what is refused leaves no file", not (folder / "none.html").exists())
 
 
+def whirling():
+    """A disc on springs and dampers that turn with a shaft, which a torque T drives, in still air: beyond some speed
+    it whirls about the shaft's axis (rotating damping)."""
+    still = {"mass": 0, "position": [0, 0, 0], "inertia": [0, 0, 0]}
+    spring = {"spring": {"stiffness": 5000}, "damping": 4}
+    place = {"at": [0, 0, 0], "type": "prismatic"}
+    return json.dumps({
+        "flyball": 2, "name": "whirling", "parameters": {"T": {"value": 6, "unit": "N m"}},
+        "bodies": [{"name": "shaft", "mass": 0.5, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+                   {"name": "between", **still},
+                   {"name": "disc", "mass": 2, "position": [0, 0, 0], "inertia": [0.02, 0.02, 0.04]}],
+        "joints": [{"name": "s", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0], "axis": [0, 0, 1],
+                    "drive": {"torque": "=T - 0.1 N m s*rate(s)", "speed": 60}},
+                   {"name": "x", "bodies": ["shaft", "between"], "axis": [1, 0, 0], **place, **spring},
+                   {"name": "y", "bodies": ["between", "disc"], "axis": [0, 1, 0], **place, **spring}],
+        "forces": [{"type": "drag", "name": "air", "body": "disc", "at": [0, 0, 0], "linear": 3}]}).encode()
+
+
+def units_of_ranges(folder):
+    """Ranges are given as settings are: in SI units, in others, or by parameters."""
+    turn = 2 * math.pi  # rad/s at 60 rpm
+    tables = [list(csv.DictReader(run("sweep", SCENE, "--vary", f"{SPEED}={ends}", "--csv", "-")[1].decode()
+                                  .splitlines())) for ends in ("60 rpm:2*60 rpm:3", f"{turn}:{2 * turn}:3")]
+    check("a range has units", len(tables[0]) == 3 and all(
+        abs(float(a[SPEED]) - float(b[SPEED])) < 1e-12 for a, b in zip(*tables)))
+    for command in ("branch", "campbell"):
+        code, _, error = run(command, SCENE, "--vary", f"{SPEED}=60 rpm:90 rpm", "--csv", "-")
+        check(f"the range of {command} has units: {error}", code == 0)
+    code, _, error = run("sweep", SCENE, "--vary", f"{SPEED}=1 kg:2 kg:3")
+    check(f"units of something else are refused: {error}", code == 2 and "--vary " + SPEED in error)
+
+
 def resonance(folder):
     """A sweep of periodic motions has at each point what `solve` tells there, and of steady states these."""
     rotor = pathlib.Path(SCENE).parent / "horizontal_rotor.json"
@@ -251,6 +284,11 @@ def resonance(folder):
             found = [float(row[key]) for key in (name, name + ".min", name + ".max")]
             check(f"{name} is that of solve: {found}, {values}",
                   all(abs(a - b) < 1e-9 for a, b in zip(found, values)))
+    code, out, error = run("sweep", "-", "--vary", "parameters.T=8:12:2", "--periodic", "--csv", "-",
+                           input=whirling())
+    rows = list(csv.DictReader(io.StringIO(out.decode(), newline="")))
+    check(f"where the steady state is unstable the stable limit cycle is told: {error}, {out}",
+          code == 0 and [row["status"] for row in rows] == ["converged", "periodic"] and rows[1]["stable"] == "true")
     code, _, error = run("sweep", rotor, "--vary", "parameters.n=20:40:2", "--all", "--periodic")
     check(f"not all motions: {error}", code == 2)
 
@@ -334,7 +372,7 @@ def parts(folder):
 
 with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
-                 hunting, parts):
+                 units_of_ranges, hunting, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

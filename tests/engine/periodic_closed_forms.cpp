@@ -448,3 +448,121 @@ TEST_CASE("A steady state is periodic, too, with the multipliers that its eigenv
     CHECK(s.stable == true);
   }
 }
+
+namespace {
+
+// A disc of mass m on springs k1 and k2 with dampers c, all in a frame that turns at w about z; its mass
+// centre e beside the axis along the first of them. Weight acts along -y of the world.
+struct TurningSprings {
+  double k1 = 8000, k2 = 5000, c = 6, m = 2, e = 1e-3, w = 60, g = 9.80665;
+
+  Mechanism mechanism() const {
+    Mechanism out;
+    out.gravity = {0, -g, 0};
+    out.bodies = {body("frame", 0), body("between", 0), body("disc", m, {e, 0, 0}, {0.01, 0.01, 0.02})};
+    out.joints = {driven(revolute("spin", "ground", "frame", {0, 0, 0}, {0, 0, 1}), w),
+                  dampened(sprung(prismatic("x", "frame", "between", {0, 0, 0}, {1, 0, 0}), k1), c),
+                  dampened(sprung(prismatic("y", "between", "disc", {0, 0, 0}, {0, 1, 0}), k2), c)};
+    return out;
+  }
+  double mean() const { return m * w * w * e / (k1 - m * w * w); } // of x; of y none
+  // m (x'' - 2 w y' - w^2 x) + c x' + k1 x = -m g sin w t, and y with -m g cos w t.
+  Eigen::Vector2cd amplitudes() const {
+    const std::complex<double> i(0, 1);
+    Eigen::Matrix2cd a;
+    a << k1 - 2 * m * w * w + c * i * w, -2 * m * w * i * w, 2 * m * w * i * w,
+        k2 - 2 * m * w * w + c * i * w;
+    return a.partialPivLu().solve(Eigen::Vector2cd(i * m * g, -m * g));
+  }
+};
+
+} // namespace
+
+TEST_CASE("A linear motion many times as large as the mechanism is found in few steps") {
+  for (const double e : {0., 1e-5, 1e-3})
+    for (const double w : {52., 60., 70.}) {
+      CAPTURE(e, w);
+      const TurningSprings rotor{.e = e, .w = w};
+      const PeriodicState s = find_periodic_state(rotor.mechanism());
+      CAPTURE(s.message);
+      REQUIRE(s.status == PeriodicStatus::found);
+      CHECK(s.iterations <= 4);
+      const Eigen::Vector2cd size = rotor.amplitudes();
+      const PeriodicRange &x = coordinate(s, "x").range, &y = coordinate(s, "y").range;
+      CHECK_THAT(x.most, WithinRel(rotor.mean() + std::abs(size[0]), 1e-8));
+      CHECK_THAT(x.least, WithinRel(rotor.mean() - std::abs(size[0]), 1e-8));
+      CHECK_THAT(y.most, WithinRel(std::abs(size[1]), 1e-8));
+    }
+}
+
+TEST_CASE("Errors know what is nearly in step with the drives") {
+  // At the speed at which weight shakes it most: what is off by little dies out in many thousand turns.
+  for (const double c : {3e-5, 1e-4, 1e-3}) {
+    CAPTURE(c);
+    const TurningSprings rotor{.c = c, .e = 0, .w = std::sqrt(8000. * 5000 / (2 * 2 * 13000)), .g = 1e-4};
+    const PeriodicState s = find_periodic_state(rotor.mechanism());
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    const Eigen::Vector2cd size = rotor.amplitudes();
+    const PeriodicRange &x = coordinate(s, "x").range, &y = coordinate(s, "y").range;
+    CHECK(std::abs(x.most - std::abs(size[0])) <= x.error);
+    CHECK(std::abs(y.most - std::abs(size[1])) <= y.error);
+    CHECK(y.error < 1e-5 * y.most);
+  }
+}
+
+TEST_CASE("The highest of many peaks is told, whichever the samples hit best") {
+  // Two unbalances, and what a block of 5 kg in all on a spring answers to both.
+  const double k = 2000, c = 5, mass = 5;
+  const auto check = [&](double w1, double w2) {
+    CAPTURE(w1, w2);
+    Mechanism m;
+    m.bodies = {body("block", 3), body("near", 1, {0.02, 0, 0}, {0.01, 0.01, 0.01}),
+                body("far", 1, {0.03, 0, 0.2}, {0.01, 0.01, 0.01})};
+    m.joints = {dampened(sprung(prismatic("x", "ground", "block", {0, 0, 0}, {1, 0, 0}), k), c),
+                driven(revolute("p", "block", "near", {0, 0, 0}, {0, 0, 1}), w1),
+                driven(revolute("q", "block", "far", {0, 0, 0.2}, {0, 0, 1}), w2)};
+    PeriodicOptions patient;
+    patient.patience = 10;
+    const PeriodicState s = find_periodic_state(m, patient);
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    const auto answer = [&](double e, double w) {
+      return e * w * w / std::complex<double>(k - mass * w * w, c * w);
+    };
+    const std::complex<double> a = answer(0.02, w1), b = answer(0.03, w2);
+    const auto x = [&](double t) { return (a * std::polar(1., w1 * t) + b * std::polar(1., w2 * t)).real(); };
+    double least = 0, most = 0;
+    const int count = 2000000;
+    for (int i = 0; i < count; ++i) {
+      const double value = x(s.period * i / count);
+      least = std::min(least, value);
+      most = std::max(most, value);
+    }
+    const PeriodicRange& range = coordinate(s, "x").range;
+    CHECK_THAT(range.most, WithinAbs(most, 3e-8 * most + range.error));
+    CHECK_THAT(range.least, WithinAbs(least, 3e-8 * most + range.error));
+    CHECK(range.error < 1e-8 * most);
+  };
+  check(10, 10.1);
+  check(1, 20);
+}
+
+TEST_CASE("A balanced rotor at another speed has no part in the period") {
+  for (const double speed : {7.3, 10.001, 31.4159}) {
+    CAPTURE(speed);
+    Mechanism m = jeffcott(10);
+    m.bodies.push_back(body("even", 1, {0, 0, 0.5}, {0.05, 0.05, 0.05}));
+    m.joints.push_back(driven(revolute("beside", "ground", "even", {0, 0, 0.5}), speed));
+    const PeriodicState s = find_periodic_state(m), alone = find_periodic_state(jeffcott(10));
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    CHECK_THAT(s.period, WithinRel(2 * pi / 10, 1e-12));
+    CHECK_THAT(coordinate(s, "x").range.most, WithinRel(coordinate(alone, "x").range.most, 1e-9));
+    // Not so where it is uneven, and shakes the other one's block.
+    m.bodies.back() = body("even", 1, {0.02, 0, 0.5}, {0.05, 0.05, 0.05});
+    m.joints.back() = driven(revolute("beside", "block", "even", {0, 0, 0.5}), speed);
+    const PeriodicState both = find_periodic_state(m);
+    CHECK((both.status != PeriodicStatus::found || both.period > 60));
+  }
+}

@@ -1,6 +1,7 @@
 // Limit cycles: motions with a period of their own.
 #include "tests/engine/dynamics_runs.hpp"
 
+#include "engine/mechanism/text.hpp"
 #include "engine/periodic/periodic_state.hpp"
 #include "tests/catch.hpp"
 
@@ -161,4 +162,75 @@ TEST_CASE("Where the drawn pose leads nowhere the steady state is found, as a pe
       REQUIRE(found != s.coordinates.end());
       CHECK_THAT(found->range.mean, WithinAbs(c.value, 1e-9));
     }
+}
+
+namespace {
+
+// A block of 2 kg that slides on a spring and a damper, and on it an uneven wheel under its weight, which a
+// torque drives.
+Mechanism uneven_wheel_on_a_block() {
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("block", 2, {0, 0, 0}, {0, 0, 0}), body("wheel", 1, {0.02, 0, 0}, {0.05, 0.05, 0.05})};
+  m.joints = {dampened(sprung(prismatic("x", "ground", "block", {0, 0, 0}, {1, 0, 0}), 3000), 20),
+              dampened(revolute("spin", "block", "wheel", {0, 0, 0}), 0.2)};
+  m.joints[1].coordinates[0].drive = Drive{.speed = 9, .torque = 2.};
+  return m;
+}
+
+// The same with a wheel that turns at `speed` about an axis of the ground, its mass centre `e` beside that.
+Mechanism with_rotor(Mechanism m, double speed, double e, const std::string& on = "ground") {
+  m.bodies.push_back(body("rotor", 1, {e, 0, 0.5}, {0.05, 0.05, 0.05}));
+  m.joints.push_back(driven(revolute("turn", on, "rotor", {0, 0, 0.5}), speed));
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("An even rotor at a given speed, coupled to nothing, leaves a limit cycle as it is") {
+  const PeriodicState alone = find_periodic_state(uneven_wheel_on_a_block());
+  REQUIRE(alone.status == PeriodicStatus::found);
+  for (const char* on : {"ground", "block"}) {
+    const Mechanism m = uneven_wheel_on_a_block();
+    Mechanism heavier = m;
+    heavier.bodies[0].mass += std::string_view(on) == "block" ? 1 : 0; // the rotor goes along
+    const PeriodicState like = find_periodic_state(heavier), s = find_periodic_state(with_rotor(m, 7, 0, on));
+    CAPTURE(on, s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    CHECK(s.drive_periods == 0);
+    CHECK_THAT(s.period, WithinRel(like.period, 1e-9));
+    CHECK_THAT(of(s, "x").range.least, WithinRel(of(like, "x").range.least, 1e-8));
+    CHECK_THAT(of(s, "x").range.most, WithinRel(of(like, "x").range.most, 1e-8));
+    CHECK(s.stable == true);
+  }
+}
+
+TEST_CASE("What turns by a torque beside an uneven rotor settles, and is not told to grow") {
+  // Both turn on and on, each in its own time, and shake the block, which a spring holds.
+  const PeriodicState s = find_periodic_state(with_rotor(uneven_wheel_on_a_block(), 18, 0.02, "block"));
+  CAPTURE(s.message);
+  CHECK(s.status == PeriodicStatus::not_found);
+  CHECK_THAT(s.message, !ContainsSubstring("without end"));
+}
+
+TEST_CASE("A shaft that a torque cannot turn over comes to rest, and is told where") {
+  // 1 kg at r beside a level axis: at rest m g r sin(angle from below) is the torque, if it comes to rest.
+  const double weight = 9.80665 * 0.3;
+  struct Stall {
+    double torque, damping, speed;
+  };
+  for (const auto& [torque, damping, speed] : {Stall{0, 0.05, 1}, Stall{1, 0.05, 3}, Stall{0.5, 0.2, 3}}) {
+    CAPTURE(torque, damping, speed);
+    Mechanism m;
+    m.gravity = {0, -9.80665, 0};
+    m.bodies = {body("a", 1, {0.3, 0, 0}, {0.01, 0.01, 0.01})};
+    m.joints = {dampened(revolute("p", "ground", "a", {0, 0, 0}), damping)};
+    m.joints[0].coordinates[0].drive = Drive{.speed = speed, .torque = torque};
+    const PeriodicState s = find_periodic_state(m);
+    CAPTURE(s.message);
+    CHECK(s.status == PeriodicStatus::not_found);
+    CHECK(s.evaluations < 100000);
+    CHECK_THAT(s.message, ContainsSubstring("comes to rest: p at " +
+                                            rounded_text(std::asin(torque / weight) - pi / 2, 5) + " rad"));
+  }
 }
