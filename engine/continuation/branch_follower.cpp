@@ -187,6 +187,14 @@ Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchSta
   return out;
 }
 
+double BranchFollower::size_of(const BranchState& at, Eigen::VectorXd step) const {
+  const Problem problem = family_.problem();
+  for (const Link& link : system_.links)
+    if (finds_speed(link))
+      step[link.v] /= std::max(1., std::abs(at.z.q[link.q]) / problem.scaling.column[link.v]);
+  return step.norm();
+}
+
 bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
   return std::abs(a.parameter - b.parameter) < tolerance::same_parameter * family_.scale() &&
          same_pose(family_.problem(), a.z.q, b.z.q, tolerance::same_branch_pose);
@@ -200,8 +208,8 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
   for (const BranchState& s : branch.states) {
     if (std::abs(s.parameter - state.parameter) > near * family_.scale()) continue;
     const Eigen::VectorXd d = difference(s, state);
-    if (d.norm() < least) {
-      least = d.norm();
+    if (const double size = size_of(s, d); size < least) {
+      least = size;
       offset = d;
       nearest = &s;
     }
@@ -215,7 +223,7 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
   BranchState there;
   int iterations = 0;
   return continuation_.step(*nearest, along, there, iterations) &&
-         difference(there, state).norm() < 1e-2 * least;
+         size_of(there, difference(there, state)) < 1e-2 * least;
 }
 
 bool BranchFollower::out_of_reach(const BranchState& s) const {
@@ -331,7 +339,8 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     state = std::move(next);
     now = std::move(then);
     // Bands in which the drives pump a motion up are narrow.
-    const double longest = options_.largest_step * (turns_with_drives(now.point) ? 0.25 : 1);
+    const double longest =
+        options_.largest_step / size_of(state, state.tangent) * (turns_with_drives(now.point) ? 0.25 : 1);
     if (corner)
       length = options_.largest_step / 4;
     else

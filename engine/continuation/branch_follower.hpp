@@ -112,6 +112,8 @@ class BranchFollower {
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
   // Scaled step of q_R from a to b and of the parameter.
   Eigen::VectorXd difference(const BranchState& a, const BranchState& b) const;
+  // Of a scaled step; of a speed that is found and has grown beyond its scale, as a share of that.
+  double size_of(const BranchState& at, Eigen::VectorXd step) const;
 
   BranchOptions options_;
   System system_;

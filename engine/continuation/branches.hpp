@@ -65,7 +65,7 @@ struct ResponseDiagram {
 };
 
 struct BranchOptions {
-  double largest_step = 0.02; // scaled: radians, reaches, and parts of the parameter's range
+  double largest_step = 0.02; // scaled: radians, reaches, speeds, and parts of the parameter's range
   int max_points = 2000;      // a branch
   int max_branches = 32;
   bool switch_branches = true;

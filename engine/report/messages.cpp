@@ -243,7 +243,9 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
     text += out.neutral.size() == 1 ? "; its value is arbitrary" : "; their values are arbitrary";
     text += any_has_stop(in.mechanism, out.neutral) ? " between stops." : ".";
   }
-  if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
+  if (in.stability.angles_leave_open)
+    text += " Whether it is stable is not known: an angle matters of what turns at a speed that is found.";
+  else if (!out.stability_reason && !out.eigenvalues && system.nv <= largest_for_eigenvalues)
     text += " Whether it is stable is not known: the eigenvalues were not found, the iteration for them does "
             "not converge.";
   else if (!out.stability_reason)

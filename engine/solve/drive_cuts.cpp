@@ -3,6 +3,7 @@
 #include "engine/kkt/constraint_space.hpp"
 #include "engine/kkt/problem.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/system/constraint_row.hpp"
 #include "engine/system/implied_rates.hpp"
 #include "engine/system/kept_momentum.hpp"
 #include "engine/system/residual.hpp"
@@ -51,12 +52,31 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
   return false;
 }
 
-DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism) {
+// Speeds that are to be found begin as drawn, or apart from each other: where two begin alike, as the wheels
+// of a differential, whatever turns by their difference seems to stand.
+enum class Begin { as_drawn, apart };
+
+Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) {
+  Parameters p;
+  bind(system, mechanism, p);
+  if (begin == Begin::as_drawn) return p;
+  double share = 0.1;
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    if (torque.implied || !finds_speed(link)) continue;
+    LinkParameters& l = p.links[static_cast<std::size_t>(torque.link)];
+    if (l.speed == 0) l.speed = l.gear_ratio;
+    l.speed *= 1 + share;
+    share *= 1.7; // no two of a few dozen alike, or twice one another
+  }
+  return p;
+}
+
+DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism, Begin begin = Begin::as_drawn) {
   DrivenCuts out;
   out.turned.resize(system.cuts.size());
   if (system.rows == 0 || system.drives.empty()) return out;
-  Parameters p;
-  bind(system, mechanism, p);
+  Parameters p = bound(system, mechanism, begin);
   Scaling scaling;
   set_scaling(system, p, scaling);
   // A drive that stands still now may be set going by a slider, and the cuts must do for that, too.
@@ -125,30 +145,44 @@ std::optional<System> with_turning(const System& system, const Mechanism& mechan
   }
 }
 
-// What a drive keeps is the momentum of what hangs from it alone. A loop through it that the drives pull open
-// would have to turn it as the others turn, and so passes that momentum on.
+// What a drive keeps is the momentum of what hangs from it alone. A loop through it that the drives pull
+// open, or that turns others as it turns, passes that momentum on.
 void expect_no_loop_on_momenta(const System& system, const Mechanism& mechanism,
                                const std::vector<int>& open) {
+  if (!keeps_momentum(system) || system.rows == 0) return;
+  const Parameters p = bound(system, mechanism, Begin::as_drawn);
+  Eigen::VectorXd q;
+  drawn_configuration(system, p, q);
+  Kinematics<double> k;
+  forward<double>(system, p, q, 0, k);
+  // Whether the rate of entry v of q_R opens a joint that closes its loop by rates.
+  const auto turns_others = [&](std::size_t c, int v) {
+    const CutJoint& cut = system.cuts[c];
+    double most = 0;
+    if (cut.by_rates)
+      for (const ConstraintRow& row : cut.rows)
+        row_gradient(cut, p.cuts[c], row, k, [&](int entry, double g) {
+          const bool length = row.type == RowType::point || row.type == RowType::distance;
+          if (entry == v) most = std::max(most, std::abs(g) / (length ? p.length : 1));
+        });
+    return most > 1e-9;
+  };
   for (const DriveTorqueElement& torque : system.torques) {
     if (!torque.keeps_momentum) continue;
-    for (const int c : open) {
-      const CutJoint& cut = system.cuts[static_cast<std::size_t>(c)];
-      if (std::ranges::find(cut.ends.support, torque.link, &SupportColumn::link) == cut.ends.support.end())
-        continue;
-      const int link_joint = system.links[static_cast<std::size_t>(torque.link)].tree_joint;
-      const std::string& drive = system.tree_joints[static_cast<std::size_t>(link_joint)].name;
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+      const CutJoint& cut = system.cuts[c];
+      const auto& support = cut.ends.support;
+      const bool pulled = std::ranges::find(open, static_cast<int>(c)) != open.end() &&
+                          std::ranges::find(support, torque.link, &SupportColumn::link) != support.end();
+      if (!pulled && !(finds_speed(link) && turns_others(c, link.v))) continue;
+      const std::string& drive = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
       throw SceneError("joints." + drive + ".drive.keeps",
                        "expected speed, or no loop that ties " + drive + " to what others drive: through " +
                            mechanism.joints[static_cast<std::size_t>(cut.joint)].name +
                            " its momentum passes to them");
     }
   }
-}
-
-Parameters bound(const System& system, const Mechanism& mechanism) {
-  Parameters p;
-  bind(system, mechanism, p);
-  return p;
 }
 
 } // namespace
@@ -183,9 +217,10 @@ System compile_for_drives(const Mechanism& mechanism) {
     }
     enqueue(other);
   }
-  const auto let_turn = [&](const System& from, const std::vector<CoordinateReference>& more) {
+  const auto let_turn = [&](const System& from, const std::vector<CoordinateReference>& more,
+                            Begin begin = Begin::as_drawn) {
     std::optional<System> turning = with_turning(from, mechanism, more);
-    if (!turning) return;
+    if (!turning || (begin == Begin::apart && drive_cuts(*turning, mechanism, begin).opened > 0)) return;
     if (DrivenCuts there = drive_cuts(*turning, mechanism); there.opened == 0) {
       fate = std::move(there);
       best = std::move(*turning);
@@ -194,7 +229,13 @@ System compile_for_drives(const Mechanism& mechanism) {
   const System second = best;
   for (const auto& [from, beside] : {std::pair{&first, true}, std::pair{&first, false},
                                      std::pair{&second, true}, std::pair{&second, false}})
-    if (fate.opened > 0) let_turn(*from, implied_turning(*from, bound(*from, mechanism), beside));
+    if (fate.opened > 0)
+      let_turn(*from, implied_turning(*from, bound(*from, mechanism, Begin::as_drawn), beside));
+  // What stays closed as drawn, with speeds that are to be found, has to at others, too.
+  const System drawn = best;
+  if (fate.opened == 0 && !drawn.torques.empty() && drive_cuts(drawn, mechanism, Begin::apart).opened > 0)
+    for (const bool beside : {false, true})
+      let_turn(drawn, implied_turning(drawn, bound(drawn, mechanism, Begin::apart), beside), Begin::apart);
   // A bearing on a shaft that turns and another on the ground hold a pendulum alike: where it would be
   // carried round it may hang as well.
   const System carried = best;
@@ -213,7 +254,7 @@ System compile_for_drives(const Mechanism& mechanism) {
     }
   if (fate.opened == 0 && !best.drives.empty() && best.nv <= few && !keeps_momentum(best)) {
     const System standing = best;
-    let_turn(standing, slipping_turning(standing, bound(standing, mechanism)));
+    let_turn(standing, slipping_turning(standing, bound(standing, mechanism, Begin::as_drawn)));
   }
   expect_no_loop_on_momenta(best, mechanism, fate.open);
   for (std::size_t c = 0; c < best.cuts.size(); ++c)

@@ -23,7 +23,9 @@
 namespace flyball {
 
 struct LinearModelOptions {
-  bool phases = false; // angles of what turns at found speeds are states, too: they integrate
+  // Angles of what turns at found speeds are states, too: they integrate. Where one matters (a shaft that
+  // stands, two that turn alike with a spring between them; phase_stiffness.hpp) they are in any case.
+  bool phases = false;
   std::vector<std::pair<std::string, double>> start{}; // as of SolveOptions
   bool nearest = false;
   const std::atomic<bool>* cancel = nullptr;

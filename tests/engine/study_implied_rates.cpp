@@ -170,6 +170,40 @@ TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
       CHECK_THAT(track.rate.back(), WithinRel(wheel_rate(track.joint), 1e-7));
 }
 
+TEST_CASE("two drives of a planetary set may begin alike, where the planet seems to stand", "[implied]") {
+  const double apart = GENERATE(0., 1e-6, 1e-3, 5.);
+  CAPTURE(apart);
+  const auto at_centre = [](const std::string& name) {
+    return revolute(name, "ground", name, {0, 0, 0}, {0, 0, 1});
+  };
+  Mechanism m;
+  m.bodies = {wheel("carrier", 0.15), wheel("sun", 0.05), wheel("ring", 0.25),
+              body("planet", 0.4, {0.9, 0, 0}, {0.02, 0.02, 0.02})};
+  m.joints = {pushed(at_centre("carrier"), "0 N m - 0.4 N m s * rate(carrier)", 10 + apart),
+              pushed(at_centre("sun"), "10 N m - 0.1 N m s * rate(sun)", 10),
+              dampened(at_centre("ring"), 0.2),
+              revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+              revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
+              revolute("ring on carrier", "carrier", "ring", {0, 0, 0}, {0, 0, 1}),
+              gear("inner mesh", "sun on carrier", "planet", -sun_teeth / planet_teeth),
+              gear("outer mesh", "planet", "ring on carrier", planet_teeth / ring_teeth)};
+  m.joints[1].cut = m.joints[2].cut = false;
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // The ring at r = (1 + k) c - k s; what it brakes with, 0.2 r, is shared by the sun and the carrier:
+  // 10 - 0.1 s + 0.2 k r = 0 and -0.4 c - 0.2 (1 + k) r = 0.
+  const double k = sun_teeth / ring_teeth;
+  Eigen::Matrix2d a;
+  a << -0.1 - 0.2 * k * k, 0.2 * k * (1 + k), 0.2 * (1 + k) * k, -0.4 - 0.2 * (1 + k) * (1 + k);
+  const Eigen::Vector2d speeds = a.inverse() * Eigen::Vector2d(-10, 0);
+  CHECK_THAT(rate(s, "sun"), WithinRel(speeds[0], 1e-11));
+  CHECK_THAT(rate(s, "carrier"), WithinRel(speeds[1], 1e-11));
+  CHECK_THAT(rate(s, "planet"), WithinRel(-(speeds[0] - speeds[1]) * sun_teeth / planet_teeth, 1e-11));
+  CHECK(s.stable == true);
+}
+
 TEST_CASE("a wheel on a bearing turns at the speed that its air gives it", "[implied]") {
   // The shaft drags it along by the bearing's oil, the air holds it back.
   Mechanism m;

@@ -1,0 +1,81 @@
+#include "engine/stability/phase_stiffness.hpp"
+
+#include "engine/linear/largest.hpp"
+
+#include <array>
+
+namespace flyball {
+namespace {
+
+constexpr double far[] = {0.9, -1.7}; // rad or reaches: of no particular mechanism
+constexpr double matters = 1e-11;     // of the largest force
+
+} // namespace
+
+PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Workspace& w) {
+  const System& system = problem.system;
+  PhaseStiffness out;
+  if (system.torques.empty() || problem.parameters.phase_free) return out;
+  Parameters moved = problem.parameters;
+  const Eigen::VectorXd& scale = problem.scaling.column;
+  const auto force_at = [&](std::size_t link, double by) {
+    moved.links[link].start = problem.parameters.links[link].start + by;
+    forward<double>(system, moved, z.q, 0, w.kinematics);
+    evaluate_residual<double>(system, moved, z.q, z.lambda, w.kinematics, w.residual);
+    moved.links[link].start = problem.parameters.links[link].start;
+    Eigen::VectorXd f = w.residual.f;
+    for (Eigen::Index i = 0; i < w.residual.taken.size(); ++i) // where momentum is kept the row is of that
+      if (const DriveTorqueElement& torque = system.torques[static_cast<std::size_t>(i)];
+          torque.keeps_momentum)
+        f[system.links[static_cast<std::size_t>(torque.link)].v] = w.residual.taken[i];
+    return f;
+  };
+  const Eigen::VectorXd drawn = force_at(0, 0);
+  evaluate_magnitudes(system, problem.parameters, z.q, z.lambda, w.kinematics, w.magnitudes);
+  const double size = largest(w.magnitudes.force.cwiseProduct(scale));
+  for (const DriveTorqueElement& torque : system.torques) {
+    const auto l = static_cast<std::size_t>(torque.link);
+    const Link& link = system.links[l];
+    if (!finds_speed(link)) continue;
+    const double unit = link.type == LinkType::revolute ? 1 : problem.parameters.length;
+    const auto changes = [&](double by) {
+      return largest_size((force_at(l, by * unit) - drawn).cwiseProduct(scale)) > matters * size;
+    };
+    if (!changes(far[0]) && !changes(far[1])) continue;
+    constexpr double h = 0x1p-7; // the error is h^6 / 140 of the seventh derivative: 2e-15
+    constexpr std::array weights{3. / 4, -3. / 20, 1. / 60};
+    Eigen::VectorXd slope = Eigen::VectorXd::Zero(system.nv);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double by = h * static_cast<double>(i + 1) * unit;
+      slope += weights[i] / (h * unit) * (force_at(l, by) - force_at(l, -by));
+    }
+    out.entries.push_back(link.v);
+    out.columns.conservativeResize(system.nv, out.columns.cols() + 1);
+    out.columns.rightCols<1>() = slope;
+  }
+  return out;
+}
+
+bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& turned, Workspace& w) {
+  const System& system = problem.system;
+  Parameters moved = problem.parameters;
+  const Problem there{system, moved, problem.scaling, problem.cancel};
+  for (const double by : far) {
+    for (std::size_t l = 0; l < system.links.size(); ++l)
+      if (const Link& link = system.links[l]; finds_speed(link))
+        moved.links[l].start = problem.parameters.links[l].start + by * turned[link.v];
+    Unknowns at{z.q, Eigen::VectorXd::Zero(system.rows)};
+    evaluate(there, at, 0, w);
+    if (system.rows > 0) {
+      factor_constraints(there, w);
+      best_multipliers(there, w, at.lambda);
+      evaluate(there, at, 0, w);
+    }
+    const Eigen::VectorXd left = w.residual.f.cwiseProduct(problem.scaling.column),
+                          terms = w.magnitudes.force.cwiseProduct(problem.scaling.column);
+    if (!(largest_size(left) <= tolerance::phase_balance * largest(terms))) return false;
+  }
+  return true;
+}
+
+} // namespace flyball

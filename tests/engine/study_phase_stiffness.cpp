@@ -1,0 +1,158 @@
+// Steady states in which the angle of a shaft whose speed is found matters: it stands, or turns as fast as
+// another that it is tied to by a force.
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/study/linear_model.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/mechanisms.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <complex>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+using Complex = std::complex<double>;
+
+namespace {
+
+Joint pushed(Joint j, const std::string& law, double guess) {
+  Drive& drive = j.coordinates[0].drive.emplace();
+  drive.speed = guess;
+  drive.torque = 0;
+  j.formulas.push_back({"drive.torque", law});
+  return j;
+}
+
+Joint hinge(const std::string& name, const std::string& a, const std::string& b) {
+  return revolute(name, a, b, {0, 0, 0}, {0, 0, 1});
+}
+
+// 1 kg at 0.3 m above or below a hinge.
+constexpr double arm = 0.3, inertia = 0.01 + arm * arm, weight = standard_gravity * arm;
+Mechanism pendulum(Joint hinge, bool above) {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("bob", 1, {0, above ? arm : -arm, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {std::move(hinge)};
+  validate(m);
+  return m;
+}
+
+// Two coaxial shafts, each with 2 N m - 0.2 N m s w, and a spring between points at 0.3 m of each.
+constexpr double first = 0.1, second = 0.2, damping = 0.2;
+Mechanism shafts(bool opposite) {
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {first, first, first}),
+              body("b", 1, {0, 0, 0.5}, {second, second, second})};
+  m.joints = {pushed(hinge("p", "ground", "a"), "2 N m - 0.2 N m s * rate(p)", 5),
+              pushed(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), "2 N m - 0.2 N m s * rate(q)", 5)};
+  Force spring;
+  spring.type = ForceType::spring;
+  spring.name = "k";
+  spring.bodies = {"a", "b"};
+  spring.points = {Vec3(0.3, 0, 0), Vec3(opposite ? -0.3 : 0.3, 0, 0.5)};
+  spring.stiffness = 50;
+  spring.free_length = opposite ? 0.1 : 0.2;
+  m.forces = {spring};
+  validate(m);
+  return m;
+}
+
+// Where det [I1 s^2 + c s + k, -k; -k, I2 s^2 + c s + k] = 0 but for the turn of both together.
+Complex shafts_left(Complex s, double k) {
+  return first * second * s * s * s + damping * (first + second) * s * s +
+         (damping * damping + k * (first + second)) * s + 2 * damping * k;
+}
+
+} // namespace
+
+TEST_CASE("a pendulum whose hinge has a torque at rest falls or hangs", "[phase]") {
+  const bool above = GENERATE(true, false);
+  const Mechanism m = pendulum(pushed(hinge("p", "ground", "bob"), "-0.05 N m s * rate(p)", 1), above);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(coordinate(s, "p").speed.value(), WithinAbs(0, 1e-12));
+  CHECK(s.stable == !above);
+  REQUIRE(s.eigenvalues);
+  REQUIRE(s.eigenvalues->size() == 2);
+  for (const Complex x : *s.eigenvalues)
+    CHECK(std::abs(inertia * x * x + 0.05 * x + (above ? -weight : weight)) < 1e-11 * weight);
+  // The motion agrees.
+  SimulationOptions run;
+  run.duration = 60;
+  run.kick = {{"p", 0.01}};
+  const Run motion = simulate(m, run);
+  REQUIRE(motion.status == RunStatus::completed);
+  CHECK_THAT(motion.coordinates[0].value.back(), WithinAbs(above ? M_PI : 0, 1e-4));
+}
+
+TEST_CASE("a torque that just holds a pendulum sideways holds it at no other angle", "[phase]") {
+  Joint joint = pushed(hinge("p", "ground", "bob"), "2.941995 N m - 0.05 N m s * rate(p)", 0.5);
+  Mechanism m = pendulum(joint, true);
+  m.bodies[0].position = {-arm, 0, 0}; // weight turns it forward by 2.941995 N m
+  m.joints[0].formulas[0].text = "-2.941995 N m - 0.05 N m s * rate(p)";
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  if (s.status == Status::converged) CHECK(s.stable != true);
+}
+
+TEST_CASE("a spring between two shafts that turn alike holds or tips them", "[phase]") {
+  const bool opposite = GENERATE(true, false);
+  const Mechanism m = shafts(opposite);
+  const double length = std::sqrt(0.25 + (opposite ? 0.36 : 0)), free = opposite ? 0.1 : 0.2;
+  const double k = (opposite ? -1 : 1) * 50 * (length - free) * 0.09 / length;
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(coordinate(s, "p").speed.value(), WithinRel(10, 1e-12));
+  CHECK(s.stable == !opposite);
+  REQUIRE(s.eigenvalues);
+  REQUIRE(s.eigenvalues->size() == 3);
+  for (const Complex x : *s.eigenvalues)
+    CHECK(std::abs(shafts_left(x, k)) < 1e-11 * std::pow(std::abs(x), 3));
+  // A linear model has them, and the turn of both together.
+  const LinearModel model =
+      linearize(m, std::vector<std::string>{"torque(p)"}, std::vector<std::string>{"rate(q)"});
+  INFO(model.refusal);
+  REQUIRE(model.poles.size() == 4);
+  int together = 0;
+  for (const Complex x : model.poles)
+    if (std::abs(x) < 1e-9)
+      ++together;
+    else
+      CHECK(std::abs(shafts_left(x, k)) < 1e-9 * std::pow(std::abs(x), 3));
+  CHECK(together == 1);
+}
+
+TEST_CASE("a body that stands still on a shaft that turns falls over as it would on the ground", "[phase]") {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 0.1, 0.2}, {0.02, 0.02, 0.02})};
+  m.joints = {driven(hinge("p", "ground", "a"), 10),
+              pushed(hinge("q", "a", "b"), "-0.01 N m s * (rate(q) + 10 rad/s)", -10)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == false);
+  REQUIRE(s.eigenvalues);
+  for (const Complex x : *s.eigenvalues)
+    CHECK(std::abs(0.03 * x * x + 0.01 * x - 0.1 * standard_gravity) < 1e-10);
+}
+
+TEST_CASE("what is left to itself at rest above its hinge is not told to be stable", "[phase]") {
+  Joint joint = hinge("p", "ground", "bob");
+  Drive& drive = joint.coordinates[0].drive.emplace();
+  drive.keeps = DriveKeeps::momentum;
+  const Solution s = Analysis(pendulum(joint, true)).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK_FALSE(s.stable);
+  CHECK_THAT(s.message, ContainsSubstring("an angle matters"));
+}

@@ -1,0 +1,43 @@
+// Branches along which a speed that is found grows far beyond where its search begins.
+#include "engine/continuation/branches.hpp"
+#include "engine/mechanism/validate.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/mechanisms.hpp"
+
+#include <cmath>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+
+TEST_CASE("a torque against a load that falls and rises with speed has two folds", "[torque]") {
+  // T = 3 w e^-w + w / 10 from 0.03 rad/s, with a fold where 3 (1 - w) e^-w + 1 / 10 = 0, to 29.9 rad/s.
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+  Joint spin = revolute("spin", "ground", "rotor", {0, 0, 0}, {0, 0, 1});
+  Drive& drive = spin.coordinates[0].drive.emplace();
+  drive.speed = GENERATE(0.1, 10.);
+  drive.torque = 0.2;
+  drive.load = 0;
+  spin.formulas.push_back({"drive.load", "1 N m * (3 * rate(spin) / (1 rad/s) * exp(-rate(spin) / (1 rad/s))"
+                                         " + 0.1 * rate(spin) / (1 rad/s))"});
+  m.joints = {spin};
+  validate(m);
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.torque", 0.1, 3);
+  std::vector<double> folds;
+  for (const SpecialPoint& p : d.special)
+    if (p.type == SpecialPointType::fold) folds.push_back(p.at.parameter);
+  std::ranges::sort(folds);
+  REQUIRE(folds.size() == 2);
+  const auto torque = [](double w) { return 3 * w * std::exp(-w) + 0.1 * w; };
+  const auto fold = [](double low, double high) { // of the slope's sign
+    const auto slope = [](double w) { return 3 * (1 - w) * std::exp(-w) + 0.1; };
+    for (int i = 0; i < 100; ++i)
+      (slope((low + high) / 2) * slope(low) > 0 ? low : high) = (low + high) / 2;
+    return low;
+  };
+  CHECK_THAT(folds[0], WithinRel(torque(fold(3, 8)), 1e-9));
+  CHECK_THAT(folds[1], WithinRel(torque(fold(0.5, 2)), 1e-9));
+  REQUIRE(d.branches.size() == 1);
+  CHECK(d.branches[0].points.size() < 1000);
+}
