@@ -23,7 +23,7 @@ constexpr double returned = 0.03;       // of the way between: near enough
 constexpr double at_rest = 1e-6;        // scaled: what moves less does not
 constexpr double off_steady = 0.01;     // scaled, from a steady state
 constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
-constexpr double alike = 1e-6;          // scaled, of motions from two angles
+constexpr double alike_in_space = 1e-6; // scaled, of motions from two angles
 constexpr double alike_in_time = 1e-9;  // and from two phases of drives: a small unbalance is one, too
 constexpr int most_periods = 20000;     // in which a drive is to stand otherwise against the others
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
@@ -87,26 +87,33 @@ Eigen::VectorXd shape_of_swing(Flow& flow, const StateChart& steady, double peri
   return size > 0 ? Eigen::VectorXd(way / size) : Eigen::VectorXd();
 }
 
-// s, of a turn of the fastest drive by torque.
-std::optional<double> turn_of_drives(const Flow& flow, const MotionState& state) {
-  double fastest = 0;
+// Of the drives by torque the greatest of what is told of their links, of those at whose angles the motion
+// does not go on alike if there are such; zero where none turns.
+template <class Told>
+double greatest_of_drives(const Flow& flow, const AlikeAngles& alike, const Told& told) {
+  double greatest = 0, of_alike = 0;
   for (const DriveTorqueElement& drive : flow.model().system.torques) {
     const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
-    if (link.type == LinkType::revolute) fastest = std::max(fastest, std::abs(state.u[link.v]));
+    if (link.type != LinkType::revolute) continue;
+    const bool matters = alike.anywhere.cols() == 0 || alike.anywhere.row(link.v).norm() < 1e-6;
+    double& most = matters ? greatest : of_alike;
+    most = std::max(most, std::abs(told(link)));
   }
+  return greatest > 0 ? greatest : of_alike;
+}
+
+// s, of a turn of the fastest of them.
+std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike, const MotionState& state) {
+  const double fastest = greatest_of_drives(flow, alike, [&](const Link& link) { return state.u[link.v]; });
   if (!(fastest > 0)) return {};
   return turn / fastest;
 }
 
 // The same on the average of a passage; nothing where none turns by the tenth part of a turn: what has come
 // to rest, or swings, turns at no speed.
-std::optional<double> turn_of_drives(const Flow& flow, const Passage& passage) {
-  double farthest = 0;
-  for (const DriveTorqueElement& drive : flow.model().system.torques) {
-    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
-    if (link.type == LinkType::revolute)
-      farthest = std::max(farthest, std::abs(passage.to.q[link.q] - passage.from.q[link.q]));
-  }
+std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike, const Passage& passage) {
+  const double farthest = greatest_of_drives(
+      flow, alike, [&](const Link& link) { return passage.to.q[link.q] - passage.from.q[link.q]; });
   if (!(farthest > 0.1 * turn)) return {};
   return (passage.to.time - passage.from.time) * turn / farthest;
 }
@@ -182,27 +189,46 @@ std::string settled_message(const Flow& flow, CycleStart start, const MotionStat
     return motion + " settles in " + (start == CycleStart::steady ? "another one." : "a steady state.");
   return motion + " settles, and its drive by a torque comes to rest: " +
          word_list(std::vector<std::string_view>(resting.begin(), resting.end()), "and") +
-         ". To have that as a steady state leave the drive out; a spring of a constant force is a torque, too.";
+         ". To have that as a steady state leave the drive out; a spring of a constant force is a torque, "
+         "too.";
 }
 
-Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate) {
+AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {
+  const System& system = flow.model().system;
+  const Eigen::VectorXd& unit = flow.model().scaling.column;
   const Eigen::MatrixXd all = turning_directions(flow, state);
-  Eigen::MatrixXd out(all.rows(), 0);
+  AlikeAngles out;
+  out.anywhere.resize(all.rows(), 0);
+  out.turns.resize(all.rows(), 0);
   const double span = 0.1 / rate;
   const auto here = flow.pass(state, span, step_tolerance * 1e-3);
   for (Eigen::Index i = 0; here && i < all.cols(); ++i) {
     const Eigen::VectorXd way = all.col(i).normalized();
-    const auto goes_alike = [&](double angle) {
+    const auto goes_alike = [&](const Eigen::VectorXd& on) {
       MotionState turned = state;
-      retract<double>(flow.model().system, flow.model().scaling.column.cwiseProduct(angle * way), turned.q);
+      retract<double>(system, unit.cwiseProduct(on), turned.q);
       const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
       if (!there) return false;
-      const StateChart chart(flow.problem(), here->to, rate, way);
-      return chart.distance(there->to) < alike;
+      const StateChart chart(flow.problem(), here->to, rate, {way, {}, {}});
+      return chart.distance(there->to) < alike_in_space;
     };
-    if (!goes_alike(0.7) || !goes_alike(2.2)) continue;
-    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
-    out.col(out.cols() - 1) = way;
+    if (goes_alike(0.7 * way) && goes_alike(2.2 * way)) {
+      out.anywhere.conservativeResize(Eigen::NoChange, out.anywhere.cols() + 1);
+      out.anywhere.rightCols<1>() = way;
+      continue;
+    }
+    // By the drive that turns most along it.
+    Eigen::Index most = -1;
+    for (const DriveTorqueElement& drive : system.torques)
+      if (const Link& link = system.links[static_cast<std::size_t>(drive.link)];
+          link.type == LinkType::revolute && (most < 0 || std::abs(way[link.v]) > std::abs(way[most])))
+        most = link.v;
+    if (most < 0 || std::abs(way[most]) < 1e-6) continue;
+    const Eigen::VectorXd once = turn / (unit[most] * way[most]) * way;
+    if (!goes_alike(once) || !goes_alike(-2 * once)) continue;
+    out.turns.conservativeResize(Eigen::NoChange, out.turns.cols() + 1);
+    out.turns.rightCols<1>() = once;
+    out.drives.push_back(most);
   }
   return out;
 }
@@ -242,11 +268,12 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
   std::optional<MotionState> state = leaves ? steady : flow.drawn();
   if (!state) return refused(flow.trouble());
   std::optional<double> period = swing.period;
-  if (!period) period = turn_of_drives(flow, *state);
+  if (!period) period = turn_of_drives(flow, {}, *state);
   if (!period)
     return refused(
         "No drive turns, and nothing swings about a steady state, so that there is no period to look for.");
-  const Eigen::MatrixXd alike_along = angles_alike(flow, *state, turn / *period);
+  const AlikeAngles alike_along = angles_alike(flow, *state, turn / *period);
+  if (!swing.period) period = turn_of_drives(flow, alike_along, *state).value_or(*period);
   if (steady) {
     const StateChart chart(flow.problem(), *steady, turn / *period, alike_along);
     if (swing.stable) {
@@ -264,7 +291,7 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     state = passage->to;
     state->time = 0;
     // What turns may have become faster or slower.
-    if (!swing.period) period = turn_of_drives(flow, *passage).value_or(*period);
+    if (!swing.period) period = turn_of_drives(flow, alike_along, *passage).value_or(*period);
     const std::vector<MotionState> trace = flow.trace(*state, 3 * *period, 3 * samples, step_tolerance);
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);

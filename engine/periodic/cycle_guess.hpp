@@ -2,7 +2,7 @@
 // there shooting finds the limit cycle and its period.
 #pragma once
 
-#include "engine/periodic/flow.hpp"
+#include "engine/periodic/state_chart.hpp"
 
 namespace flyball {
 
@@ -19,9 +19,8 @@ enum class CycleStart {
 // above; a drive by a torque that has come to rest is told with where it stands.
 std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate);
 
-// Angles of what torques drive, as scaled directions (nv, any), at all of which the motion goes on alike:
-// these need not return after a period.
-Eigen::MatrixXd angles_alike(Flow& flow, const MotionState& state, double rate);
+// Angles of what torques drive that need not return after a period.
+AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate);
 
 // Whether motions from `state` and beside it go alike wherever the drives, whose period this is (s), stand:
 // then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning
@@ -33,8 +32,8 @@ bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period);
 bool goes_alike_without(Flow& flow, const MotionState& state, double period, double speed);
 
 struct CycleGuess {
-  double period = 0;           // s
-  Eigen::MatrixXd turns_alike; // angles_alike()
+  double period = 0; // s
+  AlikeAngles alike;
   std::optional<MotionState> steady;
   std::optional<MotionState> state; // of a motion that nearly repeats itself
   // Without it: the shape of the least damped swing about the steady state, in StateChart's coordinates

@@ -199,7 +199,7 @@ class Search {
     how.period = began.guess->period;
     how.find_period = true;
     how.rate = 2 * std::numbers::pi / how.period;
-    how.without = began.guess->turns_alike;
+    how.alike = began.guess->alike;
     // The iteration may fall into the steady state, which comes back after any time: then from further away.
     for (double part = 1; part <= furthest; part *= 1.4) {
       auto cycle = complete({at_distance(*began.guess, part, how)}, how, 0);
@@ -214,7 +214,7 @@ class Search {
   // The guess `part` times as far from the steady state.
   MotionState at_distance(const CycleGuess& guess, double part, const ShootingOptions& how) const {
     if (!guess.steady) return *guess.state;
-    const StateChart chart(flow_.problem(), *guess.steady, how.rate, how.without);
+    const StateChart chart(flow_.problem(), *guess.steady, how.rate, how.alike);
     return chart.displaced(guess.state ? Eigen::VectorXd(part * chart.coordinates(*guess.state))
                                        : Eigen::VectorXd(part * least_swing * guess.swing));
   }
@@ -230,7 +230,7 @@ class Search {
     ShootingOptions how;
     how.period = drives_.period * periods;
     how.rate = rate();
-    how.without = alike_;
+    how.alike = alike_;
     return complete(guess, how, periods);
   }
 
@@ -605,7 +605,7 @@ class Search {
   const PeriodicOptions& options_;
   Flow flow_;
   DrivePeriod drives_;
-  Eigen::MatrixXd alike_;                   // angles that need not return
+  AlikeAngles alike_;                       // angles that need not return
   ShootingEnd end_ = ShootingEnd::diverged; // of the last attempt
   bool left_first_ = false;
   bool untimed_ = false;       // nothing depends on where the drives stand

@@ -29,12 +29,15 @@ Owner owner_of(const System& system, const Mechanism& mechanism, const Kink& kin
     return {coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)),
             is_angle(joint.type, link.coordinate)};
   }
-  case Kink::Of::coordinate: break;
+  case Kink::Of::coordinate:
+  case Kink::Of::stop: break;
   }
-  const ForceLawElement& e = system.coordinate_laws[kink.entry];
-  const Link& link = system.links[static_cast<std::size_t>(e.at)];
+  const bool stop = kink.of == Kink::Of::stop;
+  const Link& link =
+      system.links[stop ? kink.entry : static_cast<std::size_t>(system.coordinate_laws[kink.entry].at)];
   const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-  const int i = link.coordinate + e.component;
+  const int i =
+      link.coordinate + (stop ? static_cast<int>(kink.input) : system.coordinate_laws[kink.entry].component);
   return {coordinate_name(mechanism.joints[static_cast<std::size_t>(joint.joint)], i),
           is_angle(joint.type, i)};
 }
@@ -75,8 +78,11 @@ std::string kink_message(const System& system, const Mechanism& mechanism, const
   for (const Kink& kink : stability.kinks) {
     const Owner owner = owner_of(system, mechanism, kink);
     const Words words = words_of(system, mechanism, kink, owner.angle);
-    out += std::string(out.empty() ? "" : " ") + "The " + words.law + " of " + owner.name +
-           " stands on a kink of its law, where its " + words.slope + " jumps from " +
+    const std::string where = kink.of == Kink::Of::stop
+                                  ? owner.name + " stands just at its stop, where its "
+                                  : "The " + words.law + " of " + owner.name +
+                                        " stands on a kink of its law, where its ";
+    out += std::string(out.empty() ? "" : " ") + where + words.slope + " jumps from " +
            rounded_text(kink.slopes[0], 4) + " to " + rounded_text(kink.slopes[1], 4) + " " + words.unit +
            ": " + (kink.law == Kink::Law::damper ? "eigenvalues hold" : "rates and eigenvalues hold") +
            " on one side of it" +

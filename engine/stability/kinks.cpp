@@ -15,6 +15,9 @@ namespace flyball {
 namespace {
 
 constexpr double far = 1e-6, near = far / 64; // of the size of a number
+// The same: nearer to its limit a coordinate is just at its stop. Stiff stops give way by little, and one
+// that is pressed is on its one side.
+constexpr double at_stop = 1e-10;
 
 // Slopes before and after a jump within some 1e-8 of `size` beside x, of a law with this slope.
 template <class Slope>
@@ -60,6 +63,20 @@ void look_at_polar(const Search& search, const BodyForceParameters& p, const Mat
   const double incidence = std::atan2(up, along);
   search.look_round(p.polar->lift, Kink::Law::lift, incidence);
   search.look_round(p.polar->drag, Kink::Law::drag, incidence);
+}
+
+bool has_stop(const CoordinateForce& force) {
+  return force.stop_stiffness != 0 && (force.has_lower || force.has_upper);
+}
+
+// Of a coordinate just at its stop.
+std::optional<std::array<double, 2>> stiffness_beside_stop(const CoordinateForce& force, double x, double size) {
+  if (!has_stop(force)) return {};
+  const auto stop = [&](double at) { return force.touched(at) ? force.stop_stiffness : 0; };
+  const double before = stop(x - at_stop * size), after = stop(x + at_stop * size);
+  if (before == after) return {};
+  const double spring = force.curvature(x) - stop(x);
+  return std::array{spring + before, spring + after};
 }
 
 // Whether two inputs cross the same kink, be it in opposite directions.
@@ -168,10 +185,30 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
     look_at_polar(Search(Kink::Of::vane_in_turning_air, i, out), vane, k.at(e.ends.b).R,
                   turning_air_force<double>(e, vane, k).flow);
   }
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.v < 0 || link.drive >= 0 || !p.links[l].elastic) continue;
+    const bool spherical = link.type == LinkType::spherical;
+    const double size = link.type == LinkType::prismatic ? p.length : 1;
+    for (std::size_t i = 0; i < (spherical ? 3 : 1); ++i) {
+      const CoordinateForce& force = p.links[l].force[i];
+      if (!has_stop(force)) continue;
+      const double x = spherical ? rotation_vector(link, p.links[l], q)[static_cast<Eigen::Index>(i)] : q[link.q];
+      if (const auto slopes = stiffness_beside_stop(force, x, size))
+        out.push_back({Kink::Of::stop, l, Kink::Law::spring, x, *slopes, i, {}});
+    }
+  }
   for (std::size_t i = 0; i < system.torques.size(); ++i)
     for (const Kink::Law which : {Kink::Law::torque, Kink::Law::load})
       look_at_drive_law(problem, q, k, i, which, out);
   return out;
+}
+
+bool may_have_kinks(const System& system, const Parameters& p) {
+  return !system.coordinate_laws.empty() || !system.spring_laws.empty() || !system.cut_damper_laws.empty() ||
+         !system.torques.empty() || std::ranges::any_of(p.links, [](const LinkParameters& l) {
+           return l.elastic && std::ranges::any_of(l.force, has_stop);
+         });
 }
 
 Parameters beside_kink(const Problem& problem, const Kink& kink, std::size_t side) {
@@ -186,6 +223,15 @@ Parameters straightened(const Problem& problem, const std::vector<Kink>& kinks, 
   Parameters out = problem.parameters;
   for (const Kink& kink : kinks) {
     if (kink.law != Kink::Law::spring) continue;
+    if (kink.of == Kink::Of::stop) {
+      CoordinateForce& force = out.links[kink.entry].force.hold(kink.input);
+      if (side == KinkSide::softer)
+        force.has_lower = force.has_upper = false;
+      else // by a hair beyond its limit, of which no force comes
+        (kink.slopes[0] < kink.slopes[1] ? force.upper : force.lower) =
+            std::nextafter(kink.at, kink.slopes[0] < kink.slopes[1] ? kink.at - 1 : kink.at + 1);
+      continue;
+    }
     const ForceLawElement& e =
         (kink.of == Kink::Of::spring ? system.spring_laws : system.coordinate_laws)[kink.entry];
     auto& laws = kink.of == Kink::Of::spring ? out.springs[static_cast<std::size_t>(e.at)].laws

@@ -234,3 +234,35 @@ TEST_CASE("A shaft that a torque cannot turn over comes to rest, and is told whe
                                             rounded_text(std::asin(torque / weight) - pi / 2, 5) + " rad"));
   }
 }
+
+TEST_CASE("A wheel that a gear carries round by no whole turns is no part of when a cycle returns") {
+  const PeriodicState alone = find_periodic_state(uneven_wheel_on_a_block());
+  REQUIRE(alone.status == PeriodicStatus::found);
+  for (const double ratio : {0.5, 1.87, 2.}) {
+    Mechanism m = uneven_wheel_on_a_block();
+    m.bodies.push_back(body("even", 1, {1, 0, 0}, {0.05, 0.05, 0.05}));
+    m.joints.push_back(dampened(revolute("behind", "ground", "even", {1, 0, 0}), 0.05));
+    m.joints.push_back(gear("gear", "spin", "behind", ratio));
+    const PeriodicState s = find_periodic_state(m);
+    CAPTURE(ratio, s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    CHECK_THAT(std::abs(of(s, "spin").advance), WithinRel(2 * pi, 1e-9)); // one turn, not two
+    CHECK(s.stable == true);
+  }
+}
+
+TEST_CASE("An even wheel that another torque turns fast has no part in when a cycle returns") {
+  const PeriodicState alone = find_periodic_state(uneven_wheel_on_a_block());
+  for (const double speed : {20., 40., 160.}) {
+    Mechanism m = uneven_wheel_on_a_block();
+    m.bodies.push_back(body("even", 1, {1, 0, 0}, {0.05, 0.05, 0.05}));
+    m.joints.push_back(dampened(revolute("beside", "ground", "even", {1, 0, 0}), 0.05));
+    m.joints.back().coordinates[0].drive = Drive{.speed = speed, .torque = 0.05 * speed};
+    const PeriodicState s = find_periodic_state(m);
+    CAPTURE(speed, s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    CHECK_THAT(s.period, WithinRel(alone.period, 1e-8));
+    CHECK_THAT(of(s, "beside").rate.mean, WithinRel(speed, 1e-8));
+    CHECK(s.stable == true);
+  }
+}

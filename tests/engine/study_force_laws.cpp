@@ -335,6 +335,38 @@ TEST_CASE("a steady state on a kink is told", "[laws]") {
   CHECK_THAT(table.message, !ContainsSubstring("kink")); // at a point of a table the slope does not jump
 }
 
+TEST_CASE("what is just at its stop is told to be", "[laws][stops]") {
+  const auto slide_to = [](double upper, double stiffness, double spring, double free) {
+    Mechanism m = sliding(1, sprung(slide_along_x(), spring, free));
+    m.joints[0].coordinates[0].stop = Stop{{}, upper, stiffness};
+    return m;
+  };
+  const Solution both = solved(slide_to(0.1, 1000, 100, 0.1));
+  INFO(both.message);
+  CHECK_THAT(both.message, ContainsSubstring("slide stands just at its stop, where its stiffness jumps from 100 "
+                                             "to 1100 N/m: rates and eigenvalues hold on one side of it"));
+  CHECK(both.stable == true); // on either side the potential rises
+  CHECK(both.stability_reason == StabilityReason::minimum);
+  // On a shaft that turns at 5 rad/s: only the stop's side holds it, and nothing but a limit tells of both.
+  Mechanism turned = slide_to(0.3, 1000, 12, 0.3 - 25 * 0.3 / 12);
+  turned.bodies[0].position = {0.3, 0, 0};
+  turned.bodies.push_back(body("shaft", 1, {0, 0, 0}, {1, 1, 1}));
+  turned.joints[0].bodies[0] = "shaft";
+  turned.joints[0].coordinates[0].drawn = 0.3;
+  turned.joints.push_back(driven(revolute("spin", "ground", "shaft", {0, 0, 0}), 5));
+  const Solution half = Analysis(turned).solve();
+  INFO(half.message);
+  REQUIRE(half.status == Status::converged);
+  CHECK(!half.stable);
+  CHECK_THAT(half.message, ContainsSubstring("whether it is stable stays open"));
+  // A stiff one that is pressed gives way by 1e-8 m, and is on its one side.
+  const Solution pressed = solved(slide_to(0.1, 1e8, 10, 0.2));
+  INFO(pressed.message);
+  CHECK(pressed.stable == true);
+  CHECK_THAT(pressed.message, !ContainsSubstring("just at its stop"));
+  CHECK_THAT(pressed.eigenvalues->at(0).imag(), WithinRel(std::sqrt(1e8 + 10), 1e-9));
+}
+
 TEST_CASE("every verdict on an equilibrium knows the kink it stands on", "[laws][branches]") {
   Mechanism m = sliding(1, by_law(slide_along_x(), "c*max(deflection, 0 m) - 30 N/m*min(deflection, 0 m)"));
   m.parameters = {{"c", "", 100, "N/m", {}}};
