@@ -115,7 +115,7 @@ class Shooter {
     for (const MotionState& state : states) {
       const auto passage = flow_.pass(state, orbit_.period / static_cast<double>(states.size()), tolerance);
       if (!passage) return false;
-      nodes.emplace_back(flow_.problem(), passage->from, options_.rate, options_.without);
+      nodes.emplace_back(flow_.problem(), passage->from, options_.rate, options_.alike);
       ends.push_back(passage->to);
     }
     orbit_.nodes = std::move(nodes);

@@ -16,7 +16,7 @@ struct ShootingOptions {
   double rate = 1;          // 1/s, the unit of rates
   double tolerance = 1e-12; // of the motion's steps
   int iterations = 25;
-  Eigen::MatrixXd without{}; // as of StateChart: angles that need not return
+  AlikeAngles alike{}; // angles that need not return
 };
 
 enum class ShootingEnd {

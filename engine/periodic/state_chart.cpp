@@ -5,9 +5,9 @@
 
 namespace flyball {
 
-StateChart::StateChart(const Problem& problem, MotionState base, double rate, const Eigen::MatrixXd& without)
+StateChart::StateChart(const Problem& problem, MotionState base, double rate, const AlikeAngles& alike)
     : system_(&problem.system), parameters_(&problem.parameters), scaling_(&problem.scaling),
-      base_(std::move(base)), rate_(rate) {
+      base_(std::move(base)), rate_(rate), turns_(alike.turns), turning_(alike.drives) {
   const Eigen::Index n = system_->nv;
   rates_ = Eigen::MatrixXd::Identity(n, n);
   if (system_->rows > 0 && n > 0) {
@@ -21,9 +21,9 @@ StateChart::StateChart(const Problem& problem, MotionState base, double rate, co
   }
   places_ = rates_;
   left_out_.resize(n, 0);
-  if (without.cols() == 0 || rates_.cols() == 0) return;
+  if (alike.anywhere.cols() == 0 || rates_.cols() == 0) return;
   // What of the free directions is at right angles to those left out.
-  const Eigen::MatrixXd along = rates_.transpose() * without;
+  const Eigen::MatrixXd along = rates_.transpose() * alike.anywhere;
   ConstraintSpace rest;
   rest.factor(along.transpose(), 1e-9);
   places_ = rates_ * rest.basis();
@@ -53,13 +53,18 @@ Eigen::VectorXd StateChart::coordinates(const MotionState& state) const {
 }
 
 Eigen::VectorXd StateChart::away(const MotionState& state) const {
-  if (left_out_.cols() == 0) return scaled_difference(problem(), base_.q, state.q);
+  if (left_out_.cols() == 0 && turning_.empty()) return scaled_difference(problem(), base_.q, state.q);
   // Along what is left out it goes on and on: by whole turns, which differ between wheels that turn together.
   Eigen::VectorXd gone = Eigen::VectorXd::Zero(system_->nv);
   for (const Link& link : system_->links)
     if (link.v >= 0 && link.type != LinkType::spherical)
       gone[link.v] = (state.q[link.q] - base_.q[link.q]) / scaling_->column[link.v];
-  gone = left_out_ * (left_out_.transpose() * gone);
+  const Eigen::VectorXd raw = gone;
+  gone = left_out_ * (left_out_.transpose() * raw);
+  for (std::size_t i = 0; i < turning_.size(); ++i) {
+    const auto way = turns_.col(static_cast<Eigen::Index>(i));
+    gone += std::round((raw[turning_[i]] - gone[turning_[i]]) / way[turning_[i]]) * way;
+  }
   Eigen::VectorXd beside = base_.q;
   retract<double>(*system_, scaling_->column.cwiseProduct(gone), beside);
   return scaled_difference(problem(), beside, state.q);

@@ -6,12 +6,20 @@
 
 namespace flyball {
 
+// What angles of drives by torque need not return, as scaled changes of the coordinates (nv), by column.
+struct AlikeAngles {
+  Eigen::MatrixXd anywhere{}; // directions: the motion goes on alike wherever along these it stands
+  // A turn of a drive with what gears and belts carry round, after which it goes on alike although these did
+  // not turn whole times; and the entries of the drives.
+  Eigen::MatrixXd turns{};
+  std::vector<Eigen::Index> drives{};
+};
+
 class StateChart {
  public:
   // About a state whose loops are closed. `rate` (1/s) is the unit of rates, as Scaling has those of the
-  // coordinates. Directions of the coordinates along `without` (nv, any), scaled, are left out: their rates
-  // stay.
-  StateChart(const Problem& problem, MotionState base, double rate, const Eigen::MatrixXd& without);
+  // coordinates. Directions along which motions go alike are left out: their rates stay.
+  StateChart(const Problem& problem, MotionState base, double rate, const AlikeAngles& alike);
 
   const MotionState& base() const { return base_; }
   // Of the coordinates, and of those and their rates together.
@@ -39,6 +47,8 @@ class StateChart {
   double rate_;
   Eigen::MatrixXd places_, rates_; // (nv, any), orthonormal, scaled
   Eigen::MatrixXd left_out_;       // (nv, any), orthonormal
+  Eigen::MatrixXd turns_;
+  std::vector<Eigen::Index> turning_; // as AlikeAngles has both
 };
 
 } // namespace flyball
