@@ -128,9 +128,7 @@ Stability stability_of(const Problem& problem, SteadyState& steady, bool with_ei
 }
 
 bool stands_on_kink(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
-  if (problem.system.coordinate_laws.empty() && problem.system.spring_laws.empty() &&
-      problem.system.cut_damper_laws.empty() && problem.system.torques.empty())
-    return false; // of a minimum
+  if (!may_have_kinks(problem.system, problem.parameters)) return false; // of a minimum
   forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
   return !find_kinks(problem, q, w.kinematics).empty();
 }
