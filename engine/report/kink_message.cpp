@@ -78,10 +78,9 @@ std::string kink_message(const System& system, const Mechanism& mechanism, const
   for (const Kink& kink : stability.kinks) {
     const Owner owner = owner_of(system, mechanism, kink);
     const Words words = words_of(system, mechanism, kink, owner.angle);
-    const std::string where = kink.of == Kink::Of::stop
-                                  ? owner.name + " stands just at its stop, where its "
-                                  : "The " + words.law + " of " + owner.name +
-                                        " stands on a kink of its law, where its ";
+    const std::string where = kink.of == Kink::Of::stop ? owner.name + " stands just at its stop, where its "
+                                                        : "The " + words.law + " of " + owner.name +
+                                                              " stands on a kink of its law, where its ";
     out += std::string(out.empty() ? "" : " ") + where + words.slope + " jumps from " +
            rounded_text(kink.slopes[0], 4) + " to " + rounded_text(kink.slopes[1], 4) + " " + words.unit +
            ": " + (kink.law == Kink::Law::damper ? "eigenvalues hold" : "rates and eigenvalues hold") +

@@ -3,6 +3,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/solve/unbounded.hpp"
+#include "engine/system/implied_rates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -208,19 +209,31 @@ std::string message(const AllSolutions& all) {
   return text;
 }
 
+namespace {
+
+std::string open_loop_message(const ReportInput& in) {
+  const bool turns = loops_turn_with_drives(in.problem.system, in.problem.parameters);
+  std::string text = turns ? "No steady state was found" : "No steady state";
+  text += ": as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
+          "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut";
+  if (std::ranges::any_of(in.mechanism.joints,
+                          [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; }))
+    text += "; the joints marked with \"cut\" were left as marked";
+  text += ".";
+  if (turns)
+    text += " Its loop could turn with the drives, what springs hold at rest in it; a state in which that "
+            "is twisted and gears on a bearing beside it turn is not solved for. A motion shows it.";
+  return text;
+}
+
+} // namespace
+
 std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::infeasible)
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
            "\" stays open however the other coordinates are chosen.";
   if (in.found.status == Status::not_converged) return message(in.found, in.problem);
-  if (in.existence.loops_open)
-    return "No steady state: as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
-           "\" cannot be held with all other coordinates constant, whichever joint of its loop is cut" +
-           (std::ranges::any_of(
-                in.mechanism.joints,
-                [](const Joint& j) { return j.cut.has_value() && coordinate_count(j.type) > 0; })
-                ? "; the joints marked with \"cut\" were left as marked."
-                : ".");
+  if (in.existence.loops_open) return open_loop_message(in);
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";

@@ -70,7 +70,8 @@ bool has_stop(const CoordinateForce& force) {
 }
 
 // Of a coordinate just at its stop.
-std::optional<std::array<double, 2>> stiffness_beside_stop(const CoordinateForce& force, double x, double size) {
+std::optional<std::array<double, 2>> stiffness_beside_stop(const CoordinateForce& force, double x,
+                                                           double size) {
   if (!has_stop(force)) return {};
   const auto stop = [&](double at) { return force.touched(at) ? force.stop_stiffness : 0; };
   const double before = stop(x - at_stop * size), after = stop(x + at_stop * size);
@@ -193,7 +194,8 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
     for (std::size_t i = 0; i < (spherical ? 3 : 1); ++i) {
       const CoordinateForce& force = p.links[l].force[i];
       if (!has_stop(force)) continue;
-      const double x = spherical ? rotation_vector(link, p.links[l], q)[static_cast<Eigen::Index>(i)] : q[link.q];
+      const double x =
+          spherical ? rotation_vector(link, p.links[l], q)[static_cast<Eigen::Index>(i)] : q[link.q];
       if (const auto slopes = stiffness_beside_stop(force, x, size))
         out.push_back({Kink::Of::stop, l, Kink::Law::spring, x, *slopes, i, {}});
     }

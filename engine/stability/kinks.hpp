@@ -26,7 +26,8 @@ struct Kink {
   std::array<double, 2> slopes{}; // before and after
   // Of a drive: which of the law's inputs crosses the kink, in DriveLaw::inputs, and the derivatives with all
   // of them before and after. `at` is that input. No derivatives where the input itself has none there, as a
-  // distance of zero: it grows whichever way it is left. Of a stop `input` is the component of a rotation vector.
+  // distance of zero: it grows whichever way it is left. Of a stop `input` is the component of a rotation
+  // vector.
   std::size_t input = 0;
   std::array<std::vector<double>, 2> gradients{};
 };

@@ -14,10 +14,14 @@ bool has_one_axis(const Link& link) {
   return link.type == LinkType::revolute || link.type == LinkType::prismatic;
 }
 
+// What springs and stops hold may move as well, or stands still.
+enum class Elastic { moves, stands };
+
 // In the drawn pose: the rates of q_R and the speeds that are found (rad/s or m/s) at which no loop opens,
 // with drives by torque as near as can be to where their search begins, and all else moving as little as can
 // be. Nothing where the loops cannot stay closed.
-std::optional<Eigen::VectorXd> closing_rates(const System& system, const Parameters& p) {
+std::optional<Eigen::VectorXd> closing_rates(const System& system, const Parameters& p,
+                                             Elastic elastic = Elastic::moves) {
   Eigen::VectorXd q;
   drawn_configuration(system, p, q);
   Kinematics<double> k;
@@ -31,6 +35,8 @@ std::optional<Eigen::VectorXd> closing_rates(const System& system, const Paramet
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     if (link.type == LinkType::prismatic) scale[link.v] = p.length;
+    if (elastic == Elastic::stands && p.links[l].elastic && !finds_speed(link))
+      scale.segment(link.v, link.type == LinkType::spherical ? 3 : 1).setZero();
     if (!finds_speed(link)) continue;
     rates[link.v] = p.links[l].speed;
     if (rates[link.v] != 0) scale[link.v] *= stiff;
@@ -98,6 +104,37 @@ std::vector<CoordinateReference> implied_turning(const System& system, const Par
     out.push_back({joint, link.coordinate});
   }
   return out;
+}
+
+bool loops_turn_with_drives(const System& system, const Parameters& p) {
+  const auto rates = closing_rates(system, p, Elastic::stands);
+  if (!rates) return false;
+  double fastest = 0;
+  for (const LinkParameters& l : p.links)
+    fastest = std::max(fastest, std::abs(l.speed));
+  if (fastest == 0) return false;
+  Eigen::VectorXd step = *rates, drawn;
+  drawn_configuration(system, p, drawn);
+  for (const Link& link : system.links)
+    if (finds_speed(link)) {
+      drawn[link.q] = (*rates)[link.v];
+      step[link.v] = 0;
+    }
+  Kinematics<double> k;
+  Eigen::VectorXd phi = Eigen::VectorXd::Zero(system.rows), first;
+  for (const double turned : {0., 0.9, 2.3, 4.1}) {
+    Eigen::VectorXd q = drawn;
+    retract<double>(system, turned / fastest * step, q);
+    forward<double>(system, p, q, turned / fastest, k);
+    for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+      const CutJoint& cut = system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size() && cut.type != JointType::gear; ++r)
+        phi[cut.first_row + static_cast<int>(r)] = row_value<double>(cut, p.cuts[c], cut.rows[r], q, k);
+    }
+    if (first.size() == 0) first = phi;
+    if ((phi - first).lpNorm<Eigen::Infinity>() > 1e-6 * (1 + p.length)) return false;
+  }
+  return true;
 }
 
 std::vector<CoordinateReference> slipping_turning(const System& system, const Parameters& p) {

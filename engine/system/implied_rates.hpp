@@ -17,6 +17,10 @@ namespace flyball {
 std::vector<CoordinateReference> implied_turning(const System& system, const Parameters& parameters,
                                                  bool beside);
 
+// Whether the loops stay closed as all that neither springs nor stops hold turns on with the drives: then a
+// state in which those stand still, though the system's equations have no place for it, may well be steady.
+bool loops_turn_with_drives(const System& system, const Parameters& parameters);
+
 // The coordinates, not turning yet, that torques push on wherever they stand and nothing holds, alone or as
 // gears tie them together: the planets of a differential, a wheel on a bearing in the air. They cannot stand
 // still, and so turn.

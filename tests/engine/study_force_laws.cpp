@@ -343,8 +343,9 @@ TEST_CASE("what is just at its stop is told to be", "[laws][stops]") {
   };
   const Solution both = solved(slide_to(0.1, 1000, 100, 0.1));
   INFO(both.message);
-  CHECK_THAT(both.message, ContainsSubstring("slide stands just at its stop, where its stiffness jumps from 100 "
-                                             "to 1100 N/m: rates and eigenvalues hold on one side of it"));
+  CHECK_THAT(both.message,
+             ContainsSubstring("slide stands just at its stop, where its stiffness jumps from 100 "
+                               "to 1100 N/m: rates and eigenvalues hold on one side of it"));
   CHECK(both.stable == true); // on either side the potential rises
   CHECK(both.stability_reason == StabilityReason::minimum);
   // On a shaft that turns at 5 rad/s: only the stop's side holds it, and nothing but a limit tells of both.

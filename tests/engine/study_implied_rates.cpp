@@ -319,3 +319,29 @@ TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
     CHECK(Analysis(m).solve().status == Status::no_steady_state);
   }
 }
+
+TEST_CASE("a steady state that the equations have no place for is not denied", "[implied]") {
+  // A shaft that twists, its far end in a bearing of its own with a gear on it: it turns steadily, twisted by
+  // the torque that the geared wheel takes, and so is found as a motion alone.
+  Mechanism m;
+  m.bodies = {wheel("near", 0.1), wheel("far", 0.2, {0, 0, 0.5}), wheel("geared", 0.3, {1, 0, 0.5})};
+  m.joints = {pushed(revolute("p", "ground", "near", {0, 0, 0}), "2 N m - 0.2 N m s*rate(p)", 5),
+              dampened(sprung(revolute("twist", "near", "far", {0, 0, 0.5}), 20), 0.1),
+              dampened(revolute("q", "ground", "geared", {1, 0, 0.5}), 0.05),
+              revolute("bearing", "ground", "far", {0, 0, 0.5}), gear("g", "bearing", "q", -2)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  CHECK((s.status == Status::converged || s.message.starts_with("No steady state was found: as the drives")));
+  // A crank and a rocker turn together, too, but at no constant rates: there is none.
+  const auto without = [](Mechanism linkage) { return Analysis(linkage).solve().message; };
+  Mechanism linkage;
+  linkage.bodies = {body("crank", 1, {0.1, 0, 0}, {0.01, 0.01, 0.01}),
+                    body("coupler", 1, {0.5, 0.3, 0}, {0.05, 0.05, 0.05}),
+                    body("rocker", 1, {0.9, 0.3, 0}, {0.02, 0.02, 0.02})};
+  linkage.joints = {driven(revolute("spin", "ground", "crank", {0, 0, 0}), 5),
+                    revolute("pin", "crank", "coupler", {0.2, 0, 0}),
+                    revolute("far pin", "coupler", "rocker", {0.8, 0.6, 0}),
+                    revolute("pivot", "ground", "rocker", {1, 0, 0})};
+  CHECK_THAT(without(linkage), Catch::Matchers::StartsWith("No steady state: as the drives turn"));
+}
