@@ -33,7 +33,8 @@ std::string in_digits(double value, double error) {
 
 std::vector<std::string> range_row(const std::string& name, const PeriodicRange& range,
                                    std::string_view unit) {
-  if (!std::isfinite(range.mean)) return {name, "-", "-", "-", std::string(unit), "not defined throughout"};
+  if (!std::isfinite(range.mean))
+    return {name, "-", "-", "-", std::string(unit), "not defined throughout, or does not come back"};
   return {name,
           in_digits(range.mean, range.error),
           in_digits(range.least, range.error),

@@ -12,6 +12,7 @@ namespace flyball {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double near_enough = 1e-4; // of the span: the end joins the beginning
 constexpr double rounding = 4096 * std::numeric_limits<double>::epsilon(); // of the steps of a period
 
 // Every `stride`-th of the values at even distances over a period, as they are or upside down.
@@ -90,6 +91,19 @@ double advance_of(const CoordinateTrack& track) {
   return std::abs(advance) > 1e-6 * (1 + std::abs(track.value.front())) ? advance : 0;
 }
 
+// Whether the end joins the beginning. What wheels measure that have no part in the period does not;
+// rounding, which changes its direction all the time, is taken to.
+bool comes_back(std::span<const double> values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  if (!(std::abs(values.back() - values.front()) > near_enough * (most - least))) return true;
+  double moved = 0, bent = 0;
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    moved += std::abs(values[i + 1] - values[i]);
+    bent += std::abs(values[i + 1] - 2 * values[i] + values[i - 1]);
+  }
+  return bent > 0.5 * moved;
+}
+
 bool jumps(const CoordinateTrack& track) { // a rotation vector that turns over
   for (std::size_t i = 1; track.rotation && i < track.value.size(); ++i)
     if (std::abs(track.value[i] - track.value[i - 1]) > 3) return true;
@@ -128,7 +142,9 @@ void fill_ranges(const Run& run, PeriodicState& out) {
     out.drive_torques.push_back(
         {track.joint, track.index, track.count, track.angle, range_over_period(track.torque)});
   for (const MeasureTrack& track : run.measures)
-    out.measures.push_back({track.name, track.unit, range_over_period(track.value)});
+    out.measures.push_back({track.name, track.unit,
+                            comes_back(track.value) ? range_over_period(track.value)
+                                                    : PeriodicRange{unknown, unknown, unknown, unknown}});
 }
 
 void compare_ranges(const PeriodicState* other, PeriodicState& out) {

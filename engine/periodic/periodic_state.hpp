@@ -24,7 +24,8 @@ enum class PeriodicStatus {
 };
 std::string_view word(PeriodicStatus status);
 
-// Of what changes over a period. Not numbers where it is undefined somewhere.
+// Of what changes over a period. Not numbers where it is undefined somewhere, nor where it does not come back
+// with the motion, as where a point of a balanced wheel is.
 struct PeriodicRange {
   double mean = 0, least = 0, most = 0;
   double error = 0; // estimated, absolute, of each; not a number where it was not found

@@ -554,11 +554,16 @@ TEST_CASE("A balanced rotor at another speed has no part in the period") {
     Mechanism m = jeffcott(10);
     m.bodies.push_back(body("even", 1, {0, 0, 0.5}, {0.05, 0.05, 0.05}));
     m.joints.push_back(driven(revolute("beside", "ground", "even", {0, 0, 0.5}), speed));
+    m.points = {{"mark", {0.2, 0.2, 0.5}, {}}};
+    m.measures = {{"at", "", "x(even@mark)", "m"}, {"shake", "", "x(block)", "m"}};
     const PeriodicState s = find_periodic_state(m), alone = find_periodic_state(jeffcott(10));
     CAPTURE(s.message);
     REQUIRE(s.status == PeriodicStatus::found);
     CHECK_THAT(s.period, WithinRel(2 * pi / 10, 1e-12));
     CHECK_THAT(coordinate(s, "x").range.most, WithinRel(coordinate(alone, "x").range.most, 1e-9));
+    REQUIRE(s.measures.size() == 2);
+    CHECK(std::isnan(s.measures[0].range.most)); // it comes back some other time
+    CHECK_THAT(s.measures[1].range.most, WithinRel(coordinate(alone, "x").range.most, 1e-9));
     // Not so where it is uneven, and shakes the other one's block.
     m.bodies.back() = body("even", 1, {0.02, 0, 0.5}, {0.05, 0.05, 0.05});
     m.joints.back() = driven(revolute("beside", "block", "even", {0, 0, 0.5}), speed);

@@ -17,7 +17,8 @@ constexpr int digits = 6; // of ends, which are looked at rather than copied
 void range_row(Session& session, Ui& ui, const std::string& name, const PeriodicRange& range,
                const ShownUnit& unit, const std::string& help = {}, const std::string& less = {}) {
   const NumberStyle& numbers = session.options.numbers;
-  if (!std::isfinite(range.mean)) return row(ui, name, "-", "", "It is not defined throughout the period.");
+  if (!std::isfinite(range.mean))
+    return row(ui, name, "-", "", "It is not defined throughout the period, or does not come back.");
   const double error = std::isfinite(range.error) ? range.error : 1e-6 * std::abs(range.most - range.least);
   const std::string about =
       (help.empty() ? "" : help + "\n") + "Mean over a period; below it the ends between which it moves.\n" +
