@@ -109,13 +109,16 @@ std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike,
   return turn / fastest;
 }
 
-// The same on the average of a passage; nothing where none turns by the tenth part of a turn: what has come
-// to rest, or swings, turns at no speed.
+// The same on the average of a passage; nothing where none turns by the tenth part of a turn, or in the end
+// at the tenth part of that speed: what has come to rest, or swings, turns at no speed.
 std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike, const Passage& passage) {
   const double farthest = greatest_of_drives(
       flow, alike, [&](const Link& link) { return passage.to.q[link.q] - passage.from.q[link.q]; });
-  if (!(farthest > 0.1 * turn)) return {};
-  return (passage.to.time - passage.from.time) * turn / farthest;
+  const auto at_end = turn_of_drives(flow, alike, passage.to);
+  if (!(farthest > 0.1 * turn) || !at_end) return {};
+  const double average = (passage.to.time - passage.from.time) * turn / farthest;
+  if (*at_end > 10 * average) return {};
+  return average;
 }
 
 // Where drives by torque that stand still do so, as "p at 0.5 rad"; none where all turn. `rate` (1/s) as
@@ -129,7 +132,7 @@ std::vector<std::string> drives_at_rest(const Flow& flow, const MotionState& sta
     if (std::abs(state.u[link.v]) > at_rest * rate * model.scaling.column[link.v]) continue;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
     out.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
-                  rounded_text(state.q[link.q], 5) + (link.type == LinkType::revolute ? " rad" : " m"));
+                  rounded_text(state.q[link.q], 6) + (link.type == LinkType::revolute ? " rad" : " m"));
   }
   return out;
 }

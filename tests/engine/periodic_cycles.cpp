@@ -231,7 +231,7 @@ TEST_CASE("A shaft that a torque cannot turn over comes to rest, and is told whe
     CHECK(s.status == PeriodicStatus::not_found);
     CHECK(s.evaluations < 100000);
     CHECK_THAT(s.message, ContainsSubstring("comes to rest: p at " +
-                                            rounded_text(std::asin(torque / weight) - pi / 2, 5) + " rad"));
+                                            rounded_text(std::asin(torque / weight) - pi / 2, 6) + " rad"));
   }
 }
 
