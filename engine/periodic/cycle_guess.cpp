@@ -21,6 +21,7 @@ constexpr int looks = 40;               // at most
 constexpr int samples = 96;             // a guessed period
 constexpr double returned = 0.03;       // of the way between: near enough
 constexpr double at_rest = 1e-6;        // scaled: what moves less does not
+constexpr double standing = 1e-5;       // of a turn in the period: a drive that turns by less stands still
 constexpr double off_steady = 0.01;     // scaled, from a steady state
 constexpr double steadily = 0.01;       // of its size: what changes less in between has settled
 constexpr double alike_in_space = 1e-6; // scaled, of motions from two angles
@@ -129,7 +130,7 @@ std::vector<std::string> drives_at_rest(const Flow& flow, const MotionState& sta
   for (const DriveTorqueElement& drive : model.system.torques) {
     if (drive.keeps_momentum || drive.implied) continue;
     const Link& link = model.system.links[static_cast<std::size_t>(drive.link)];
-    if (std::abs(state.u[link.v]) > at_rest * rate * model.scaling.column[link.v]) continue;
+    if (std::abs(state.u[link.v]) > standing * rate * model.scaling.column[link.v]) continue;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
     out.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
                   rounded_text(state.q[link.q], 6) + (link.type == LinkType::revolute ? " rad" : " m"));
@@ -287,6 +288,7 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     }
     state = chart.displaced(Eigen::VectorXd::Constant(chart.size(), off_steady));
   }
+  const double first = *period;
   double before = 0; // how far it went away at the last look
   for (int look = 0; look < looks; ++look) {
     const auto passage = flow.pass(*state, followed * *period, step_tolerance);
@@ -299,7 +301,7 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
     const Return back = first_return(chart, trace);
-    if (is_steady(flow, trace, turn / *period))
+    if (is_steady(flow, trace, turn / std::min(*period, first))) // steps leave noise of faster turning, too
       return refused(settled_message(flow, start, *state, turn / *period));
     const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
     before = back.farthest;
