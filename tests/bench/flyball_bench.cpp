@@ -202,7 +202,7 @@ void add_answers(const std::string& name, const Mechanism& mechanism, double spe
                                        std::abs(found - speed) > 1e-9 * speed)
                                      state.SkipWithError(first.message.c_str());
                                    for (const CoordinateSolution& c : first.coordinates)
-                                     if (beside && !c.driven)
+                                     if (beside && !c.driven && !c.dependent)
                                        options.start.emplace_back(coordinate_label(c), c.value + 0.01);
                                    for ([[maybe_unused]] auto _ : state)
                                      benchmark::DoNotOptimize(analysis.solve(options));

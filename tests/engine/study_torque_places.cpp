@@ -108,6 +108,7 @@ Eigen::VectorXd slope(const Function& f) {
 // A shaft whose balls swing on arms and joints of their own, with a collar that slides.
 Mechanism swinging(const std::string& law) {
   Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
   m.points.push_back({"tip", {0.3, -0.4, 0.1}});
   m.points.push_back({"top", {0, 0.5, 0}});
   m.bodies = {body("shaft", 2, {0, 0, 0}, {0.2, 0.3, 0.2}),
@@ -285,6 +286,7 @@ TEST_CASE("how laws by places change with the state, against differences", "[tor
 }
 
 TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the state", "[torque][places]") {
+  std::size_t settled = 0;
   for (const std::string& law : all_kinds) {
     CAPTURE(law);
     Mechanism m = swinging("3 N m - 0.6 N m s*rate(spin) + 0.2*(" + law + ")");
@@ -303,7 +305,6 @@ TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the
       asked.sliders.assign(1, {});
       asked.sliders[0].parameter = address;
       const Solution with_rates = Analysis(asked).solve();
-      CHECK(with_rates.sensitivities.size() == 1);
       const Solution above = Analysis(with_parameter(m, address, at + h)).solve(),
                      below = Analysis(with_parameter(m, address, at - h)).solve();
       for (const Sensitivity& x : with_rates.sensitivities)
@@ -314,14 +315,20 @@ TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the
         }
     }
     if (s.stable != true) continue;
+    double slowest = 1e9;
+    for (const Complex x : *s.eigenvalues)
+      slowest = std::min(slowest, -x.real());
     SimulationOptions options;
-    options.duration = 60;
-    options.rate = 0.1;
+    options.duration = std::log(1e7) / slowest;
+    options.rate = 1;
     options.at = {{"hinge", value(s, "hinge") + 0.05}};
     const Run run = simulate(m, options);
     REQUIRE(run.status == RunStatus::completed);
-    CHECK(find_settled(run, s, 1e-5).time);
+    CAPTURE(slowest);
+    CHECK(distance_from(run, run.time.size() - 1, s) < 1e-5);
+    ++settled;
   }
+  CHECK(settled > 5);
 }
 
 TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]") {
@@ -382,6 +389,8 @@ TEST_CASE("chains throttled by heights, of which the speeds border the tree", "[
         if (each.name != "spin" && each.name.ends_with("5")) {
           each.type = JointType::spherical;
           each.coordinates.resize(3);
+          for (std::size_t i = 0; i < 3; ++i)
+            each = sprung(each, 0.1, 0, i);
         }
     const Mechanism prescribed = m;
     const std::string last = m.bodies.back().name;
