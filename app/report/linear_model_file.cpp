@@ -177,7 +177,9 @@ try:
         E = np.array(E, dtype=float)
     else:
         import control
-        system = control.ss(A, B, C, D, states=state_names, inputs=input_names, outputs=output_names)
+        states, inputs, outputs = ([name.replace(".", "/") for name in names]  # it takes no dots
+                                   for names in (state_names, input_names, output_names))
+        system = control.ss(A, B, C, D, states=states, inputs=inputs, outputs=outputs)
 except ImportError:
     pass
 

@@ -98,8 +98,7 @@ FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::strin
   }
   if (!typed.empty() && std::ranges::equal(typed, name, same_letter)) all.score += whole;
   std::ranges::sort(all.marks);
-  const auto twice = std::ranges::unique(all.marks);
-  all.marks.erase(twice.begin(), twice.end());
+  all.marks.erase(std::unique(all.marks.begin(), all.marks.end()), all.marks.end());
   return all;
 }
 

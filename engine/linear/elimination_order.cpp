@@ -38,7 +38,7 @@ std::vector<int> elimination_order(const SparsePattern& pattern) {
   }
   for (std::vector<int>& all : tied) {
     std::ranges::sort(all);
-    all.erase(std::ranges::unique(all).begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     for (std::size_t a = 0; a < all.size(); ++a)
       for (std::size_t b = 0; b < a; ++b)
         edges.emplace_back(all[a], all[b]);

@@ -113,7 +113,7 @@ void SparseFactorization::State::lay_out() {
   for (std::size_t j = 0; j < n; ++j) {
     rows[j].push_back(static_cast<int>(j));
     std::ranges::sort(rows[j]);
-    rows[j].erase(std::ranges::unique(rows[j]).begin(), rows[j].end());
+    rows[j].erase(std::unique(rows[j].begin(), rows[j].end()), rows[j].end());
     columns.row.insert(columns.row.end(), rows[j].begin(), rows[j].end());
     columns.start.push_back(static_cast<int>(columns.row.size()));
   }
@@ -137,7 +137,7 @@ void SparseFactorization::State::find_rows() {
   for (std::size_t r = 0; r < tied.size(); ++r) {
     std::vector<int>& all = tied[r];
     std::ranges::sort(all);
-    all.erase(std::ranges::unique(all).begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     const int m = place[slot_at(pattern.motions) + r];
     for (std::size_t a = 0; a < all.size(); ++a) {
       const bool below = all[a] < m;

@@ -242,8 +242,8 @@ Parameters straightened(const Problem& problem, const std::vector<Kink>& kinks, 
                                                    .laws;
     const auto [least, most] = std::minmax(kink.slopes[0], kink.slopes[1]);
     laws = std::make_shared<const ForceLaws>(
-        line_through(laws->spring, kink.at, side == KinkSide::softer ? least : most), laws->damper,
-        laws->free);
+        ForceLaws{line_through(laws->spring, kink.at, side == KinkSide::softer ? least : most), laws->damper,
+                  laws->free});
   }
   return out;
 }

@@ -221,8 +221,8 @@ class Binder {
     out.vector = vector;
     if (is_of_air(f.type)) set_air_force(f, m_.air, read_, out);
     if (has_polar(f))
-      out.polar = std::make_shared<const Polar>(bind_law(m_, polar.lift, f.lift, read_),
-                                                bind_law(m_, polar.drag, f.drag, read_));
+      out.polar = std::make_shared<const Polar>(
+          Polar{bind_law(m_, polar.lift, f.lift, read_), bind_law(m_, polar.drag, f.drag, read_)});
   }
 
   void bind_elements() {

@@ -26,7 +26,8 @@ struct BasicSpringDamper {
   N resistance_slope(N rate) const { return laws && laws->damper ? laws->damper.slope(rate) : damping; }
   void remove_damper() {
     damping = 0;
-    if (laws) laws = std::make_shared<BasicForceLaws<N>>(laws->spring, BoundLaw(), laws->free);
+    if (laws)
+      laws = std::make_shared<BasicForceLaws<N>>(BasicForceLaws<N>{laws->spring, BoundLaw(), laws->free});
   }
 };
 

@@ -174,6 +174,31 @@ def with_control(model, script):
     print("python-control", control.__version__, "agrees")
 
 
+def with_octave(model, script):
+    """Octave's package `control` reads the script of MATLAB."""
+    read = (f"pkg load control; source('{script}'); p = pole(model); disp(mat2str([real(p) imag(p)], 17)); "
+            "disp(mat2str(dcgain(model), 17)); disp(strjoin(model.InputName', ' '))")
+    try:
+        done = subprocess.run(["octave-cli", "--no-gui", "--eval", read], capture_output=True, text=True)
+    except FileNotFoundError:
+        print("Octave was not compared: it is not installed")
+        return
+    if "package control" in done.stderr:
+        print(f"Octave was not compared: {done.stderr.strip()}")
+        return
+    lines = done.stdout.splitlines()
+    check(f"Octave takes the script: {done.stderr}", len(lines) == 3)
+    poles, gain = ([[float(x) for x in row.split()] for row in line.strip("[]").split(";")] for line in lines[:2])
+    check(f"poles of Octave: {poles}", all(
+        min(abs(complex(*ours) - complex(*p)) for p in poles) <= 1e-9 * abs(complex(*ours))
+        for ours in model["poles"]) and len(poles) == len(model["poles"]))
+    check(f"static gains of Octave: {gain}", all(
+        abs(g - wanted) <= 1e-9 * abs(wanted) + 1e-15
+        for row, ours in zip(gain, model["static_gain"]) for g, wanted in zip(row, ours)))
+    check(f"names: {lines[2]}", lines[2] == " ".join(INPUTS))
+    print("Octave agrees")
+
+
 def refusals(folder):
     scene, file = SCENES / "governor.json", folder / "old.json"
     file.write_text("what was here before")
@@ -198,6 +223,7 @@ def main():
         model, script = formats(folder)
         table(model)
         with_control(model, script)
+        with_octave(model, folder / "model.m")
         refusals(folder)
     sys.exit(1 if failures else 0)
 

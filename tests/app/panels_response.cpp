@@ -85,8 +85,8 @@ std::vector<double> crossings(const Plot& plot, const std::string& name, double 
     }
   // Where x is that of a point, two pieces go through it.
   std::ranges::sort(out);
-  const auto again = std::ranges::unique(out, [](double a, double b) { return std::abs(a - b) < 1e-9; });
-  out.erase(again.begin(), again.end());
+  const auto near = [](double a, double b) { return std::abs(a - b) < 1e-9; };
+  out.erase(std::unique(out.begin(), out.end(), near), out.end());
   return out;
 }
 
