@@ -53,64 +53,64 @@ void fit_view(App& app, ViewSize size) {
     (app.view.glide ? app.view.glide->to : app.view.camera).fit(bounds, size);
   } else {
     app.view.glide.reset();
-    app.view.camera = initial_camera(*shown_mechanism(app, app.tool), bounds, size);
+    app.view.camera = initial_camera(*shown_mechanism(app.session, app.tool), bounds, size);
   }
   if (for_loads) (*app.view.loads_fit)[1] = settled_camera(app.view);
   // Until the first answer is there nobody knows what will have to be in view.
-  if (!solving(app)) app.view.fit = false;
+  if (!solving(app.session)) app.view.fit = false;
 }
 
-} // namespace
-
-App::App(AppOptions chosen)
-    : Session({.mode = chosen.mode,
-               .on_news = std::move(chosen.on_news),
-               .scenes = std::move(chosen.scenes),
-               .numbers = chosen.numbers,
-               .state = std::move(chosen.state)}),
-      system_theme(chosen.theme) {
-  const Settings settings = read_settings(options.state);
-  panels.legend = settings.legend;
-  navigation = settings.navigation;
-  view.animated = chosen.animated;
-  theme_choice = chosen.theme_choice.value_or(settings.theme);
-  theme = theme_of(theme_choice, chosen.theme);
-  document_opened(false);
-}
-
-void App::document_opened(bool same_file) {
+// Another document is looked at afresh.
+void show_document(App& app, bool same_file) {
   InspectorState fresh;
-  fresh.history = inspector.history;
-  inspector = std::move(fresh);
-  fields = {};
-  sections = {};
-  tool = {.snap = tool.snap};
+  fresh.history = app.inspector.history;
+  app.inspector = std::move(fresh);
+  app.ui.fields = {};
+  app.ui.sections = {};
+  app.tool = {.snap = app.tool.snap};
   if (!same_file) {
-    view.fit = true;
-    view.keep_direction = false;
-    view.hidden.clear();
-  }
-  if (!same_file) { // the view has the keys
+    app.view.fit = true;
+    app.view.keep_direction = false;
+    app.view.hidden.clear();
+    KeyboardState& keyboard = app.ui.keyboard; // the view has the keys
     keyboard.at.clear();
     keyboard.ring = false;
     for (auto& behind : keyboard.behind)
       behind = {};
     keyboard.focus = {};
   }
-  plots = {};
-  view.hovered = {};
-  view.scene = view.scene_beside = {}; // revisions begin anew
+  app.plots = {};
+  app.view.hovered = {};
+  app.view.scene = app.view.scene_beside = {}; // revisions begin anew
 }
 
-void App::mode_chosen() {
-  if (mode == Mode::explore && tool.tool != Tool::pull) tool.tool = Tool::select;
+} // namespace
+
+App::App(AppOptions chosen)
+    : session({.mode = chosen.mode,
+               .on_news = std::move(chosen.on_news),
+               .scenes = std::move(chosen.scenes),
+               .numbers = chosen.numbers,
+               .state = std::move(chosen.state)}),
+      system_theme(chosen.theme) {
+  const Settings settings = read_settings(session.options.state);
+  panels.legend = settings.legend;
+  navigation = settings.navigation;
+  view.animated = chosen.animated;
+  theme_choice = chosen.theme_choice.value_or(settings.theme);
+  ui.theme = theme_of(theme_choice, chosen.theme);
+  session.on_document_opened = [this](bool same_file) { show_document(*this, same_file); };
+  session.on_mode_chosen = [this] {
+    if (session.mode == Mode::explore && tool.tool != Tool::pull) tool.tool = Tool::select;
+  };
+  show_document(*this, false);
 }
 
 void set_tool(App& app, Tool tool) {
-  app.keyboard.at.clear();                 // the tool works in the view
-  for (auto& behind : app.keyboard.behind) // also if it was chosen in the menu of a field
+  app.ui.keyboard.at.clear();                 // the tool works in the view
+  for (auto& behind : app.ui.keyboard.behind) // also if it was chosen in the menu of a field
     behind = {};
-  if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app, Mode::build);
+  if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app.session, Mode::build);
   app.tool.tool = tool;
 }
 
@@ -122,18 +122,18 @@ void look_from(ViewState& view, double azimuth, double elevation) {
 }
 
 void update(App& app, double seconds, ViewSize view) {
-  update(app, seconds);
-  update_report(app, app.report);
+  update(app.session, seconds);
+  update_report(app.session, app.report);
   // What is closed is looked at afresh when it is opened again.
-  if (app.study.open != StudyKind::response) app.plots.response = {};
-  if (app.study.open != StudyKind::map) app.plots.map = {};
-  if (app.study.open != StudyKind::spread) app.plots.spread = {};
-  if (app.study.open != StudyKind::transfer) {
+  if (app.session.study.open != StudyKind::response) app.plots.response = {};
+  if (app.session.study.open != StudyKind::map) app.plots.map = {};
+  if (app.session.study.open != StudyKind::spread) app.plots.spread = {};
+  if (app.session.study.open != StudyKind::transfer) {
     const bool hertz = app.plots.transfer.hertz;
     app.plots.transfer = {};
     app.plots.transfer.hertz = hertz;
   }
-  if (app.study.open != StudyKind::modes) {
+  if (app.session.study.open != StudyKind::modes) {
     const bool hertz = app.plots.campbell.hertz;
     app.plots.campbell = {};
     app.plots.campbell.hertz = hertz;
@@ -151,42 +151,44 @@ const std::shared_ptr<const Mechanism>& shown_mechanism(const Session& session, 
 
 ViewFrame view_frame(const App& app) {
   ViewFrame frame;
-  frame.mechanism = shown_mechanism(app, app.tool).get();
-  const bool solved = converged(app) || (periodic_motion(app) && !app.poses.empty());
-  if (app.mode == Mode::build) {
+  frame.mechanism = shown_mechanism(app.session, app.tool).get();
+  const bool solved = converged(app.session) || (periodic_motion(app.session) && !app.session.poses.empty());
+  if (app.session.mode == Mode::build) {
     // The answer may still be that to an earlier edit.
     if (app.tool.assembly) {
       frame.ghost = app.tool.assembly->start;
-    } else if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size()) {
-      frame.ghost = app.poses;
+    } else if (solved && app.view.ghost &&
+               app.session.poses.size() == app.session.mechanism().bodies.size()) {
+      frame.ghost = app.session.poses;
       frame.ghost_pose = GhostPose::steady;
     }
   } else {
-    const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
+    const bool moves = app.session.motion.poses.size() == frame.mechanism->bodies.size();
     if (solved) {
-      frame.poses = app.poses;
-      if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
-      if (moves && !app.motion.beside) frame.motion = app.motion.poses;
-      if (const std::vector<Pose>& mode = app.study.modes.poses;
-          moving_mode(app) && !mode.empty() && mode.size() % frame.mechanism->bodies.size() == 0) {
+      frame.poses = app.session.poses;
+      if (app.view.ghost && app.session.drawn.size() == app.session.poses.size())
+        frame.ghost = app.session.drawn;
+      if (moves && !app.session.motion.beside) frame.motion = app.session.motion.poses;
+      if (const std::vector<Pose>& mode = app.session.study.modes.poses;
+          moving_mode(app.session) && !mode.empty() && mode.size() % frame.mechanism->bodies.size() == 0) {
         frame.motion = mode;
         frame.ghost = {}; // three of them would be too much to look at
       }
     } else if (moves) { // what has no steady state moves all the same
-      frame.poses = app.motion.poses;
+      frame.poses = app.session.motion.poses;
     }
   }
   frame.camera = app.view.camera;
-  frame.theme = app.theme;
+  frame.theme = app.ui.theme;
   frame.options.grid = app.view.grid;
   frame.options.shadow = app.view.shadow;
-  frame.options.scale = app.scale;
-  frame.selected = find_parts(*frame.mechanism, app.selection());
+  frame.options.scale = app.ui.scale;
+  frame.selected = find_parts(*frame.mechanism, app.session.selection());
   frame.hovered = app.view.hovered;
   frame.hidden = find_parts(*frame.mechanism, {app.view.hidden});
-  show_loads(app, app.tool, app.view, frame);
-  frame.cut_joints = app.answer.summary.cut_joints;
-  frame.colouring = app.document.colouring();
+  show_loads(app.session, app.tool, app.view, frame);
+  frame.cut_joints = app.session.answer.summary.cut_joints;
+  frame.colouring = app.session.document.colouring();
   return frame;
 }
 

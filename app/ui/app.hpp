@@ -42,9 +42,11 @@ struct AppOptions {
   std::optional<ThemeChoice> theme_choice{};
 };
 
-struct App : Session, Ui {
+struct App {
   explicit App(AppOptions options);
 
+  Session session;
+  Ui ui;
   ToolState tool;
   InspectorState inspector;
   CommandState commands;
@@ -64,10 +66,6 @@ struct App : Session, Ui {
   std::optional<ExportRequest> export_request;
   NoticeAge notice_age; // of `notice`, which is shown in the view for a while, see notice.hpp
   NoticeLog notice_log;
-
- protected:
-  void document_opened(bool same_file) override;
-  void mode_chosen() override;
 };
 
 void set_tool(App& app, Tool tool);

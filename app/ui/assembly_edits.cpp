@@ -46,8 +46,8 @@ void move_coordinate(Session& session, const std::string& joint, int index, doub
 }
 
 bool can_draw_settled(const App& app) {
-  return converged(app) && !solving(app) && !app.tool.pull &&
-         app.answer.solution.poses.size() == app.document.stored().bodies.size();
+  return converged(app.session) && !solving(app.session) && !app.tool.pull &&
+         app.session.answer.solution.poses.size() == app.session.document.stored().bodies.size();
 }
 
 void draw_settled(Session& session) {

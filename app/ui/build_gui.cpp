@@ -34,18 +34,18 @@ void notice_gestures(Session& session, Ui& ui) {
 
 void build_gui(App& app) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  notice_gestures(app, app);
+  notice_gestures(app.session, app.ui);
   take_keyboard(app);
-  app.widgets.clear();
-  notice_key_focus(app);
-  give_keys_to_popups(app, app.commands, app.dialog);
+  app.ui.widgets.clear();
+  notice_key_focus(app.ui);
+  give_keys_to_popups(app.ui, app.commands, app.dialog);
   take_tool_keys(app);
   take_view_keys(app);
   handle_shortcuts(app);
   const Layout layout = layout_of(app, size.x, size.y);
   if (app.view.alone) return view_alone(app, layout.view);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
-  drag_splitters(app, app, app.panels, layout);
+  drag_splitters(app.session, app.ui, app.panels, layout);
   welcome(app, layout.view);
   viewport_panel(app, layout.view);
   show(app, beside_panel, layout.beside);
@@ -73,9 +73,9 @@ void build_gui(App& app) {
   unsaved_dialog(app);
   shortcut_sheet(app);
   command_palette(app);
-  settle_fields(app, app);
+  settle_fields(app.session, app.ui);
   begin_picking(app);
-  settle_keyboard(app);
+  settle_keyboard(app.ui);
 }
 
 } // namespace flyball

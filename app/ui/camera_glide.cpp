@@ -45,7 +45,7 @@ void stop_glide(ViewState& view) {
 }
 
 bool in_motion(const App& app) {
-  return app.view.glide || in_motion(static_cast<const Session&>(app));
+  return app.view.glide || in_motion(app.session);
 }
 
 void fit_all(App& app) {
@@ -54,7 +54,8 @@ void fit_all(App& app) {
 }
 
 void fit_selected(App& app) {
-  const std::vector<PartId> parts = find_parts(*shown_mechanism(app, app.tool), app.selection());
+  const std::vector<PartId> parts =
+      find_parts(*shown_mechanism(app.session, app.tool), app.session.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
     if (std::ranges::find(parts, instance.part) != parts.end()) bounds.add(instance_bounds(instance));

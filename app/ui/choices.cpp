@@ -8,7 +8,7 @@ namespace flyball {
 namespace {
 
 Settings settings_of(const App& app) {
-  return {.units = app.units,
+  return {.units = app.session.units,
           .legend = app.panels.legend,
           .navigation = app.navigation,
           .theme = app.theme_choice};
@@ -17,9 +17,9 @@ Settings settings_of(const App& app) {
 } // namespace
 
 void choose_units(App& app, const DisplayUnits& units) {
-  if (app.units == units) return;
-  app.units = units;
-  keep_settings(app.options.state, settings_of(app));
+  if (app.session.units == units) return;
+  app.session.units = units;
+  keep_settings(app.session.options.state, settings_of(app));
   // How a person has looked at the plots was in other units.
   fit_plot(app.plots.response.view);
   fit_plot(app.plots.map.view);
@@ -30,7 +30,7 @@ void choose_units(App& app, const DisplayUnits& units) {
 
 void choose_navigation(App& app, Navigation navigation) {
   app.navigation = navigation;
-  keep_settings(app.options.state, settings_of(app));
+  keep_settings(app.session.options.state, settings_of(app));
 }
 
 namespace {
@@ -55,18 +55,18 @@ Theme theme_of(ThemeChoice choice, Theme system) {
 
 void choose_theme(App& app, ThemeChoice choice) {
   app.theme_choice = choice;
-  keep_settings(app.options.state, settings_of(app));
-  show_theme(app, theme_of(choice, app.system_theme));
+  keep_settings(app.session.options.state, settings_of(app));
+  show_theme(app.ui, theme_of(choice, app.system_theme));
 }
 
 void take_system_theme(App& app, Theme theme) {
   app.system_theme = theme;
-  if (app.theme_choice == ThemeChoice::system) show_theme(app, theme);
+  if (app.theme_choice == ThemeChoice::system) show_theme(app.ui, theme);
 }
 
 void open_legend(App& app, bool open) {
   app.panels.legend = open;
-  keep_settings(app.options.state, settings_of(app));
+  keep_settings(app.session.options.state, settings_of(app));
 }
 
 } // namespace flyball

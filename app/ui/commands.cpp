@@ -42,7 +42,7 @@ bool any_selected(const Session& session) {
   return !session.selection().empty();
 }
 bool can_delete(const App& app) {
-  return any_selected(app) || selected_point(app, app.tool);
+  return any_selected(app.session) || selected_point(app.session, app.tool);
 }
 bool holds_parts(const Session& session) {
   return !session.mechanism().bodies.empty();
@@ -58,34 +58,34 @@ bool tool_chosen(const App& app) {
 
 template <GearKind kind>
 void gear(App& app) {
-  gear_selected(app, kind);
+  gear_selected(app.session, kind);
 }
 template <GearKind kind>
 bool can_gear(const App& app) {
-  return can_gear_selected(app, kind);
+  return can_gear_selected(app.session, kind);
 }
 
 template <auto which, auto unit>
 void show_in(App& app) {
-  DisplayUnits units = app.units;
+  DisplayUnits units = app.session.units;
   units.*which = unit;
   choose_units(app, units);
 }
 template <auto which, auto unit>
 bool shown_in(const App& app) {
-  return app.units.*which == unit;
+  return app.session.units.*which == unit;
 }
 
 // A command of the session.
 template <void (*command)(Session&)>
 void run_session(App& app) {
-  command(app);
+  command(app.session);
 }
 
 // What the session tells.
 template <auto told>
 auto of_session(const App& app) {
-  return told(app);
+  return told(app.session);
 }
 
 template <ThemeChoice choice>
@@ -108,7 +108,7 @@ std::string redo_label(const Session& session) {
 
 void choose_none(App& app) {
   set_tool(app, Tool::select);
-  select(app, {});
+  select(app.session, {});
 }
 
 const std::array all_commands{
@@ -143,7 +143,7 @@ const std::array all_commands{
             .help = "Read the file again, as it is on disk now.",
             .key = ctrl('R'),
             .run = run_session<reload_document>,
-            .enabled = [](const App& app) { return !app.document.file().empty(); }},
+            .enabled = [](const App& app) { return !app.session.document.file().empty(); }},
     Command{.id = "file.export",
             .title = "Export a picture…",
             .help = "Save what is seen as a PNG file.",
@@ -155,12 +155,13 @@ const std::array all_commands{
             .help =
                 "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
             .run = show_report_dialog,
-            .enabled = [](const App& app) { return app.mistakes.empty() && !writing_report(app.report); }},
+            .enabled =
+                [](const App& app) { return app.session.mistakes.empty() && !writing_report(app.report); }},
     Command{.id = "file.model",
             .title = "Export linear model…",
             .help = "Write the linear model that Transfer shows for MATLAB, Python or NumPy, or as JSON.",
             .run = show_model_dialog,
-            .enabled = [](const App& app) { return has_transfer(app); }},
+            .enabled = [](const App& app) { return has_transfer(app.session); }},
     Command{.id = "file.quit",
             .title = "Quit",
             .help = "Leave the program; asks before unsaved work is lost.",
@@ -173,7 +174,7 @@ const std::array all_commands{
             .help = "Take the last edit back.",
             .key = ctrl('Z'),
             .run = run_session<undo>,
-            .enabled = [](const App& app) { return app.document.can_undo(); },
+            .enabled = [](const App& app) { return app.session.document.can_undo(); },
             .label = of_session<undo_label>},
     Command{.id = "edit.redo",
             .title = "Redo",
@@ -181,7 +182,7 @@ const std::array all_commands{
             .key = ctrl_shift('Z'),
             .also = ctrl('Y'),
             .run = run_session<redo>,
-            .enabled = [](const App& app) { return app.document.can_redo(); },
+            .enabled = [](const App& app) { return app.session.document.can_redo(); },
             .label = of_session<redo_label>},
     Command{.id = "edit.history",
             .title = "History",
@@ -272,17 +273,17 @@ const std::array all_commands{
             .help = "Another name for the selected part; every reference follows.",
             .key = plain(keys::f2),
             .run = start_rename,
-            .enabled = [](const App& app) { return app.selection().parts.size() == 1; }},
+            .enabled = [](const App& app) { return app.session.selection().parts.size() == 1; }},
     Command{.id = "edit.pin",
             .title = "Pin the number",
             .help = "The number of the field that the keyboard is in gets a slider, or loses it.",
             .key = ctrl('L'),
             .run =
                 [](App& app) {
-                  const std::string address = focused_address(app);
-                  pin(app, address, !is_pinned(app.mechanism(), address));
+                  const std::string address = focused_address(app.ui);
+                  pin(app.session, address, !is_pinned(app.session.mechanism(), address));
                 },
-            .enabled = [](const App& app) { return !focused_address(app).empty(); }},
+            .enabled = [](const App& app) { return !focused_address(app.ui).empty(); }},
     Command{.id = "edit.all",
             .title = "Select all",
             .help = "Select every part.",
@@ -381,8 +382,11 @@ const std::array all_commands{
             .title = "Build",
             .help = "Edit the drawn pose; or else explore the steady state with sliders.",
             .key = plain(keys::tab),
-            .run = [](App& app) { set_mode(app, app.mode == Mode::build ? Mode::explore : Mode::build); },
-            .checked = [](const App& app) { return app.mode == Mode::build; }},
+            .run =
+                [](App& app) {
+                  set_mode(app.session, app.session.mode == Mode::build ? Mode::explore : Mode::build);
+                },
+            .checked = [](const App& app) { return app.session.mode == Mode::build; }},
     Command{.id = "view.play",
             .title = "Turn",
             .help = "Turn the mechanism at its drives' speeds.",
@@ -390,13 +394,13 @@ const std::array all_commands{
             .run =
                 [](App& app) {
                   // A mode in the view is what moves.
-                  if (moving_mode(app))
-                    app.study.modes.playing = !app.study.modes.playing;
+                  if (moving_mode(app.session))
+                    app.session.study.modes.playing = !app.session.study.modes.playing;
                   else
-                    play(app, !app.playback.playing);
+                    play(app.session, !app.session.playback.playing);
                 },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.playback.playing; }},
+            .checked = [](const App& app) { return app.session.playback.playing; }},
     Command{.id = "view.select",
             .title = "Select and move",
             .help = "Pick parts; arrows at the selected ones move them.",
@@ -600,70 +604,71 @@ const std::array all_commands{
             .title = "Motion",
             .help = "The damped motion beside the steady state, and plots of it.",
             .key = plain('M'),
-            .run = [](App& app) { open_study(app, StudyKind::motion); },
+            .run = [](App& app) { open_study(app.session, StudyKind::motion); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::motion; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::motion; }},
     Command{.id = "study.response",
             .title = "Response",
             .help = "The steady states over one parameter: branches, folds and crossings, live.",
             .key = plain('C'),
-            .run = [](App& app) { open_study(app, StudyKind::response); },
+            .run = [](App& app) { open_study(app.session, StudyKind::response); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::response; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::response; }},
     Command{.id = "study.states",
             .title = "All equilibria",
             .help = "Every equilibrium that a bounded search finds, stable or not.",
             .key = plain('E'),
-            .run = [](App& app) { open_study(app, StudyKind::states); },
+            .run = [](App& app) { open_study(app.session, StudyKind::states); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::states; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::states; }},
     Command{.id = "study.modes",
             .title = "Modes",
             .help =
                 "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
             .key = plain('O'),
-            .run = [](App& app) { open_study(app, StudyKind::modes); },
+            .run = [](App& app) { open_study(app.session, StudyKind::modes); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::modes; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::modes; }},
     Command{.id = "study.map",
             .title = "Map of two parameters",
             .help = "A coordinate in colours over the plane of two parameters, with the curves of folds.",
             .key = plain('P'),
-            .run = [](App& app) { open_study(app, StudyKind::map); },
+            .run = [](App& app) { open_study(app.session, StudyKind::map); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::map; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::map; }},
     Command{
         .id = "study.spread",
         .title = "Spread by tolerances",
         .help =
             "How the steady state scatters with tolerances of numbers: a histogram, and whose share it is.",
-        .run = [](App& app) { open_study(app, StudyKind::spread); },
+        .run = [](App& app) { open_study(app.session, StudyKind::spread); },
         .enabled = of_session<holds_parts>,
-        .checked = [](const App& app) { return app.study.open == StudyKind::spread; }},
+        .checked = [](const App& app) { return app.session.study.open == StudyKind::spread; }},
     Command{.id = "study.transfer",
             .title = "Transfer function",
             .help = "The linear model about the steady state: Bode's plots, poles and zeros, files for "
                     "MATLAB and Python.",
-            .run = [](App& app) { open_study(app, StudyKind::transfer); },
+            .run = [](App& app) { open_study(app.session, StudyKind::transfer); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::transfer; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::transfer; }},
     Command{.id = "study.compare",
             .title = "Compare",
             .help = "Error against run time: the direct solution and the damped motion.",
-            .run = [](App& app) { open_study(app, StudyKind::compare); },
+            .run = [](App& app) { open_study(app.session, StudyKind::compare); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.study.open == StudyKind::compare; }},
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::compare; }},
     Command{.id = "study.export",
             .title = "Export the run…",
             .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",
             .run = show_movie_dialog,
-            .enabled = [](const App& app) { return app.motion.on && shown_motion(app) != nullptr; },
+            .enabled =
+                [](const App& app) { return app.session.motion.on && shown_motion(app.session) != nullptr; },
             .separated = true},
     Command{.id = "study.export_mode",
             .title = "Export the mode…",
             .help = "Save the mode that is shown as a film that begins again without a jump.",
             .run = show_mode_movie_dialog,
-            .enabled = [](const App& app) { return moving_mode(app) != nullptr; }},
+            .enabled = [](const App& app) { return moving_mode(app.session) != nullptr; }},
 
     Command{.id = "help.palette",
             .title = "Find…",
@@ -742,13 +747,13 @@ bool keys_are_wanted(const CommandState& commands, const DialogState& dialog) {
 
 void act_on(App& app, const KeyPress& key) {
   // The first Escape gives the keys back to the view.
-  if (key == plain(keys::escape) && std::exchange(app.keyboard.focus, {}).in_panel) return;
+  if (key == plain(keys::escape) && std::exchange(app.ui.keyboard.focus, {}).in_panel) return;
   for (const Command& command : all_commands)
     if (pressed(command, key) && is_enabled(app, command)) {
-      if (may_command(app, app, key)) command.run(app);
+      if (may_command(app.session, app.ui, key)) command.run(app);
       return;
     }
-  may_command(app, app, key); // no command, but maybe the beginning of a number
+  may_command(app.session, app.ui, key); // no command, but maybe the beginning of a number
 }
 
 } // namespace
@@ -756,8 +761,8 @@ void act_on(App& app, const KeyPress& key) {
 void handle_shortcuts(App& app) {
   // The palette has its own use for keys.
   if (app.commands.palette_showing) return;
-  const std::vector<KeyPress> pressed_keys = std::exchange(app.keys, {});
-  if (ImGui::GetIO().WantTextInput || !app.fields.typing.name.empty() || app.dialog.showing) return;
+  const std::vector<KeyPress> pressed_keys = std::exchange(app.ui.keys, {});
+  if (ImGui::GetIO().WantTextInput || !app.ui.fields.typing.name.empty() || app.dialog.showing) return;
   for (const KeyPress& key : pressed_keys)
     if (!keys_are_wanted(app.commands, app.dialog)) act_on(app, key);
 }

@@ -64,9 +64,9 @@ void remove_selected(Session& session, const std::string& step, const std::strin
 } // namespace
 
 void delete_selected(App& app) {
-  if (!app.selection().empty()) return remove_selected(app, "Delete", "Deleted");
-  if (const NamedPoint* point = selected_point(app, app.tool))
-    edit(app, "Remove " + point->name,
+  if (!app.session.selection().empty()) return remove_selected(app.session, "Delete", "Deleted");
+  if (const NamedPoint* point = selected_point(app.session, app.tool))
+    edit(app.session, "Remove " + point->name,
          [name = point->name](Mechanism& mechanism, Selection&) { remove_point(mechanism, name); });
 }
 
@@ -95,11 +95,12 @@ bool lies_on_another(const Mechanism& mechanism, const Selection& selection) {
 } // namespace
 
 void duplicate_selected(App& app) {
-  if (app.selection().empty()) return;
+  if (app.session.selection().empty()) return;
   const double step = copy_step(app.view);
-  edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
-    selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
-  });
+  edit(app.session, "Duplicate " + words_for(app.session.selection()),
+       [&](Mechanism& mechanism, Selection& selection) {
+         selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
+       });
 }
 
 void copy_selected(Session& session) {
@@ -120,10 +121,10 @@ void cut_selected(Session& session) {
 void paste_parts(App& app) {
   const char* text = ImGui::GetClipboardText();
   if (!text || !*text) {
-    app.notice = "Nothing has been copied.";
+    app.session.notice = "Nothing has been copied.";
     return;
   }
-  edit(app, "Paste", [&](Mechanism& mechanism, Selection& selection) {
+  edit(app.session, "Paste", [&](Mechanism& mechanism, Selection& selection) {
     try {
       selection = paste_text(mechanism, text);
     } catch (const SceneError&) {

@@ -21,14 +21,14 @@ bool joins_selected(const Selection& selection, const std::array<std::string, 2>
 } // namespace
 
 void hide_selected(App& app) {
-  for (const Part& part : app.selection().parts)
+  for (const Part& part : app.session.selection().parts)
     hide_part(app.view, part);
-  select(app, {});
+  select(app.session, {});
 }
 
 void isolate_selected(App& app) {
-  const Selection& selection = app.selection();
-  const Mechanism& mechanism = app.mechanism();
+  const Selection& selection = app.session.selection();
+  const Mechanism& mechanism = app.session.mechanism();
   app.view.hidden.clear();
   const auto consider = [&](PartKind kind, const std::string& name, bool belongs) {
     if (Part part{kind, name}; !belongs && !selection.has(part)) hide_part(app.view, std::move(part));

@@ -82,8 +82,8 @@ float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright) {
 } // namespace
 
 Layout layout_of(const App& app, float width, float height) {
-  const float s = app.scale;
-  const bool building = app.mode == Mode::build;
+  const float s = app.ui.scale;
+  const bool building = app.session.mode == Mode::build;
   Layout layout;
   if (app.view.alone) {
     layout.view = {0, 0, width, height};
@@ -92,7 +92,7 @@ Layout layout_of(const App& app, float width, float height) {
   const float top = std::round(toolbar_height * s);
   float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
-  if (!building && app.study.open != StudyKind::none) {
+  if (!building && app.session.study.open != StudyKind::none) {
     const float study = std::round(below * app.panels.study_share);
     below -= study;
     layout.study = {0, top + below, width, study};
@@ -101,9 +101,9 @@ Layout layout_of(const App& app, float width, float height) {
   if (layout.stacked) {
     const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
     layout.view = {0, top, std::max(width - panel, 1.f), below};
-    share_view(app, layout);
+    share_view(app.session, layout);
     layout.side = {layout.view.width, top, panel, below};
-    const float share = upper_share(app, app, app.panels, layout, below);
+    const float share = upper_share(app.session, app.ui, app.panels, layout, below);
     if (building)
       divide(layout.side, share, layout.outline, layout.inspector);
     else
@@ -116,12 +116,13 @@ Layout layout_of(const App& app, float width, float height) {
       std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
   (building ? layout.outline : layout.parameters) = {0, top, left, below};
   layout.side = {width - right, top, right, below};
-  if (building || !app.selection().empty())
-    divide(layout.side, upper_share(app, app, app.panels, layout, below), layout.inspector, layout.results);
+  if (building || !app.session.selection().empty())
+    divide(layout.side, upper_share(app.session, app.ui, app.panels, layout, below), layout.inspector,
+           layout.results);
   else
     layout.results = layout.side;
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
-  share_view(app, layout);
+  share_view(app.session, layout);
   return layout;
 }
 

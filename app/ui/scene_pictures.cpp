@@ -54,15 +54,15 @@ void ScenePictures::update(App& app, ViewRenderer& renderer) {
   if (!gallery.showing && app.dialog.wanted != Dialog::gallery) return;
   // Those of other colours and sizes are not wanted any more.
   std::erase_if(pictures_,
-                [&](const Picture& one) { return one.theme != app.theme || one.scale != app.scale; });
+                [&](const Picture& one) { return one.theme != app.ui.theme || one.scale != app.ui.scale; });
   bool may_draw = true;
   for (SceneCard& card : gallery.cards) {
-    const Picture* picture = find(app, card);
+    const Picture* picture = find(app.ui, card);
     if (!picture && may_draw) {
       pictures_.push_back(
-          {card.mechanism, app.theme, app.scale, draw(app, app.view, card.mechanism, renderer)});
+          {card.mechanism, app.ui.theme, app.ui.scale, draw(app.ui, app.view, card.mechanism, renderer)});
       picture = &pictures_.back();
-      may_draw = app.options.mode == LiveSolver::Mode::immediate;
+      may_draw = app.session.options.mode == LiveSolver::Mode::immediate;
     }
     card.picture = picture ? picture->drawn.texture() : 0;
     gallery.drawing = gallery.drawing || !picture;

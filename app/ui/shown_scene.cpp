@@ -53,7 +53,7 @@ const ShownScene& show_motion_scene(const Session& session, const ToolState& too
 }
 
 const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
-  return show_scene(app, app.tool, app.view, view_frame(app)).scene;
+  return show_scene(app.session, app.tool, app.view, view_frame(app)).scene;
 }
 
 } // namespace flyball

@@ -82,28 +82,30 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   ViewFrame shown = view_frame(app);
-  shown.options.triad = !has_view_cube(app, app.view, view); // the cube shows the axes
-  app.view.texture = prepare(app, view_, shown, show_scene(app, app.tool, app.view, shown), pixels_of(view));
+  shown.options.triad = !has_view_cube(app.ui, app.view, view); // the cube shows the axes
+  app.view.texture =
+      prepare(app, view_, shown, show_scene(app.session, app.tool, app.view, shown), pixels_of(view));
   if (layout.beside.width > 0) {
-    ViewFrame motion = motion_frame(app, shown);
+    ViewFrame motion = motion_frame(app.session, shown);
     motion.options.triad = true; // there is no cube
-    app.view.texture_beside = prepare(
-        app, beside_, motion, show_motion_scene(app, app.tool, app.view, motion), pixels_of(layout.beside));
+    app.view.texture_beside =
+        prepare(app, beside_, motion, show_motion_scene(app.session, app.tool, app.view, motion),
+                pixels_of(layout.beside));
   } else {
     beside_ = {};
   }
   if (const bool coarse = view_.is_coarse() || beside_.is_coarse(); coarse != told_coarse_) {
     told_coarse_ = coarse;
-    if (coarse) app.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
+    if (coarse) app.session.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
   }
   scene_pictures_.update(app, view_renderer_);
   movie_.update(app, view_renderer_);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};
-  io.UserData = &app.tooltip;
-  app.tooltip.clock += seconds;
-  app.tooltip.due = std::numeric_limits<double>::infinity();
+  io.UserData = &app.ui.tooltip;
+  app.ui.tooltip.clock += seconds;
+  app.ui.tooltip.due = std::numeric_limits<double>::infinity();
   io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
   ImGui::NewFrame();
   build_gui(app);

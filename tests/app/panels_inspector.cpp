@@ -35,11 +35,11 @@ struct Hand : Robot {
     imgui_compat::map_key(ImGuiKey_Tab, key_tab);
     imgui_compat::map_key(ImGuiKey_UpArrow, key_up);
     app.panels.inspector_share = 0.85f;
-    set_mode(app, Mode::build);
+    set_mode(app.session, Mode::build);
     frames(2);
   }
 
-  const Mechanism& mechanism() const { return app.mechanism(); }
+  const Mechanism& mechanism() const { return app.session.mechanism(); }
   const Body& body(const char* name) const {
     return mechanism().bodies.at(static_cast<std::size_t>(body_index(mechanism(), name)));
   }
@@ -51,7 +51,7 @@ struct Hand : Robot {
   }
 
   void choose(PartKind kind, const char* name) {
-    select(app, {{{kind, name}}});
+    select(app.session, {{{kind, name}}});
     frames(2);
   }
   // Scrolls the inspector until all of the widget can be seen.
@@ -59,8 +59,8 @@ struct Hand : Robot {
     const PanelRect panel =
         layout_of(app, static_cast<float>(size.width), static_cast<float>(size.height)).inspector;
     const auto seen = [&] {
-      const auto found = app.widgets.find(name);
-      return found != app.widgets.end() && found->second.to.y - found->second.from.y >= 16;
+      const auto found = app.ui.widgets.find(name);
+      return found != app.ui.widgets.end() && found->second.to.y - found->second.from.y >= 16;
     };
     for (const float notches : {20.f, -1.f})
       for (int i = 0; i < 40 && !seen(); ++i) {
@@ -82,18 +82,18 @@ struct Hand : Robot {
     press_widget(list);
     click(list + "/" + item);
   }
-  std::string last_step() const { return app.document.steps()[app.document.position()].name; }
+  std::string last_step() const { return app.session.document.steps()[app.session.document.position()].name; }
   // What `act` does is one step, and undoing it leaves nothing behind.
   void one_step(const std::function<void()>& act) {
     const Mechanism before = mechanism();
-    const std::size_t position = app.document.position();
+    const std::size_t position = app.session.document.position();
     act();
-    REQUIRE(app.document.position() == position + 1);
+    REQUIRE(app.session.document.position() == position + 1);
     const Mechanism after = mechanism();
-    undo(app);
+    undo(app.session);
     frames(2);
     CHECK(mechanism() == before);
-    redo(app);
+    redo(app.session);
     frames(2);
     CHECK(mechanism() == after);
   }
@@ -144,12 +144,12 @@ TEST_CASE("a body's numbers are typed, each a step") {
 TEST_CASE("mass and inertia follow the size of a uniform solid until they are typed") {
   Hand hand;
   hand.one_step([&] {
-    edit(hand.app, "Add", [](Mechanism& mechanism, Selection& selection) {
+    edit(hand.app.session, "Add", [](Mechanism& mechanism, Selection& selection) {
       selection.set({PartKind::body, add_body(mechanism, {.form = BodyForm::ball, .at = {1, 0, 0}})});
     });
     hand.frames(2);
   });
-  const std::string name = hand.app.selection().parts.front().name;
+  const std::string name = hand.app.session.selection().parts.front().name;
   const auto ball = [&]() -> const Body& { return hand.body(name.c_str()); };
   REQUIRE(is_uniform_solid(ball()));
   const double mass = ball().mass, inertia = ball().inertia[0];
@@ -200,21 +200,21 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
 TEST_CASE("what cannot be taken stays in the field and says why") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");
-  const std::size_t steps = hand.app.document.steps().size();
+  const std::size_t steps = hand.app.session.document.steps().size();
   hand.fill("inspector/mass", "12 m");
-  CHECK(hand.app.fields.typing.name == "inspector/mass");
-  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("Expected a mass"));
+  CHECK(hand.app.ui.fields.typing.name == "inspector/mass");
+  CHECK_THAT(hand.app.ui.fields.typing.mistake, ContainsSubstring("Expected a mass"));
   hand.frames(3);
 
   SECTION("Escape puts the old back") {
     hand.key(key_escape);
-    CHECK(hand.app.fields.typing.name.empty());
-    CHECK_FALSE(hand.app.selection().empty());
+    CHECK(hand.app.ui.fields.typing.name.empty());
+    CHECK_FALSE(hand.app.session.selection().empty());
   }
   SECTION("so does leaving, with a word") {
     hand.click("inspector/title");
-    CHECK(hand.app.fields.typing.name.empty());
-    CHECK_THAT(hand.app.notice, ContainsSubstring("“12 m” was not taken"));
+    CHECK(hand.app.ui.fields.typing.name.empty());
+    CHECK_THAT(hand.app.session.notice, ContainsSubstring("“12 m” was not taken"));
   }
   SECTION("it can be mended at once") {
     hand.key('A', true);
@@ -224,21 +224,22 @@ TEST_CASE("what cannot be taken stays in the field and says why") {
     return;
   }
   CHECK(hand.body("ball1").mass == 1);
-  CHECK(hand.app.document.steps().size() == steps);
+  CHECK(hand.app.session.document.steps().size() == steps);
   hand.fill("inspector/mass", "-1");
-  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("zero or more"));
+  CHECK_THAT(hand.app.ui.fields.typing.mistake, ContainsSubstring("zero or more"));
 }
 
 TEST_CASE("looking into a field changes nothing, and leaving takes what was typed") {
   Hand hand;
   hand.choose(PartKind::joint, "spin");
-  edit(hand.app, "Third", [](Mechanism& m, Selection&) { set_parameter(m, "joints.spin.at.0", 1.0 / 3); });
+  edit(hand.app.session, "Third",
+       [](Mechanism& m, Selection&) { set_parameter(m, "joints.spin.at.0", 1.0 / 3); });
   hand.frames(1);
-  const std::size_t steps = hand.app.document.steps().size();
+  const std::size_t steps = hand.app.session.document.steps().size();
   hand.press_widget("inspector/at/x");
   hand.press_widget("inspector/title");
   CHECK(hand.joint("spin").at.x() == 1.0 / 3);
-  CHECK(hand.app.document.steps().size() == steps);
+  CHECK(hand.app.session.document.steps().size() == steps);
 
   SECTION("to another field") {
     hand.press_widget("inspector/at/x");
@@ -251,12 +252,12 @@ TEST_CASE("looking into a field changes nothing, and leaving takes what was type
     hand.type("0.5");
     hand.key(key_tab);
     CHECK(hand.joint("spin").at.x() == 0.5);
-    CHECK(hand.app.fields.typing.name == "inspector/at/y");
+    CHECK(hand.app.ui.fields.typing.name == "inspector/at/y");
     hand.type("0.6");
     hand.key(key_tab, false, true);
     CHECK(hand.joint("spin").at.y() == 0.6);
-    CHECK(hand.app.fields.typing.name == "inspector/at/x");
-    CHECK(hand.app.mode == Mode::build); // where Tab is a shortcut otherwise
+    CHECK(hand.app.ui.fields.typing.name == "inspector/at/x");
+    CHECK(hand.app.session.mode == Mode::build); // where Tab is a shortcut otherwise
   }
   SECTION("to another part, of which the field is not the one typed in") {
     hand.press_widget("inspector/at/x");
@@ -265,7 +266,7 @@ TEST_CASE("looking into a field changes nothing, and leaving takes what was type
     hand.frames(3);
     CHECK(hand.joint("spin").at.x() == 0.5);
     CHECK(hand.joint("slide").at.x() == 0);
-    CHECK(hand.app.selection().has({PartKind::joint, "slide"}));
+    CHECK(hand.app.session.selection().has({PartKind::joint, "slide"}));
   }
 }
 
@@ -284,7 +285,7 @@ TEST_CASE("a number is dragged by its label and stepped by the arrow keys") {
   hand.press_widget("inspector/mass");
   hand.one_step([&] { hand.key(key_up); });
   CHECK(hand.body("ball1").mass == 2.01);
-  CHECK(hand.app.fields.typing.text == "2.01 kg");
+  CHECK(hand.app.ui.fields.typing.text == "2.01 kg");
 }
 
 TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
@@ -402,11 +403,11 @@ TEST_CASE("distance joints and gears are edited") {
   CHECK(hand.joint("link1").bodies[0] == before.bodies[1]);
   CHECK(hand.joint("link1").points[1] == before.points[0]);
 
-  edit(hand.app, "Gear", [](Mechanism& m, Selection& s) {
+  edit(hand.app.session, "Gear", [](Mechanism& m, Selection& s) {
     s.set({PartKind::joint, add_gear(m, {"arm1", "arm2"}, -1)});
   });
   hand.frames(2);
-  const std::string gear = hand.app.selection().parts.front().name;
+  const std::string gear = hand.app.session.selection().parts.front().name;
   hand.one_step([&] { hand.fill("inspector/ratio", "-1/2"); });
   CHECK(hand.joint(gear.c_str()).ratio == -0.5);
   hand.one_step([&] { hand.choose_from("inspector/joints/1", "spin"); });
@@ -418,11 +419,11 @@ TEST_CASE("distance joints and gears are edited") {
 TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and rack or a screw") {
   Hand hand;
   const auto join = [&](std::vector<Part> parts, const char* command) {
-    select(hand.app, {std::move(parts)});
+    select(hand.app.session, {std::move(parts)});
     hand.frames(2);
     run_command(hand.app, command);
     hand.frames(2);
-    return hand.app.selection().parts.front().name;
+    return hand.app.session.selection().parts.front().name;
   };
   const Part arm1{PartKind::joint, "arm1"}, arm2{PartKind::joint, "arm2"}, slide{PartKind::joint, "slide"};
   SECTION("a gear that becomes a belt of its ratio") {
@@ -449,23 +450,24 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     CHECK(hand.joint("rack1").lead == 0.002);
   }
   SECTION("a belt over three wheels, the middle one of one radius") {
-    edit(hand.app, "Add", [&](Mechanism& m, Selection&) {
+    edit(hand.app.session, "Add", [&](Mechanism& m, Selection&) {
       const std::string wheel = add_body(m, {});
       add_joint(m, JointType::revolute, {"ground", wheel}, {1, 0, 0}, {0, 0, 1});
     });
-    select(hand.app, {{arm1, arm2, {PartKind::joint, "revolute1"}}});
+    select(hand.app.session, {{arm1, arm2, {PartKind::joint, "revolute1"}}});
     hand.frames(2);
     run_command(hand.app, "edit.belt");
     hand.frames(2);
     CHECK(hand.last_step() == "Belt of arm1, arm2 and revolute1");
     CHECK(hand.joint("belt1").joints == std::array<std::string, 2>{"arm1", "arm2"});
     CHECK(hand.joint("belt2").joints == std::array<std::string, 2>{"arm2", "revolute1"});
-    edit(hand.app, "Wheel", [](Mechanism& m, Selection&) { set_parameter(m, "parameters.radius", 0.3); });
+    edit(hand.app.session, "Wheel",
+         [](Mechanism& m, Selection&) { set_parameter(m, "parameters.radius", 0.3); });
     CHECK(hand.joint("belt1").radii[1] == 0.3);
     CHECK(hand.joint("belt2").radii[0] == 0.3);
   }
   SECTION("backlash, or why there is none") {
-    select(hand.app, {{arm1, arm2}});
+    select(hand.app.session, {{arm1, arm2}});
     hand.frames(2);
     CHECK_FALSE(is_enabled(hand.app, command("edit.backlash")));
     run_command(hand.app, "edit.gear");
@@ -475,21 +477,21 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     hand.frames(2);
     CHECK(hand.last_step() == "Backlash of gear1");
     CHECK(hand.joint("play1").coordinates[0].stop);
-    undo(hand.app);
-    edit(hand.app, "Damp", [](Mechanism& m, Selection& s) {
+    undo(hand.app.session);
+    edit(hand.app.session, "Damp", [](Mechanism& m, Selection& s) {
       for (const char* name : {"arm1", "arm2"})
         m.joints[static_cast<std::size_t>(joint_index(m, name))].coordinates[0].damping = 1;
       s.set({PartKind::joint, "gear1"});
     });
     hand.frames(2);
     run_command(hand.app, "edit.backlash");
-    CHECK_THAT(hand.app.notice, ContainsSubstring("would act on the rim"));
+    CHECK_THAT(hand.app.session.notice, ContainsSubstring("would act on the rim"));
   }
   SECTION("only what suits them is offered") {
-    select(hand.app, {{arm1, arm2}});
+    select(hand.app.session, {{arm1, arm2}});
     CHECK(is_enabled(hand.app, command("edit.belt")));
     CHECK_FALSE(is_enabled(hand.app, command("edit.rack")));
-    select(hand.app, {{slide}});
+    select(hand.app.session, {{slide}});
     CHECK_FALSE(is_enabled(hand.app, command("edit.gear")));
     CHECK_FALSE(is_enabled(hand.app, command("edit.screw")));
   }
@@ -504,15 +506,15 @@ TEST_CASE("a law typed for a stiffness or damping stands in its place, its slide
     hand.fill("inspector/spring/stiffness",
               "=table(deflection, [-200 mm, -150 N], [0 mm, 0 N], [50 mm, 40 N])");
   });
-  CHECK(hand.app.fields.typing.mistake.empty());
+  CHECK(hand.app.ui.fields.typing.mistake.empty());
   CHECK(slide().spring->force);
   CHECK_FALSE(is_pinned(hand.mechanism(), "joints.slide.spring.stiffness"));
   hand.one_step([&] { hand.fill("inspector/damping", "=40 N*tanh(rate/(0.1 m/s))"); });
   CHECK(slide().damping_force);
-  CHECK(hand.app.mistakes.empty());
+  CHECK(hand.app.session.mistakes.empty());
   hand.one_step([&] { hand.fill("inspector/spring/force", "=1500 N/m*deflection"); });
   CHECK(slide().spring->force);
-  CHECK(converged(hand.app));
+  CHECK(converged(hand.app.session));
 }
 
 TEST_CASE("forces of every type are edited") {
@@ -520,7 +522,7 @@ TEST_CASE("forces of every type are edited") {
   const auto add = [&](const auto& make) {
     edit(hand.app, "Add", [&](Mechanism& m, Selection& s) { s.set({PartKind::force, make(m)}); });
     hand.frames(2);
-    return hand.app.selection().parts.front().name;
+    return hand.app.session.selection().parts.front().name;
   };
   SECTION("spring") {
     const std::string name = add([](Mechanism& m) {
@@ -576,7 +578,7 @@ TEST_CASE("forces of every type are edited") {
 
 TEST_CASE("a vane and the air are edited") {
   Hand hand;
-  edit(hand.app, "Add", [&](Mechanism& m, Selection& s) {
+  edit(hand.app.session, "Add", [&](Mechanism& m, Selection& s) {
     s.set({PartKind::force, add_force(m, ForceType::vane, "ball1", {-0.16, 0.2, 0}, {0, 0, 1})});
   });
   hand.frames(2);
@@ -611,7 +613,7 @@ TEST_CASE("a vane and the air are edited") {
   CHECK(vane().cn == 2);
   hand.one_step([&] { hand.choose_from("inspector/form", "plate"); });
   CHECK_FALSE(vane().chord);
-  select(hand.app, {});
+  select(hand.app.session, {});
   hand.frames(2);
   hand.one_step([&] { hand.fill("inspector/wind/x", "3 km/h"); });
   CHECK(hand.mechanism().air.wind.x() == Approx(3 / 3.6));
@@ -622,7 +624,7 @@ TEST_CASE("a vane and the air are edited") {
 
 TEST_CASE("a bearing is edited: bodies, axes, matrices of two rows or six, with their units") {
   Hand hand;
-  edit(hand.app, "Add", [&](Mechanism& m, Selection& s) {
+  edit(hand.app.session, "Add", [&](Mechanism& m, Selection& s) {
     s.set({PartKind::force, add_bearing(m, {"ground", "collar"}, {0, 0.1, 0}, {0, 1, 0})});
   });
   hand.frames(2);
@@ -643,20 +645,20 @@ TEST_CASE("a bearing is edited: bodies, axes, matrices of two rows or six, with 
   REQUIRE(bearing().bearing_damping.size() == 36);
   CHECK(bearing().bearing_stiffness[1] == 2e6);
   CHECK(bearing().bearing_damping[7] == 1000);
-  CHECK(hand.app.mistakes.empty());
+  CHECK(hand.app.session.mistakes.empty());
   hand.one_step([&] { hand.fill("inspector/stiffness/5/5", "3 N m/deg"); });
   CHECK(bearing().bearing_stiffness[35] == Approx(3 * 180 / std::numbers::pi));
   hand.one_step([&] { hand.choose_from("inspector/rows", "2 rows"); });
   CHECK(bearing().bearing_stiffness == BearingMatrix{1e6, 2e6, 0, 1e6});
   hand.one_step([&] { hand.press_widget("inspector/damping"); });
   CHECK(bearing().bearing_damping.empty());
-  undo(hand.app);
+  undo(hand.app.session);
   CHECK(bearing().bearing_damping.size() == 4);
 }
 
 TEST_CASE("the scene's own numbers are there while nothing is selected") {
   Hand hand;
-  REQUIRE(hand.app.selection().empty());
+  REQUIRE(hand.app.session.selection().empty());
   hand.one_step([&] { hand.press_widget("inspector/gravity/none"); });
   CHECK(hand.mechanism().gravity == Vec3::Zero());
   hand.one_step([&] { hand.press_widget("inspector/gravity/-z"); });
@@ -678,7 +680,7 @@ TEST_CASE("several parts are given one number") {
   hand.hold(true, false);
   hand.click("outline/bodies/ball2");
   hand.hold(false, false);
-  REQUIRE(hand.app.selection().parts.size() == 2);
+  REQUIRE(hand.app.session.selection().parts.size() == 2);
   hand.one_step([&] { hand.fill("inspector/all/mass", "3"); });
   CHECK(hand.body("ball1").mass == 3);
   CHECK(hand.body("ball2").mass == 3);
@@ -691,12 +693,12 @@ TEST_CASE("renaming takes every reference along and refuses names that are taken
   Hand hand;
   SECTION("in the outline, by a double click") {
     hand.double_click("outline/bodies/ball1");
-    REQUIRE(hand.app.fields.typing.name == "outline/bodies/ball1/name");
+    REQUIRE(hand.app.ui.fields.typing.name == "outline/bodies/ball1/name");
   }
   SECTION("in the outline, by F2") {
     hand.click("outline/bodies/ball1");
     hand.key(key_f2);
-    REQUIRE(hand.app.fields.typing.name == "outline/bodies/ball1/name");
+    REQUIRE(hand.app.ui.fields.typing.name == "outline/bodies/ball1/name");
   }
   SECTION("in the inspector") {
     hand.click("outline/bodies/ball1");
@@ -705,39 +707,39 @@ TEST_CASE("renaming takes every reference along and refuses names that are taken
   hand.frames(2);
   hand.type("ball2");
   hand.key(key_enter);
-  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("ball2"));
+  CHECK_THAT(hand.app.ui.fields.typing.mistake, ContainsSubstring("ball2"));
   hand.frames(3);
   hand.key('A', true);
   hand.type("a.b");
   hand.key(key_enter);
-  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("dots"));
+  CHECK_THAT(hand.app.ui.fields.typing.mistake, ContainsSubstring("dots"));
   hand.frames(3);
   hand.key('A', true);
   hand.type("left weight");
   hand.one_step([&] { hand.key(key_enter); });
   CHECK(hand.last_step() == "Rename ball1 to left weight");
   CHECK(hand.joint("arm1").bodies[1] == "left weight");
-  CHECK(hand.app.selection().has({PartKind::body, "left weight"}));
-  CHECK(hand.app.mistakes.empty());
+  CHECK(hand.app.session.selection().has({PartKind::body, "left weight"}));
+  CHECK(hand.app.session.mistakes.empty());
 }
 
 TEST_CASE("the outline selects one, some and a range, and shows what is pointed at") {
   Hand hand;
   hand.click("outline/bodies/spindle");
-  CHECK(hand.app.selection().parts == std::vector<Part>{{PartKind::body, "spindle"}});
+  CHECK(hand.app.session.selection().parts == std::vector<Part>{{PartKind::body, "spindle"}});
   CHECK(hand.app.view.hovered.kind == PartKind::body); // the hand still lies on it
   hand.hold(false, true);
   hand.click("outline/joints/spin");
   hand.hold(false, false);
-  CHECK(hand.app.selection().parts.size() == hand.mechanism().bodies.size() + 1);
+  CHECK(hand.app.session.selection().parts.size() == hand.mechanism().bodies.size() + 1);
   hand.hold(true, false);
   hand.click("outline/bodies/spindle");
   hand.hold(false, false);
-  CHECK_FALSE(hand.app.selection().has({PartKind::body, "spindle"}));
+  CHECK_FALSE(hand.app.session.selection().has({PartKind::body, "spindle"}));
   hand.click("outline/joints/spin");
-  CHECK(hand.app.selection().parts.size() == 1);
+  CHECK(hand.app.session.selection().parts.size() == 1);
   hand.click("outline/joints");
-  CHECK_FALSE(hand.app.widgets.contains("outline/joints/spin"));
+  CHECK_FALSE(hand.app.ui.widgets.contains("outline/joints/spin"));
 }
 
 TEST_CASE("two thousand bodies are listed a screenful at a time and searched") {
@@ -752,11 +754,11 @@ TEST_CASE("two thousand bodies are listed a screenful at a time and searched") {
     body.name = "body" + std::to_string(i);
     many.bodies.push_back(body);
   }
-  open_document(hand.app, Document(many));
-  set_mode(hand.app, Mode::build);
+  open_document(hand.app.session, Document(many));
+  set_mode(hand.app.session, Mode::build);
   hand.frames(2);
   const auto listed = [&] {
-    return std::ranges::count_if(hand.app.widgets,
+    return std::ranges::count_if(hand.app.ui.widgets,
                                  [](const auto& w) { return w.first.starts_with("outline/bodies/"); });
   };
   CHECK(listed() > 10);
@@ -764,23 +766,23 @@ TEST_CASE("two thousand bodies are listed a screenful at a time and searched") {
   // What is selected elsewhere is brought into view.
   hand.choose(PartKind::body, "body1900");
   hand.frames(2);
-  CHECK(hand.app.widgets.contains("outline/bodies/body1900"));
+  CHECK(hand.app.ui.widgets.contains("outline/bodies/body1900"));
   hand.click("outline/search");
   hand.type("ODY1777");
   hand.frames(2);
   CHECK(listed() == 1);
-  CHECK(hand.app.widgets.contains("outline/bodies/body1777"));
+  CHECK(hand.app.ui.widgets.contains("outline/bodies/body1777"));
 }
 
 TEST_CASE("what is missing is told and leads to the part") {
   Hand hand;
-  edit(hand.app, "Add", [](Mechanism& m, Selection& s) {
+  edit(hand.app.session, "Add", [](Mechanism& m, Selection& s) {
     add_body(m, {.form = BodyForm::ball, .at = {0.3, 0, 0}});
     add_body(m, {.form = BodyForm::ball, .at = {0.5, 0, 0}});
     s = {};
   });
   hand.frames(2);
-  REQUIRE(hand.app.mistakes.size() == 2);
+  REQUIRE(hand.app.session.mistakes.size() == 2);
   const std::string second = hand.mechanism().bodies.back().name;
   SECTION("below the outline") {
     hand.click("mistakes/1");
@@ -788,7 +790,7 @@ TEST_CASE("what is missing is told and leads to the part") {
   SECTION("in place of results") {
     hand.click("results/mistakes/1");
   }
-  CHECK(hand.app.selection().parts == std::vector<Part>{{PartKind::body, second}});
+  CHECK(hand.app.session.selection().parts == std::vector<Part>{{PartKind::body, second}});
 }
 
 TEST_CASE("numbers are pinned as sliders with a range, and taken off again") {
@@ -801,14 +803,14 @@ TEST_CASE("numbers are pinned as sliders with a range, and taken off again") {
   CHECK(hand.mechanism().sliders.back() ==
         Slider{.parameter = address, .from = 0, .to = 2, .description = ""});
 
-  set_mode(hand.app, Mode::explore);
-  select(hand.app, {});
+  set_mode(hand.app.session, Mode::explore);
+  select(hand.app.session, {});
   hand.frames(2);
-  CHECK(hand.app.parameters[2].group == ParameterGroup::pinned);
-  const double before = value(hand.app.answer.solution, "slide");
+  CHECK(hand.app.session.parameters[2].group == ParameterGroup::pinned);
+  const double before = value(hand.app.session.answer.solution, "slide");
   hand.one_step([&] { hand.drag("parameters/" + address, {0.5f, 0.5f}, {0.75f, 0.5f}); });
   CHECK(hand.body("ball1").mass == Approx(1.5).margin(0.05));
-  CHECK(value(hand.app.answer.solution, "slide") != before);
+  CHECK(value(hand.app.session.answer.solution, "slide") != before);
 
   hand.point(hand.widget("parameters/" + address).center());
   hand.click("parameters/" + address + "/gear");
@@ -821,17 +823,17 @@ TEST_CASE("numbers are pinned as sliders with a range, and taken off again") {
   CHECK(hand.mechanism().sliders.back().from == 0.005);
   hand.one_step([&] { hand.click("parameters/" + address + "/range/pin"); });
   CHECK(hand.mechanism().sliders.size() == 2);
-  CHECK(std::ranges::count(hand.app.parameters, address, &ParameterControl::address) == 0);
+  CHECK(std::ranges::count(hand.app.session.parameters, address, &ParameterControl::address) == 0);
 }
 
 TEST_CASE("while exploring, the inspector's numbers are solved from the last answer") {
   Hand hand;
-  set_mode(hand.app, Mode::explore);
+  set_mode(hand.app.session, Mode::explore);
   hand.choose(PartKind::joint, "spin");
-  const double before = value(hand.app.answer.solution, "slide");
+  const double before = value(hand.app.session.answer.solution, "slide");
   hand.one_step([&] { hand.fill("inspector/drive/speed", "120 rpm"); });
   CHECK(hand.joint("spin").coordinates[0].drive->speed == Approx(12.566370614359172));
-  CHECK(value(hand.app.answer.solution, "slide") != before);
+  CHECK(value(hand.app.session.answer.solution, "slide") != before);
 }
 
 TEST_CASE("a drive gives a torque where that is ticked, and its speed is found") {
@@ -846,10 +848,10 @@ TEST_CASE("a drive gives a torque where that is ticked, and its speed is found")
   REQUIRE(hand.joint("spin").formulas.size() == 1);
   CHECK(find_mistakes(hand.mechanism()).empty());
   hand.one_step([&] { hand.fill("inspector/drive/load", "25"); });
-  set_mode(hand.app, Mode::explore);
+  set_mode(hand.app.session, Mode::explore);
   hand.frames(3);
-  CHECK(coordinate(hand.app.answer.solution, "spin").speed.value() == Approx(10.29396051997144));
-  set_mode(hand.app, Mode::build);
+  CHECK(coordinate(hand.app.session.answer.solution, "spin").speed.value() == Approx(10.29396051997144));
+  set_mode(hand.app.session, Mode::build);
   hand.frames(2);
   hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
   CHECK_FALSE(drive().torque);
@@ -863,12 +865,12 @@ TEST_CASE("a drive is left to itself where that is ticked, and its speed is foun
   hand.one_step([&] { hand.press_widget("inspector/drive/keeps"); });
   CHECK(drive().keeps == DriveKeeps::momentum);
   CHECK(find_mistakes(hand.mechanism()).empty());
-  set_mode(hand.app, Mode::explore);
+  set_mode(hand.app.session, Mode::explore);
   hand.frames(3);
-  const CoordinateSolution& spin = coordinate(hand.app.answer.solution, "spin");
+  const CoordinateSolution& spin = coordinate(hand.app.session.answer.solution, "spin");
   REQUIRE(spin.speed);
   CHECK(*spin.speed != drive().speed);
-  set_mode(hand.app, Mode::build);
+  set_mode(hand.app.session, Mode::build);
   hand.frames(2);
   // A damper would take the momentum.
   hand.press_widget("inspector/damper");
@@ -887,17 +889,17 @@ TEST_CASE("the history goes to any step") {
   hand.frames(3);
   hand.click("history/1");
   CHECK(hand.body("ball1").mass == 2);
-  CHECK(hand.app.document.steps().size() == 4);
+  CHECK(hand.app.session.document.steps().size() == 4);
   hand.click("history/3");
   CHECK(hand.body("ball1").mass == 4);
   hand.click("history/0");
-  CHECK(hand.mechanism() == hand.app.document.saved());
+  CHECK(hand.mechanism() == hand.app.session.document.saved());
 }
 
 TEST_CASE("undo leaves the rows where they are, and a second edit at the same place means the same number") {
   Hand hand;
-  open_scene(hand.app, shipped_file("watt_governor"));
-  set_mode(hand.app, Mode::build);
+  open_scene(hand.app.session, shipped_file("watt_governor"));
+  set_mode(hand.app.session, Mode::build);
   hand.frames(3);
   hand.click("outline/bodies/arm1");
   const Mechanism before = hand.mechanism();
@@ -911,7 +913,7 @@ TEST_CASE("undo leaves the rows where they are, and a second edit at the same pl
   CHECK(hand.body("arm1").position.x() == 0.3);
   hand.key('Z', true);
   CHECK(hand.mechanism() == before);
-  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
+  CHECK(hand.app.session.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
   CHECK(hand.widget("inspector/position/x").center().y == at.y);
   edit_there();
   CHECK(hand.body("arm1").position.x() == 0.3);
@@ -919,29 +921,29 @@ TEST_CASE("undo leaves the rows where they are, and a second edit at the same pl
   hand.key('Z', true);
   hand.key('Z', true, true);
   CHECK(hand.body("arm1").position.x() == 0.3);
-  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
+  CHECK(hand.app.session.selection().parts == std::vector{Part{PartKind::body, "arm1"}});
 }
 
 TEST_CASE("deleting says what goes along though it was not selected") {
   Hand hand;
-  open_scene(hand.app, shipped_file("watt_governor"));
-  set_mode(hand.app, Mode::build);
+  open_scene(hand.app.session, shipped_file("watt_governor"));
+  set_mode(hand.app.session, Mode::build);
   hand.choose(PartKind::body, "arm1");
   hand.key(261); // Delete
-  CHECK(hand.app.notice == "Deleted arm1 together with joints arm1 and knee1.");
+  CHECK(hand.app.session.notice == "Deleted arm1 together with joints arm1 and knee1.");
   hand.choose(PartKind::joint, "foot1");
   hand.key(261);
-  CHECK(hand.app.notice.empty());
-  undo(hand.app);
-  CHECK(hand.app.selection().parts == std::vector{Part{PartKind::joint, "foot1"}});
+  CHECK(hand.app.session.notice.empty());
+  undo(hand.app.session);
+  CHECK(hand.app.session.selection().parts == std::vector{Part{PartKind::joint, "foot1"}});
 }
 
 TEST_CASE("powers in fields are written as in results, and typed either way") {
   Hand hand;
-  select(hand.app, {});
+  select(hand.app.session, {});
   hand.frames(2);
   hand.click("inspector/gravity/y");
-  CHECK_THAT(hand.app.fields.typing.text, Catch::Matchers::EndsWith(" m/s²"));
+  CHECK_THAT(hand.app.ui.fields.typing.text, Catch::Matchers::EndsWith(" m/s²"));
   hand.type("-5 m/s^2");
   hand.key(key_enter);
   CHECK(hand.mechanism().gravity.y() == -5);

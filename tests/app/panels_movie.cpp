@@ -25,7 +25,7 @@ namespace {
 class MovieRobot : public Robot {
  public:
   MovieRobot() {
-    app.motion.duration = 0.5;
+    app.session.motion.duration = 0.5;
     run_command(app, "study.motion");
     frames(3);
     app.movie.width = 160;
@@ -74,7 +74,8 @@ TEST_CASE("a run is exported as numbered frames while the window goes on") {
   CHECK(robot.wait() >= 6);
   CHECK(robot.most_drawn >= 5);
   CHECK_FALSE(robot.app.dialog.showing);
-  CHECK(robot.app.notice == "Saved 6 frames, " + (folder / "run-0001.png").string() + " to run-0006.png");
+  CHECK(robot.app.session.notice ==
+        "Saved 6 frames, " + (folder / "run-0001.png").string() + " to run-0006.png");
   REQUIRE(names_in(folder) == Names{"run-0001.png", "run-0002.png", "run-0003.png", "run-0004.png",
                                     "run-0005.png", "run-0006.png"});
   std::set<std::string> pictures;
@@ -100,7 +101,7 @@ TEST_CASE("frames show the moments and the part of the run that were asked for")
   robot.wait();
   CHECK(names_in(folder).size() == 6); // 0.1, 0.12 ... 0.2 s
   // The same moment, seen in the window's own view from the same place, is the same picture.
-  seek_motion(robot.app, 0.14);
+  seek_motion(robot.app.session, 0.14);
   robot.frames(3);
   ViewFrame frame = view_frame(robot.app);
   frame.hovered = {};
@@ -120,7 +121,7 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   robot.frames(3);
   REQUIRE_FALSE(app.dialog.showing);
   robot.click("modes/row/1");
-  app.study.modes.amplitude = 0.2;
+  app.session.study.modes.amplitude = 0.2;
   app.movie.width = 160;
   app.movie.height = 91;
   app.movie.rate = 10;
@@ -138,10 +139,11 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   robot.frames(2);
   CHECK_FALSE(app.dialog.showing);
   // At 1.04 Hz, as fast as it is.
-  CHECK(app.notice == "Saved 10 frames, " + (folder / "swing-0001.png").string() + " to swing-0010.png");
+  CHECK(app.session.notice ==
+        "Saved 10 frames, " + (folder / "swing-0001.png").string() + " to swing-0010.png");
   // The same phase, seen in the window's own view from the same place, is the same picture.
-  app.study.modes.playing = false;
-  app.study.modes.phase = 2 * std::numbers::pi * 3 / 10;
+  app.session.study.modes.playing = false;
+  app.session.study.modes.phase = 2 * std::numbers::pi * 3 / 10;
   robot.frames(3);
   ViewFrame frame = view_frame(app);
   frame.hovered = {};
@@ -162,7 +164,7 @@ TEST_CASE("a film goes through ffmpeg from the dialog") {
   robot.click("movie/mp4");
   robot.click("movie/save");
   robot.wait();
-  CHECK(robot.app.notice == "Saved " + (folder / "run.mp4").string());
+  CHECK(robot.app.session.notice == "Saved " + (folder / "run.mp4").string());
   CHECK(names_in(folder) == Names{"run.mp4"});
   CHECK(fs::file_size(folder / "run.mp4") == 6 * 3 * 160 * 92);
 }
@@ -189,7 +191,7 @@ TEST_CASE("an export that is given up leaves nothing, and the dialog as it was")
   CHECK_FALSE(robot.app.movie.progress);
   CHECK(names_in(folder).empty());
   CHECK(robot.app.dialog.showing);
-  CHECK(robot.app.notice.empty());
+  CHECK(robot.app.session.notice.empty());
   robot.click("movie/cancel");
   CHECK_FALSE(robot.app.dialog.showing);
 }
@@ -242,14 +244,14 @@ TEST_CASE("frames that are there already are replaced when the person says so") 
 TEST_CASE("the export is on offer where a motion is shown") {
   Robot robot;
   CHECK_FALSE(is_enabled(robot.app, command("study.export")));
-  robot.app.motion.duration = 0.2;
+  robot.app.session.motion.duration = 0.2;
   run_command(robot.app, "study.motion");
   robot.frames(3);
   CHECK(is_enabled(robot.app, command("study.export")));
   robot.click("motion/export");
   robot.frames(2);
   CHECK(robot.app.dialog.showing);
-  CHECK(robot.app.widgets.contains("movie/save"));
+  CHECK(robot.app.ui.widgets.contains("movie/save"));
 }
 
 TEST_CASE("the frames of a run are evenly spaced and end with it") {

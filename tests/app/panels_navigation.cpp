@@ -14,7 +14,7 @@ constexpr int left = 0, right = 1, middle = 2;
 // What a drag over empty space of the view did to the camera.
 CameraDrag done(Robot& robot, int button, bool ctrl, bool shift) {
   App& app = robot.app;
-  select(app, {});
+  select(app.session, {});
   robot.key('1');
   robot.frames(2);
   const ViewCamera before = app.view.camera;
@@ -58,9 +58,10 @@ TEST_CASE("where the left button does not turn the view it frames parts") {
   App& app = robot.app;
   choose_navigation(app, Navigation::cad);
   robot.drag("view", {0.15f, 0.1f}, {0.85f, 0.9f});
-  CHECK(app.selection().parts.size() > 3);
-  robot.click_at(app.poses[static_cast<std::size_t>(body_index(app.mechanism(), "ball1"))].position);
-  CHECK(app.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
+  CHECK(app.session.selection().parts.size() > 3);
+  robot.click_at(
+      app.session.poses[static_cast<std::size_t>(body_index(app.session.mechanism(), "ball1"))].position);
+  CHECK(app.session.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
 }
 
 TEST_CASE("zooming keeps what is under the pointer where it is") {
@@ -117,10 +118,10 @@ TEST_CASE("the habits are kept, and the sheet of shortcuts tells them") {
   Robot robot({1280, 900});
   robot.key('?');
   robot.frames(2);
-  CHECK(robot.app.widgets.count("shortcuts/Right drag, Shift+drag") == 1);
+  CHECK(robot.app.ui.widgets.count("shortcuts/Right drag, Shift+drag") == 1);
   robot.key(key_escape);
   choose_navigation(robot.app, Navigation::cad);
   robot.key('?');
   robot.frames(2);
-  CHECK(robot.app.widgets.count("shortcuts/Right drag, middle drag") == 1);
+  CHECK(robot.app.ui.widgets.count("shortcuts/Right drag, middle drag") == 1);
 }

@@ -32,16 +32,16 @@ TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
   App& app = robot.app;
   Mechanism crank = Document::empty_mechanism();
   add_driven_slider_crank(crank, 10);
-  open_document(app, Document(crank));
+  open_document(app.session, Document(crank));
   robot.frames(3);
-  const PeriodicState* motion = periodic_motion(app);
+  const PeriodicState* motion = periodic_motion(app.session);
   REQUIRE(motion);
   int going = 0;
   for (const PeriodicCoordinate& c : motion->coordinates) {
     const std::string row = "results/periodic/" + c.joint;
     CAPTURE(row);
-    REQUIRE(app.widgets.contains(row));
-    CHECK(app.widgets.contains(row + "/less") == c.goes_on());
+    REQUIRE(app.ui.widgets.contains(row));
+    CHECK(app.ui.widgets.contains(row + "/less") == c.goes_on());
     going += c.goes_on();
   }
   CHECK(going > 0);

@@ -16,27 +16,27 @@ namespace {
 struct Drawing : Robot {
   Drawing() { begin_empty(1); }
 
-  const Mechanism& m() const { return app.mechanism(); }
-  std::size_t steps() const { return app.document.position(); }
-  std::string last_step() const { return app.document.steps()[app.document.position()].name; }
+  const Mechanism& m() const { return app.session.mechanism(); }
+  std::size_t steps() const { return app.session.document.position(); }
+  std::string last_step() const { return app.session.document.steps()[app.session.document.position()].name; }
   // A ball drawn before the test begins, selected.
   void have_ball(const Vec3& at, double radius = 0.05) {
-    ++app.gesture;
-    edit(app, "Add ball", [&](Mechanism& next, Selection& selection) {
+    ++app.session.gesture;
+    edit(app.session, "Add ball", [&](Mechanism& next, Selection& selection) {
       selection.set({PartKind::body, add_body(next, {.at = at, .radius = radius})});
     });
     frames(2);
   }
   void have_rod(const Vec3& from, const Vec3& to) {
-    ++app.gesture;
-    edit(app, "Add rod", [&](Mechanism& next, Selection& selection) {
+    ++app.session.gesture;
+    edit(app.session, "Add rod", [&](Mechanism& next, Selection& selection) {
       selection.set(
           {PartKind::body, add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = from, .to = to})});
     });
     frames(2);
   }
   void choose_nothing() {
-    select(app, {});
+    select(app.session, {});
     frames(1);
   }
 };
@@ -55,7 +55,7 @@ TEST_CASE("a ball is placed by a click, on the grid and with a round size") {
   REQUIRE(d.m().bodies.size() == 1);
   CHECK(d.m().bodies[0].position == Vec3(0.1, 0.2, 0));
   CHECK(d.m().bodies[0].shapes[0].radius == 0.05);
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
   CHECK(d.app.tool.tool == Tool::select);
   CHECK(d.steps() == 1);
   CHECK(d.last_step() == "Add ball");
@@ -123,7 +123,7 @@ TEST_CASE("the ends of a rod have to be apart") {
   d.frames(60); // no double click
   d.click_at({0, 0, 0});
   CHECK(d.m().bodies.empty());
-  CHECK_THAT(d.app.notice, ContainsSubstring("apart"));
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("apart"));
 }
 
 TEST_CASE("placing works on a plane through the last point") {
@@ -159,9 +159,9 @@ TEST_CASE("Escape drops what was begun, then the tool, then the selection") {
   CHECK(d.app.tool.tool == Tool::rod);
   d.key(key_escape);
   CHECK(d.app.tool.tool == Tool::select);
-  CHECK_FALSE(d.app.selection().empty());
+  CHECK_FALSE(d.app.session.selection().empty());
   d.key(key_escape);
-  CHECK(d.app.selection().empty());
+  CHECK(d.app.session.selection().empty());
   CHECK(d.steps() == 1);
 }
 
@@ -183,10 +183,10 @@ TEST_CASE("a joint is made by a click and the card beside it") {
     CHECK(d.m().joints[0].type == JointType::revolute);
     CHECK(d.m().joints[0].axis == Vec3::UnitZ());
     CHECK(d.m().joints[0].bodies == std::array<std::string, 2>{"ground", "rod1"});
-    CHECK(d.app.selection().parts == std::vector{Part{PartKind::joint, d.m().joints[0].name}});
+    CHECK(d.app.session.selection().parts == std::vector{Part{PartKind::joint, d.m().joints[0].name}});
     CHECK(d.steps() == 2);
     CHECK(d.last_step() == "Join ground and rod1");
-    CHECK(converged(d.app));
+    CHECK(converged(d.app.session));
   }
   SECTION("a slide along the rod, by Enter") {
     d.click("tools/type/prismatic");
@@ -234,7 +234,7 @@ TEST_CASE("a joint is made by a click and the card beside it") {
       d.key(key_escape);
     CHECK_FALSE(d.app.tool.joint);
     CHECK(d.m().joints.empty());
-    CHECK(d.app.selection().empty());
+    CHECK(d.app.session.selection().empty());
   }
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("the bodies of a joint are guessed") {
   Drawing d;
   d.have_rod({0, 0, 0}, {0, 0.4, 0});
   d.have_rod({0, 0.3, 0}, {0.3, 0.3, 0});
-  edit(d.app, "Join", [](Mechanism& next, Selection&) {
+  edit(d.app.session, "Join", [](Mechanism& next, Selection&) {
     add_joint(next, JointType::revolute, {"ground", "rod2"}, {0.3, 0.3, 0}, Vec3::UnitZ());
   });
   d.choose_nothing();
@@ -267,7 +267,7 @@ TEST_CASE("the bodies of a joint are guessed") {
     Selection both;
     both.add(body("rod1"));
     both.add(body("rod2"));
-    select(d.app, both);
+    select(d.app.session, both);
     CHECK(guess({-0.2, 0.1, 0}) == Pair{"rod2", "rod1"});
     // They stay the ones while the point is moved.
     CHECK(guess({-0.3, 0, 0}) == Pair{"rod2", "rod1"});
@@ -305,7 +305,7 @@ TEST_CASE("a spring on one body alone is refused in words") {
   d.click("tools/spring");
   d.drag(d.pixel({-0.1, 0, 0}), d.pixel({0.1, 0, 0}));
   CHECK(d.m().forces.empty());
-  CHECK_THAT(d.app.notice, ContainsSubstring("ball1"));
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("ball1"));
   // The tool is still there for another try.
   d.drag(d.pixel({-0.1, 0, 0}), d.pixel({0.3, 0, 0}));
   CHECK(d.m().forces.size() == 1);
@@ -366,7 +366,7 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   CHECK(d.app.tool.joint->bodies == std::array<std::string, 2>{"ground", "rod1"});
   CHECK(d.app.tool.joint->at == Vec3(0.3, 0, 0));
   CHECK(d.app.tool.joint->axis == Vec3::UnitX()); // along the rod
-  CHECK(d.app.widgets.count("tools/type/revolute") == 0);
+  CHECK(d.app.ui.widgets.count("tools/type/revolute") == 0);
   CHECK(d.steps() == 1);
   if (GENERATE(false, true)) {
     d.key(key_escape);
@@ -387,15 +387,15 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   CHECK(bearing.bearing_stiffness == BearingMatrix{1e6, 0, 0, 1e6});
   CHECK(bearing.bearing_damping == BearingMatrix{1000, 0, 0, 1000});
   CHECK(d.m().joints.empty());
-  CHECK(d.app.selection().parts == std::vector{Part{PartKind::force, "bearing1"}});
+  CHECK(d.app.session.selection().parts == std::vector{Part{PartKind::force, "bearing1"}});
   CHECK(d.steps() == 2);
-  CHECK(d.app.mistakes.empty());
+  CHECK(d.app.session.mistakes.empty());
   // It is moved as what has one point, and goes with the shaft as a joint does.
   d.pull("gizmo/y", {0.3, 0.2, 0});
   d.release();
   CHECK(d.m().forces[0].at->y() > 0.05);
-  undo(d.app);
-  select(d.app, {{{PartKind::body, "rod1"}}});
+  undo(d.app.session);
+  select(d.app.session, {{{PartKind::body, "rod1"}}});
   d.frames(2);
   const Vec3 before = d.m().bodies[0].position;
   d.pull("gizmo/y", before + Vec3(0, 0.2, 0));
@@ -403,8 +403,8 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   const Vec3 by = d.m().bodies[0].position - before;
   CHECK(by.y() > 0.05);
   CHECK((*d.m().forces[0].at - Vec3(0.3, 0, 0) - by).norm() < 1e-12);
-  undo(d.app);
-  undo(d.app);
+  undo(d.app.session);
+  undo(d.app.session);
   CHECK(d.m().forces.empty());
 }
 
@@ -433,7 +433,7 @@ TEST_CASE("an arrow moves along its axis, onto the grid, in one step") {
   CHECK(d.m().bodies[0].position == Vec3(0.15, 0.0456, 0.0789));
   CHECK(d.steps() == 2);
   CHECK(d.last_step() == "Move ball1");
-  undo(d.app);
+  undo(d.app.session);
   CHECK(d.m().bodies[0].position == Vec3(0.0123, 0.0456, 0.0789));
 }
 
@@ -469,7 +469,7 @@ TEST_CASE("what is moved snaps to points, without snapping it goes anywhere") {
     d.release();
     CHECK((d.m().bodies[1].position - Vec3(0.111, 0.033, 0)).norm() < 0.002);
     CHECK(d.m().bodies[1].position != Vec3(0.1, 0.05, 0));
-    CHECK(d.app.selection().parts == std::vector{body("ball2")});
+    CHECK(d.app.session.selection().parts == std::vector{body("ball2")});
   }
 }
 
@@ -492,8 +492,8 @@ TEST_CASE("Escape or the right button takes a drag back entirely") {
   CHECK(d.m() == before);
   CHECK(d.app.view.camera.azimuth == 0);
   CHECK(d.steps() == 1);
-  CHECK(d.app.document.steps().size() == 2); // nothing to redo either
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.document.steps().size() == 2); // nothing to redo either
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
 }
 
 TEST_CASE("a number typed while dragging counts") {
@@ -543,7 +543,7 @@ TEST_CASE("a ring turns by round angles, in one step") {
 TEST_CASE("the ends of a spring are moved by themselves") {
   Drawing d;
   d.have_ball({0.3, 0, 0});
-  edit(d.app, "Add spring", [](Mechanism& next, Selection& selection) {
+  edit(d.app.session, "Add spring", [](Mechanism& next, Selection& selection) {
     selection.set({PartKind::force,
                    add_spring(next, {"ground", "ball1"}, {Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0)}, 1000, 0)});
   });
@@ -561,26 +561,26 @@ TEST_CASE("clicks select, toggle and drop") {
   d.have_ball({-0.2, 0, 0});
   d.have_ball({0.2, 0, 0});
   d.choose_nothing();
-  d.app.mode = GENERATE(Mode::build, Mode::explore);
+  d.app.session.mode = GENERATE(Mode::build, Mode::explore);
   d.frames(2);
   d.click_at({-0.2, 0, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
   d.click_at({0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball2")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball2")});
   const bool ctrl = GENERATE(false, true);
   d.hold(ctrl, !ctrl);
   d.click_at({-0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball2"), body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball2"), body("ball1")});
   d.click_at({0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
   d.hold(false, false);
   d.drag(d.pixel({0, 0.3, 0}), d.pixel({0.1, 0.3, 0}));
-  CHECK(d.app.selection().parts == std::vector{body("ball1")}); // that was steering
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")}); // that was steering
   CHECK(d.app.view.camera.azimuth != 0);
   look_from(d.app.view, 0, 0);
   d.frames(2);
   d.click(ImVec2(d.widget("view").to.x - 30, d.widget("view").to.y - 200));
-  CHECK(d.app.selection().empty());
+  CHECK(d.app.session.selection().empty());
   CHECK(d.steps() == 2);
 }
 
@@ -596,17 +596,17 @@ TEST_CASE("a frame selects what it holds") {
   SECTION("while Ctrl is held") {
     d.hold(true, false);
     frame(-0.36, 0.1);
-    CHECK(d.app.selection().parts == left);
+    CHECK(d.app.session.selection().parts == left);
     frame(0.1, 0.4);
-    CHECK(d.app.selection().parts == std::vector{body("ball3")});
+    CHECK(d.app.session.selection().parts == std::vector{body("ball3")});
     d.hold(true, true);
     frame(-0.1, 0.1);
-    CHECK(d.app.selection().parts == std::vector{body("ball3"), body("ball2")});
+    CHECK(d.app.session.selection().parts == std::vector{body("ball3"), body("ball2")});
   }
   SECTION("with its tool") {
     d.key('B');
     frame(0.1, -0.4);
-    CHECK(d.app.selection().parts == left);
+    CHECK(d.app.session.selection().parts == left);
     CHECK(d.app.tool.tool == Tool::select);
   }
   SECTION("unless Escape is pressed") {
@@ -617,7 +617,7 @@ TEST_CASE("a frame selects what it holds") {
     d.key(key_escape);
     d.point(d.pixel({0.12, -0.12, 0}));
     d.release();
-    CHECK(d.app.selection().empty());
+    CHECK(d.app.session.selection().empty());
   }
   CHECK(d.app.view.camera.azimuth == 0);
 }
@@ -626,15 +626,15 @@ TEST_CASE("a click on a handle means the part behind it, and no move") {
   Drawing d;
   d.have_ball({0, 0, 0}, 0.1);
   d.have_ball({0.1, 0.1, 0.3}, 0.01);
-  Selection both = d.app.selection();
+  Selection both = d.app.session.selection();
   both.add(body("ball1"));
-  select(d.app, both);
+  select(d.app.session, both);
   d.frames(2);
   d.click("gizmo/centre");
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
   // There is nothing behind the head of the arrow.
   d.click("gizmo/x");
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body("ball1")});
   CHECK(d.steps() == 2);
 }
 
@@ -660,7 +660,7 @@ TEST_CASE("several parts move together") {
   Selection both;
   both.add(body("ball1"));
   both.add(body("ball2"));
-  select(d.app, both);
+  select(d.app.session, both);
   d.frames(2);
   d.pull("gizmo/y", {0, 0.21, 0});
   d.release();
@@ -672,22 +672,22 @@ TEST_CASE("several parts move together") {
 TEST_CASE("tools and handles are there while building only") {
   Drawing d;
   d.have_ball({0, 0, 0});
-  CHECK(d.app.widgets.contains("gizmo/x"));
-  CHECK(d.app.widgets.contains("tools/ball"));
-  set_mode(d.app, Mode::explore);
+  CHECK(d.app.ui.widgets.contains("gizmo/x"));
+  CHECK(d.app.ui.widgets.contains("tools/ball"));
+  set_mode(d.app.session, Mode::explore);
   d.frames(2);
-  CHECK_FALSE(d.app.widgets.contains("gizmo/x"));
-  CHECK_FALSE(d.app.widgets.contains("tools/ball"));
+  CHECK_FALSE(d.app.ui.widgets.contains("gizmo/x"));
+  CHECK_FALSE(d.app.ui.widgets.contains("tools/ball"));
   set_tool(d.app, Tool::spring);
   d.frames(2);
-  CHECK(d.app.mode == Mode::build);
+  CHECK(d.app.session.mode == Mode::build);
 }
 
 TEST_CASE("a drag is over when the document is another one") {
   Drawing d;
   d.have_ball({0, 0, 0});
   d.pull("gizmo/x", {0.2, 0, 0});
-  open_document(d.app, Document());
+  open_document(d.app.session, Document());
   d.point_at({0.3, 0, 0});
   d.release();
   CHECK(d.m().bodies.empty());
@@ -724,11 +724,11 @@ TEST_CASE("what is under a cursor that rests is looked for when the picture move
     Robot robot;
     look_from(robot.app.view, 0, 0);
     robot.frames(3);
-    const int ball = body_index(robot.app.mechanism(), "ball1");
-    robot.point_at(robot.app.poses.at(static_cast<std::size_t>(ball)).position);
+    const int ball = body_index(robot.app.session.mechanism(), "ball1");
+    robot.point_at(robot.app.session.poses.at(static_cast<std::size_t>(ball)).position);
     robot.frames(1);
     CHECK(robot.app.view.hovered == PartId{PartKind::body, ball});
-    play(robot.app, true);
+    play(robot.app.session, true);
     robot.frames(3, 0.05); // about a quarter of a turn
     CHECK(robot.app.view.hovered != PartId{PartKind::body, ball});
   }

@@ -65,7 +65,7 @@ TEST_CASE("a click on the cube looks from there, a drag turns the view") {
   robot.frames(2);
   CHECK(app.view.camera.azimuth == Approx(quarter / 2));
   CHECK(app.view.camera.elevation == Approx(0));
-  CHECK(app.selection().empty()); // the view below it was not meant
+  CHECK(app.session.selection().empty()); // the view below it was not meant
   robot.key('1');
   robot.click(on_cube(robot, 0, 0.8)); // the edge above
   robot.frames(2);

@@ -17,7 +17,7 @@ template <class Change>
 Image changed_governor(const Change& change) {
   App app(steady_options());
   app.view.samples = 1;
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app.session, FLYBALL_ASSETS "/scenes/governor.json");
   view_picture(app, view_size); // places the camera
   ViewFrame frame = view_frame(app);
   Mechanism mechanism = *frame.mechanism;

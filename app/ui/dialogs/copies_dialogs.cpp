@@ -70,54 +70,55 @@ bool accepted(Ui& ui, const std::string& name, const char* text) {
 } // namespace
 
 void show_mirror_dialog(App& app) {
-  if (app.selection().empty()) return;
-  const Spin spin = spin_of(app.mechanism());
+  if (app.session.selection().empty()) return;
+  const Spin spin = spin_of(app.session.mechanism());
   CopyChoice& choice = app.commands.copy;
   choice.point = spin.point;
   // The plane through the spin axis from which the selected parts stand off most.
-  Vec3 off = centre_of(app.mechanism(), app.selection()).value_or(spin.point) - spin.point;
+  Vec3 off = centre_of(app.session.mechanism(), app.session.selection()).value_or(spin.point) - spin.point;
   off[main_axis(spin.axis)] = 0;
   choice.axis = off.isZero(1e-12) ? (main_axis(spin.axis) + 1) % 3 : main_axis(off);
   app.dialog.wanted = Dialog::mirror;
 }
 
 void show_circular_dialog(App& app) {
-  if (app.selection().empty()) return;
-  const Spin spin = spin_of(app.mechanism());
+  if (app.session.selection().empty()) return;
+  const Spin spin = spin_of(app.session.mechanism());
   app.commands.copy.point = spin.point;
   app.commands.copy.axis = main_axis(spin.axis);
   app.dialog.wanted = Dialog::circular;
 }
 
 void mirror_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::mirror, "Mirror the selected parts", 420)) return;
+  if (!begin_dialog(app.ui, app.dialog, Dialog::mirror, "Mirror the selected parts", 420)) return;
   CopyChoice& choice = app.commands.copy;
-  paragraph("At the plane through this point, at right angles to", colors_of(app).dim);
-  axis_choice(app, "mirror/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, app, "mirror/point", choice.point);
-  if (accepted(app, "mirror", "Mirror"))
-    edit(app, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
+  paragraph("At the plane through this point, at right angles to", colors_of(app.ui).dim);
+  axis_choice(app.ui, "mirror/axis", {"x", "y", "z"}, choice.axis);
+  point_fields(app.session, app.ui, "mirror/point", choice.point);
+  if (accepted(app.ui, "mirror", "Mirror"))
+    edit(app.session, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
       selection = mirror_parts(mechanism, selection, choice.point, unit(choice.axis));
     });
   end_dialog();
 }
 
 void circular_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
+  if (!begin_dialog(app.ui, app.dialog, Dialog::circular, "Copy the selected parts round an axis", 420))
+    return;
   CopyChoice& choice = app.commands.copy;
-  paragraph("Evenly round the axis through this point along", colors_of(app).dim);
-  axis_choice(app, "circular/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, app, "circular/point", choice.point);
+  paragraph("Evenly round the axis through this point along", colors_of(app.ui).dim);
+  axis_choice(app.ui, "circular/axis", {"x", "y", "z"}, choice.axis);
+  point_fields(app.session, app.ui, "circular/point", choice.point);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("In all");
-  ImGui::SameLine(90 * app.scale);
-  ImGui::SetNextItemWidth(120 * app.scale);
+  ImGui::SameLine(90 * app.ui.scale);
+  ImGui::SetNextItemWidth(120 * app.ui.scale);
   ImGui::InputInt("##count", &choice.count, 0);
   choice.count = std::clamp(choice.count, 2, 100);
-  note_widget(app.widgets, "circular/count", KeyUse::type);
+  note_widget(app.ui.widgets, "circular/count", KeyUse::type);
   help_on_hover("How many there are then, the selected one included.");
-  if (accepted(app, "circular", "Copy"))
-    edit(app, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
+  if (accepted(app.ui, "circular", "Copy"))
+    edit(app.session, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
       selection = circular_copy(mechanism, selection, choice.point, unit(choice.axis), choice.count);
     });
   end_dialog();

@@ -22,7 +22,7 @@ constexpr std::array picture_sizes{PictureSize{"720p", "1280 × 720", 1280, 720}
 void save_picture(App& app) {
   DialogState& dialog = app.dialog;
   const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
-  if (!may_replace(app, app.file_dialogs, file)) return;
+  if (!may_replace(app.session, app.file_dialogs, file)) return;
   app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest_picture, largest_picture),
                                      std::clamp(dialog.height, smallest_picture, largest_picture),
                                      dialog.panels, dialog.loads};
@@ -34,39 +34,39 @@ void save_picture(App& app) {
 void show_export_dialog(App& app) {
   app.dialog.wanted = Dialog::export_picture;
   app.dialog.loads = app.view.loads;
-  show_folder(app.file_dialogs, usual_folder(app));
+  show_folder(app.file_dialogs, usual_folder(app.session));
   app.file_dialogs.replacing.clear();
-  const std::filesystem::path& file = app.document.file();
-  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  const std::filesystem::path& file = app.session.document.file();
+  const std::string stem = file.empty() ? file_stem(app.session.mechanism().name) : file.stem().string();
   app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ".png")).string();
 }
 
 void export_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::export_picture, "Save a picture", 480)) return;
+  if (!begin_dialog(app.ui, app.dialog, Dialog::export_picture, "Save a picture", 480)) return;
   DialogState& dialog = app.dialog;
-  bool accepted = path_field(app, app.file_dialogs, "export", "Name");
+  bool accepted = path_field(app.ui, app.file_dialogs, "export", "Name");
 
-  size_fields(app, "export", picture_sizes, 80, dialog.width, dialog.height);
-  ImGui::SetCursorPosX(80 * app.scale);
+  size_fields(app.ui, "export", picture_sizes, 80, dialog.width, dialog.height);
+  ImGui::SetCursorPosX(80 * app.ui.scale);
   ImGui::Checkbox("With the panels", &dialog.panels);
-  note_widget(app.widgets, "export/panels");
-  ImGui::SameLine(0, 20 * app.scale);
+  note_widget(app.ui.widgets, "export/panels");
+  ImGui::SameLine(0, 20 * app.ui.scale);
   ImGui::Checkbox("With forces", &dialog.loads);
-  note_widget(app.widgets, "export/loads");
+  note_widget(app.ui.widgets, "export/loads");
   help_on_hover("Arrows of what acts, and their legend; with one body selected, its free-body diagram.");
 
   const bool fits = std::min(dialog.width, dialog.height) >= smallest_picture &&
                     std::max(dialog.width, dialog.height) <= largest_picture;
-  if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
+  if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app.ui).bad);
   const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  ImGui::Dummy({0, 2 * app.scale});
+  const bool replaces = asks_to_replace(app.ui, app.file_dialogs, file);
+  ImGui::Dummy({0, 2 * app.ui.scale});
   ImGui::BeginDisabled(!fits || app.file_dialogs.path.empty());
-  accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
+  accepted = text_button(app.ui, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
   if (accepted && fits && !app.file_dialogs.path.empty()) save_picture(app);
   ImGui::SameLine();
-  if (text_button(app, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (text_button(app.ui, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
   end_dialog();
 }
 

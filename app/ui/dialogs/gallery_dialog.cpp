@@ -121,16 +121,16 @@ bool move_by_keys(FileDialogState& file_dialogs, int columns) {
 } // namespace
 
 void show_gallery(App& app) {
-  app.file_dialogs.gallery.cards = read_cards(app.options.scenes);
+  app.file_dialogs.gallery.cards = read_cards(app.session.options.scenes);
   app.file_dialogs.gallery.chosen = 0;
   app.dialog.wanted = Dialog::gallery;
 }
 
 void gallery_dialog(App& app) {
   GalleryState& gallery = app.file_dialogs.gallery;
-  const float s = app.scale;
+  const float s = app.ui.scale;
   gallery.showing = false;
-  if (!begin_dialog(app, app.dialog, Dialog::gallery, "Examples",
+  if (!begin_dialog(app.ui, app.dialog, Dialog::gallery, "Examples",
                     3 * scene_picture_width + 2 * card_gap + 47))
     return;
   gallery.showing = true;
@@ -143,23 +143,25 @@ void gallery_dialog(App& app) {
       std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
   const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
   const float height =
-      std::min(rows * (card_height(app) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
+      std::min(rows * (card_height(app.ui) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
   const bool moved = move_by_keys(app.file_dialogs, columns);
   fs::path opened;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
   ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
-  if (count == 0) paragraph("There are no examples beside this program.", colors_of(app).dim);
+  if (count == 0) paragraph("There are no examples beside this program.", colors_of(app.ui).dim);
   for (int i = 0; i < count; ++i) {
     if (i % columns != 0) ImGui::SameLine();
-    if (show_card(app, app.file_dialogs, i, width)) opened = gallery.cards[static_cast<std::size_t>(i)].file;
+    if (show_card(app.ui, app.file_dialogs, i, width))
+      opened = gallery.cards[static_cast<std::size_t>(i)].file;
     if (moved && i == gallery.chosen) ImGui::SetScrollHereY();
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
-  if (count > 0 && enter_pressed(app)) opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
-  if (text_button(app, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
+  if (count > 0 && enter_pressed(app.ui))
+    opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
+  if (text_button(app.ui, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
   ImGui::SameLine();
-  if (text_button(app, "gallery/open", "Open a file…")) {
+  if (text_button(app.ui, "gallery/open", "Open a file…")) {
     close_dialog();
     show_open_dialog(app);
   }

@@ -48,37 +48,38 @@ fs::path recent_list(const Session& session, Ui& ui) {
 } // namespace
 
 void show_open_dialog(App& app) {
-  const fs::path& file = app.document.file();
-  show_folder(app.file_dialogs, !file.empty() ? file.parent_path() : usual_folder(app));
+  const fs::path& file = app.session.document.file();
+  show_folder(app.file_dialogs, !file.empty() ? file.parent_path() : usual_folder(app.session));
   app.dialog.wanted = Dialog::open;
   app.file_dialogs.path.clear();
 }
 
 void open_dialog(App& app) {
-  const bool with_recent = !app.files.recent.empty();
-  if (!begin_dialog(app, app.dialog, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
-  const bool entered = path_field(app, app.file_dialogs, "open", "Name, or part of it, or a path");
+  const bool with_recent = !app.session.files.recent.empty();
+  if (!begin_dialog(app.ui, app.dialog, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
+  const bool entered = path_field(app.ui, app.file_dialogs, "open", "Name, or part of it, or a path");
   std::optional<fs::path> file;
   if (with_recent) {
-    if (const fs::path recent = recent_list(app, app); !recent.empty()) file = recent;
-    ImGui::SameLine(0, 16 * app.scale);
+    if (const fs::path recent = recent_list(app.session, app.ui); !recent.empty()) file = recent;
+    ImGui::SameLine(0, 16 * app.ui.scale);
     ImGui::BeginGroup();
   }
-  folder_line(app, app.file_dialogs, "open");
-  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
-  if (auto clicked = file_list(app, app.file_dialogs, "open", ".json", true, list_height * app.scale - line))
+  folder_line(app.ui, app.file_dialogs, "open");
+  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.ui.scale;
+  if (auto clicked =
+          file_list(app.ui, app.file_dialogs, "open", ".json", true, list_height * app.ui.scale - line))
     file = clicked;
   if (with_recent) ImGui::EndGroup();
-  if (!app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool pressed = text_button(app, "open/open", "Open", true);
+  if (!app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app.ui).bad);
+  ImGui::Dummy({0, 2 * app.ui.scale});
+  const bool pressed = text_button(app.ui, "open/open", "Open", true);
   if (entered || pressed)
     if (auto typed = entered_file(app.file_dialogs, true)) file = typed;
   ImGui::SameLine();
-  if (text_button(app, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
-  if (!app.options.scenes.empty()) {
+  if (text_button(app.ui, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (!app.session.options.scenes.empty()) {
     ImGui::SameLine();
-    if (text_button(app, "open/examples", "Examples…")) {
+    if (text_button(app.ui, "open/examples", "Examples…")) {
       close_dialog();
       show_gallery(app);
     }

@@ -52,22 +52,22 @@ void row(Session& session, Ui& ui, FileDialogState& file_dialogs, int i) {
 } // namespace
 
 void recovery_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::recover, "Unsaved work was found", 500)) return;
-  FileState& files = app.files;
-  const UiColors& colors = colors_of(app);
+  if (!begin_dialog(app.ui, app.dialog, Dialog::recover, "Unsaved work was found", 500)) return;
+  FileState& files = app.session.files;
+  const UiColors& colors = colors_of(app.ui);
   const int count = static_cast<int>(files.leftovers.size());
   if (ImGui::IsWindowAppearing()) app.file_dialogs.chosen_leftover = 0;
   paragraph("The program ended before this was saved:", colors.dim);
   ImGui::PushStyleColor(ImGuiCol_Header, colors.raised);
   for (int i = 0; i < count; ++i)
-    row(app, app, app.file_dialogs, i);
+    row(app.session, app.ui, app.file_dialogs, i);
   ImGui::PopStyleColor();
   const auto chosen = static_cast<std::size_t>(app.file_dialogs.chosen_leftover);
   if (chosen < files.leftovers.size() && files.leftovers[chosen].outdated)
     paragraph("Its file has changed since. Recovering does not touch the file, and Undo goes back to what it "
               "says.",
               colors.warn);
-  const int answer = choice_buttons(app, answers, app.file_dialogs.choice);
+  const int answer = choice_buttons(app.ui, answers, app.file_dialogs.choice);
   const bool escaped = escape_pressed();
   if (chosen < files.leftovers.size() && (answer == 0 || answer == 1)) {
     const Leftover leftover = files.leftovers[chosen];
@@ -75,7 +75,7 @@ void recovery_dialog(App& app) {
       files.leftovers.clear();
       recover(app, leftover);
     } else {
-      discard(app, leftover);
+      discard(app.session, leftover);
       app.file_dialogs.chosen_leftover = 0;
     }
   }

@@ -21,11 +21,11 @@ std::string words_of(std::string stem) {
 
 void save(App& app) {
   const fs::path file = typed_file(app.file_dialogs, ".json");
-  if (!may_replace(app, app.file_dialogs, file)) return;
+  if (!may_replace(app.session, app.file_dialogs, file)) return;
   // A mechanism that nobody has named is called as its file is.
-  if (app.document.file().empty() && app.mechanism().name == Document::empty_mechanism().name)
-    edit(app, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
-  app.file_dialogs.message = save_to(app, file);
+  if (app.session.document.file().empty() && app.session.mechanism().name == Document::empty_mechanism().name)
+    edit(app.session, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
+  app.file_dialogs.message = save_to(app.session, file);
   app.file_dialogs.replacing.clear();
   if (!app.file_dialogs.message.empty()) return;
   close_dialog();
@@ -46,24 +46,24 @@ void ask_where_to_save(const Session& session, DialogState& dialog, FileDialogSt
 }
 
 void save_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::save, "Save as", 560)) return;
-  const bool entered = path_field(app, app.file_dialogs, "save", "Name");
-  folder_line(app, app.file_dialogs, "save");
-  if (const auto clicked = file_list(app, app.file_dialogs, "save", ".json", false, 220 * app.scale))
+  if (!begin_dialog(app.ui, app.dialog, Dialog::save, "Save as", 560)) return;
+  const bool entered = path_field(app.ui, app.file_dialogs, "save", "Name");
+  folder_line(app.ui, app.file_dialogs, "save");
+  if (const auto clicked = file_list(app.ui, app.file_dialogs, "save", ".json", false, 220 * app.ui.scale))
     app.file_dialogs.path = clicked->filename().string();
   const fs::path file = typed_file(app.file_dialogs, ".json");
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
+  const bool replaces = asks_to_replace(app.ui, app.file_dialogs, file);
   if (!replaces && !app.file_dialogs.message.empty())
-    paragraph(app.file_dialogs.message, colors_of(app).bad);
-  else if (!replaces && is_example(app))
-    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
-  ImGui::Dummy({0, 2 * app.scale});
+    paragraph(app.file_dialogs.message, colors_of(app.ui).bad);
+  else if (!replaces && is_example(app.session))
+    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app.ui).dim);
+  ImGui::Dummy({0, 2 * app.ui.scale});
   const bool usable = !app.file_dialogs.path.empty();
   ImGui::BeginDisabled(!usable);
-  const bool pressed = text_button(app, "save/save", replaces ? "Replace" : "Save", true);
+  const bool pressed = text_button(app.ui, "save/save", replaces ? "Replace" : "Save", true);
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (text_button(app, "save/cancel", "Cancel") || escape_pressed()) {
+  if (text_button(app.ui, "save/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
     app.file_dialogs.then = {};
   } else if (usable && (entered || pressed)) {

@@ -20,23 +20,23 @@ std::string question(const Session& session) {
 }
 
 void save_first(App& app) {
-  if (app.document.file().empty() || is_example(app))
-    return ask_where_to_save(app, app.dialog, app.file_dialogs, {});
-  if (std::string why = save_to(app, app.document.file()); !why.empty())
-    return ask_where_to_save(app, app.dialog, app.file_dialogs, std::move(why));
+  if (app.session.document.file().empty() || is_example(app.session))
+    return ask_where_to_save(app.session, app.dialog, app.file_dialogs, {});
+  if (std::string why = save_to(app.session, app.session.document.file()); !why.empty())
+    return ask_where_to_save(app.session, app.dialog, app.file_dialogs, std::move(why));
   leave_now(app);
 }
 
 } // namespace
 
 void unsaved_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::unsaved, "Save the changes?", 440)) return;
-  const UiColors& colors = colors_of(app);
-  if (ImGui::IsWindowAppearing() && app.files.watch.differs()) app.files.conflict = true;
-  paragraph(question(app), colors.text);
-  if (app.files.conflict)
+  if (!begin_dialog(app.ui, app.dialog, Dialog::unsaved, "Save the changes?", 440)) return;
+  const UiColors& colors = colors_of(app.ui);
+  if (ImGui::IsWindowAppearing() && app.session.files.watch.differs()) app.session.files.conflict = true;
+  paragraph(question(app.session), colors.text);
+  if (app.session.files.conflict)
     paragraph("The file has changed on disk meanwhile; saving replaces what is there.", colors.warn);
-  const int answer = choice_buttons(app, unsaved_answers, app.file_dialogs.choice);
+  const int answer = choice_buttons(app.ui, unsaved_answers, app.file_dialogs.choice);
   if (answer >= 0 || escape_pressed()) close_dialog();
   if (answer == 0)
     save_first(app);

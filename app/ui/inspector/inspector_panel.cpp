@@ -31,35 +31,36 @@ std::string title_of(const Session& session) {
 void panel_title(App& app) {
   const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
-  ImGui::PushFont(app.fonts.strong);
-  ImGui::TextUnformatted(title_of(app).c_str());
+  ImGui::PushFont(app.ui.fonts.strong);
+  ImGui::TextUnformatted(title_of(app.session).c_str());
   ImGui::PopFont();
-  note_widget(app.widgets, "inspector/title");
-  if (app.selection().parts.size() != 1) return;
-  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+  note_widget(app.ui.widgets, "inspector/title");
+  if (app.session.selection().parts.size() != 1) return;
+  const float side = ImGui::GetFrameHeight() + 2 * app.ui.scale;
   ImGui::SameLine();
   ImGui::SetCursorPosX(start + width - side);
-  if (icon_button(app, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
-    later(app, [&app] { run_command(app, "edit.delete"); });
+  if (icon_button(app.ui, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
+    later(app.ui, [&app] { run_command(app, "edit.delete"); });
 }
 
 void contents(App& app) {
-  const Selection& selection = app.selection();
-  if (selection.empty()) return scene_inspector(app, app, app.tool);
+  const Selection& selection = app.session.selection();
+  if (selection.empty()) return scene_inspector(app.session, app.ui, app.tool);
   if (selection.parts.size() > 1) return several_inspector(app);
-  const PartId id = find_part(app.mechanism(), selection.parts.front());
+  const PartId id = find_part(app.session.mechanism(), selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
-  if (id.kind == PartKind::body) body_inspector(app, app, app.inspector, app.mechanism().bodies[i]);
-  if (id.kind == PartKind::joint) joint_inspector(app, app, app.mechanism().joints[i]);
-  if (id.kind == PartKind::force) force_inspector(app, app, app.mechanism().forces[i]);
+  if (id.kind == PartKind::body)
+    body_inspector(app.session, app.ui, app.inspector, app.session.mechanism().bodies[i]);
+  if (id.kind == PartKind::joint) joint_inspector(app.session, app.ui, app.session.mechanism().joints[i]);
+  if (id.kind == PartKind::force) force_inspector(app.session, app.ui, app.session.mechanism().forces[i]);
 }
 
 } // namespace
 
 void inspector_panel(App& app, const PanelRect& rect) {
   begin_panel("inspector", rect);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.ui.scale, 3 * app.ui.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.ui.scale, ImGui::GetStyle().FramePadding.y});
   panel_title(app);
   contents(app);
   ImGui::PopStyleVar(2);

@@ -60,8 +60,8 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
   try {
     for (const std::string& name : names) {
       addresses.push_back(list_of(kind) + name + "." + number.key);
-      const double found = get_parameter(app.mechanism(), addresses.back());
-      const std::string its_unit = parameter_unit(app.mechanism(), addresses.back());
+      const double found = get_parameter(app.session.mechanism(), addresses.back());
+      const std::string its_unit = parameter_unit(app.session.mechanism(), addresses.back());
       if (value && its_unit != unit) return;
       same = same && value.value_or(found) == found;
       value = found;
@@ -70,7 +70,7 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
   } catch (const SceneError&) {
     return; // not all of them have it
   }
-  quantity_row(app, app, number.label,
+  quantity_row(app.session, app.ui, number.label,
                {.name = std::string("inspector/all/") + number.key,
                 .value = value.value_or(0),
                 .unit = unit,
@@ -82,7 +82,7 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
                       if (mass)
                         for (const std::string& name : names)
                           app.inspector.given_masses[name] = {true, 0};
-                      edit(app, label + " of " + std::to_string(addresses.size()) + " parts",
+                      edit(app.session, label + " of " + std::to_string(addresses.size()) + " parts",
                            [&](Mechanism& mechanism, Selection&) {
                              for (const std::string& address : addresses)
                                set_parameter(mechanism, address, typed);
@@ -103,8 +103,8 @@ void actions(App& app) {
     if (!first && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right)
       ImGui::SameLine();
     first = false;
-    if (text_button(app, std::string("inspector/") + id, wanted.title))
-      later(app, [&app, id] { run_command(app, id); });
+    if (text_button(app.ui, std::string("inspector/") + id, wanted.title))
+      later(app.ui, [&app, id] { run_command(app, id); });
     help_on_hover(wanted.help);
   }
 }
@@ -112,7 +112,7 @@ void actions(App& app) {
 } // namespace
 
 void several_inspector(App& app) {
-  const Selection& selection = app.selection();
+  const Selection& selection = app.session.selection();
   const PartKind kind = selection.parts.front().kind;
   const bool alike =
       std::ranges::all_of(selection.parts, [&](const Part& part) { return part.kind == kind; });
@@ -122,7 +122,7 @@ void several_inspector(App& app) {
     if (kind == PartKind::force) numbers = force_numbers;
     for (const CommonNumber& number : numbers)
       common_number(app, kind, selection.names(kind), number);
-    ImGui::Dummy({0, 3 * app.scale});
+    ImGui::Dummy({0, 3 * app.ui.scale});
   }
   actions(app);
 }

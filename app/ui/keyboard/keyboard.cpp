@@ -208,18 +208,18 @@ bool take_stop_key(Ui& ui, const KeyStop& stop, const KeyPress& key) {
 }
 
 bool take_focus_key(App& app, const KeyPress& key) {
-  KeyboardState& state = app.keyboard;
+  KeyboardState& state = app.ui.keyboard;
   const KeyStop* stop = focused_stop(state);
   const bool typing = ImGui::GetIO().WantTextInput;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
-  if (key.alt || key.key == keys::alt) return take_alt(app, app.dialog, key);
-  if (key.key == keys::escape) return !typing && step_out(app, app.dialog);
+  if (key.alt || key.key == keys::alt) return take_alt(app.ui, app.dialog, key);
+  if (key.key == keys::escape) return !typing && step_out(app.ui, app.dialog);
   if (open == 0 && (key.key == keys::f6 || (key.ctrl && key.key == keys::tab))) {
-    go_to_region(app, key.shift ? -1 : 1);
+    go_to_region(app.ui, key.shift ? -1 : 1);
     return true;
   }
   // A command, but one for the field that is typed in.
-  if (typing && key.ctrl && key.key == 'L' && !focused_address(app).empty()) {
+  if (typing && key.ctrl && key.key == 'L' && !focused_address(app.ui).empty()) {
     run_command(app, "edit.pin");
     return true;
   }
@@ -227,16 +227,16 @@ bool take_focus_key(App& app, const KeyPress& key) {
     const bool clicked_row = stop && stop->use == KeyUse::row && !state.ring && open == 0;
     if (open == 0 && !typing && (!stop || clicked_row)) return false; // a command in the view
     const std::string region = stop ? region_of(*stop) : popup_region();
-    if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(app, *next, true);
+    if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(app.ui, *next, true);
     return true;
   }
   if (typing) return false;
-  if (open > 0 && take_menu_arrow(app, stop, key)) return true;
+  if (open > 0 && take_menu_arrow(app.ui, stop, key)) return true;
   if (open > 0 && !stop && is_arrow(key.key) && !app.dialog.showing) { // dialogs have their own use for them
-    if (const KeyStop* first = tab_stop(state, popup_region(), nullptr, 1)) go(app, *first, false);
+    if (const KeyStop* first = tab_stop(state, popup_region(), nullptr, 1)) go(app.ui, *first, false);
     return true;
   }
-  return has_keys(state, stop) && take_stop_key(app, *stop, key);
+  return has_keys(state, stop) && take_stop_key(app.ui, *stop, key);
 }
 
 // A popup that opens has the keys, and gives them back when it goes.
@@ -311,25 +311,25 @@ void find_another(Ui& ui) {
 } // namespace
 
 void take_keyboard(App& app) {
-  KeyboardState& state = app.keyboard;
-  state.stops = std::exchange(app.widgets.stops, {});
-  if (const auto view = app.widgets.find("view"); view != app.widgets.end()) state.view = view->second;
+  KeyboardState& state = app.ui.keyboard;
+  state.stops = std::exchange(app.ui.widgets.stops, {});
+  if (const auto view = app.ui.widgets.find("view"); view != app.ui.widgets.end()) state.view = view->second;
   imgui_compat::keep_tab();
   state.nudge = {};
   state.open_menu.clear();
   hold_characters(state);
-  follow_popups(app);
-  follow_clicks(app);
+  follow_popups(app.ui);
+  follow_clicks(app.ui);
   if (const KeyStop* typed = typed_stop(state)) {
     state.at = typed->name;
     state.region = region_of(*typed);
     state.was[state.region] = typed->name;
   }
   const KeyStop* stop = focused_stop(state);
-  app.tooltip.keyed = state.ring && state.by_key && stop && !typed_stop(state) ? stop->id : 0;
+  app.ui.tooltip.keyed = state.ring && state.by_key && stop && !typed_stop(state) ? stop->id : 0;
   // These two see to their keys themselves.
   if (app.commands.palette_showing || app.commands.shortcuts || app.tool.grab) return;
-  std::erase_if(app.keys, [&](const KeyPress& key) { return take_focus_key(app, key); });
+  std::erase_if(app.ui.keys, [&](const KeyPress& key) { return take_focus_key(app, key); });
 }
 
 void settle_keyboard(Ui& ui) {

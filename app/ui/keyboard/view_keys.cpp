@@ -39,16 +39,17 @@ bool steer_by_key(const Ui& ui, ViewState& view, const KeyPress& key, ViewSize s
 } // namespace
 
 void take_view_keys(App& app) {
-  const WidgetRect& view = app.keyboard.view;
-  if (view.to.x <= view.from.x || !app.keyboard.at.empty() || ImGui::GetIO().WantTextInput ||
+  const WidgetRect& view = app.ui.keyboard.view;
+  if (view.to.x <= view.from.x || !app.ui.keyboard.at.empty() || ImGui::GetIO().WantTextInput ||
       app.dialog.showing || app.commands.palette_showing || app.commands.shortcuts ||
       ImGui::GetCurrentContext()->OpenPopupStack.Size > 0)
     return;
   const ViewSize size{static_cast<double>(view.to.x - view.from.x),
                       static_cast<double>(view.to.y - view.from.y)};
-  std::erase_if(app.keys, [&](const KeyPress& key) {
-    if (app.mode == Mode::build && places(app.tool.tool) && take_cursor_key(app, key, size)) return true;
-    return steer_by_key(app, app.view, key, size);
+  std::erase_if(app.ui.keys, [&](const KeyPress& key) {
+    if (app.session.mode == Mode::build && places(app.tool.tool) && take_cursor_key(app, key, size))
+      return true;
+    return steer_by_key(app.ui, app.view, key, size);
   });
 }
 

@@ -65,7 +65,7 @@ bool entry_row(Ui& ui, const PaletteEntry& entry, bool chosen) {
 
 void command_palette(App& app) {
   CommandState& state = app.commands;
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const bool appearing = std::exchange(state.palette_wanted, false);
   if (appearing) {
     ImGui::OpenPopup(palette_title);
@@ -94,9 +94,9 @@ void command_palette(App& app) {
   if (ImGui::InputTextWithHint(
           "##search", "Find a command, a part or a number; a number behind its name sets it", &state.search))
     state.chosen = 0;
-  note_widget(app.widgets, "palette/search", KeyUse::none);
+  note_widget(app.ui.widgets, "palette/search", KeyUse::none);
   bool accepted = false, moved = false, left = escape_pressed();
-  for (const KeyPress& key : std::exchange(app.keys, {})) {
+  for (const KeyPress& key : std::exchange(app.ui.keys, {})) {
     if (key.key == keys::enter) accepted = true;
     if (key.key == keys::escape) left = true;
     if (key.key == keys::down || key.key == keys::up) {
@@ -109,7 +109,7 @@ void command_palette(App& app) {
   ImGui::BeginChild("found");
   for (int i = 0; i < count; ++i) {
     const PaletteEntry& entry = found[static_cast<std::size_t>(i)];
-    if (entry_row(app, entry, i == state.chosen)) wanted = &entry;
+    if (entry_row(app.ui, entry, i == state.chosen)) wanted = &entry;
     if (i == state.chosen && moved) ImGui::SetScrollHereY();
   }
   if (count == 0) ImGui::TextDisabled("No command, part or number is called that.");

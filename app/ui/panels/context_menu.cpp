@@ -26,9 +26,9 @@ void command_item(App& app, const char* id) {
   const bool on = wanted.checked && wanted.checked(app);
   ImGui::PushID(id);
   if (ImGui::MenuItem(wanted.title, key_text(wanted.key).c_str(), on, is_enabled(app, wanted)))
-    later(app, [&app, id] { run_command(app, id); });
+    later(app.ui, [&app, id] { run_command(app, id); });
   ImGui::PopID();
-  note_widget(app.widgets, std::string("view/menu/") + id);
+  note_widget(app.ui.widgets, std::string("view/menu/") + id);
   help_on_hover(wanted.help);
 }
 
@@ -116,15 +116,15 @@ void free_body_item(Session& session, Ui& ui, ViewState& view) {
 }
 
 void part_items(App& app) {
-  const Selection selection = app.selection(); // a copy, as what is chosen may change it
-  const Mechanism& mechanism = app.mechanism();
+  const Selection selection = app.session.selection(); // a copy, as what is chosen may change it
+  const Mechanism& mechanism = app.session.mechanism();
   const Part& part = selection.parts.back();
   const PartId id = find_part(mechanism, part);
   const bool alone = selection.parts.size() == 1 && id.kind != PartKind::none;
   if (alone)
-    menu_title(app, part.name, menu_kind(mechanism, id));
+    menu_title(app.ui, part.name, menu_kind(mechanism, id));
   else
-    menu_title(app, std::to_string(selection.parts.size()) + " parts", "");
+    menu_title(app.ui, std::to_string(selection.parts.size()) + " parts", "");
   if (alone) command_item(app, "edit.rename");
   command_items(app, {"edit.duplicate", "edit.copy", "edit.delete"});
   if (selection.has(PartKind::body)) command_items(app, {"edit.mirror", "edit.circular"});
@@ -132,27 +132,27 @@ void part_items(App& app) {
   for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "edit.belt"),
                                          {GearKind::rack, "edit.rack"},
                                          {GearKind::screw, "edit.screw"}})
-    if (can_gear_selected(app, kind)) command_item(app, command_id);
-  if (can_give_backlash(app)) command_item(app, "edit.backlash");
+    if (can_gear_selected(app.session, kind)) command_item(app, command_id);
+  if (can_give_backlash(app.session)) command_item(app, "edit.backlash");
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
-    drive_items(app, app, mechanism.joints[static_cast<std::size_t>(id.index)]);
-  if (alone) number_items(app, app, part);
-  if (alone && id.kind == PartKind::body) free_body_item(app, app, app.view);
+    drive_items(app.session, app.ui, mechanism.joints[static_cast<std::size_t>(id.index)]);
+  if (alone) number_items(app.session, app.ui, part);
+  if (alone && id.kind == PartKind::body) free_body_item(app.session, app.ui, app.view);
   ImGui::Separator();
   command_items(app, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
 }
 
 void view_items(App& app) {
-  menu_title(app, "View", "");
+  menu_title(app.ui, "View", "");
   command_items(app, {"view.fit", "view.front", "view.side", "view.top", "view.iso"});
   ImGui::Separator();
   command_items(app, {"view.ghost", "view.loads", "view.grid", "view.shadow", "view.show_all"});
   ImGui::Separator();
   command_item(app, "view.mode");
-  if (app.mode != Mode::build) return command_item(app, "view.play");
+  if (app.session.mode != Mode::build) return command_item(app, "view.play");
   if (ImGui::BeginMenu("Add")) {
-    note_widget(app.widgets, "view/menu/add");
+    note_widget(app.ui.widgets, "view/menu/add");
     for (const Command& each : commands())
       if (std::string_view(each.id).starts_with("insert.")) {
         if (each.separated) ImGui::Separator();
@@ -160,14 +160,15 @@ void view_items(App& app) {
       }
     ImGui::EndMenu();
   } else {
-    note_widget(app.widgets, "view/menu/add");
+    note_widget(app.ui.widgets, "view/menu/add");
   }
   command_items(app, {"edit.paste", "edit.all"});
 }
 
 // Where a key has asked for it: at the selected part, else in the middle of the view.
 ImVec2 place_for_key(App& app, const ViewInput& input) {
-  const std::vector<PartId> selected = find_parts(*shown_mechanism(app, app.tool), app.selection());
+  const std::vector<PartId> selected =
+      find_parts(*shown_mechanism(app.session, app.tool), app.session.selection());
   Bounds bounds;
   for (const Instance& instance : shown_scene(app)->solid.instances)
     if (!selected.empty() && instance.part == selected.back()) bounds.add(instance_bounds(instance));
@@ -187,15 +188,15 @@ constexpr int frames_to_settle = 2;
 void open_context_menu(App& app) {
   app.view.menu_in = frames_to_settle;
   app.view.menu_at.reset();
-  app.view.menu_of_part = !app.selection().empty();
+  app.view.menu_of_part = !app.session.selection().empty();
 }
 
 void context_menu(App& app, const ViewInput& input) {
   if (input.menu && !app.tool.grab) {
     const auto hit = part_under_cursor(app, input);
     if (hit) {
-      Part part = part_of(*shown_mechanism(app, app.tool), hit->part);
-      if (!app.selection().has(part)) select(app, {{std::move(part)}});
+      Part part = part_of(*shown_mechanism(app.session, app.tool), hit->part);
+      if (!app.session.selection().has(part)) select(app.session, {{std::move(part)}});
     }
     const ImVec2 at = ImGui::GetIO().MousePos;
     app.view.menu_in = frames_to_settle;
@@ -207,9 +208,9 @@ void context_menu(App& app, const ViewInput& input) {
                                : place_for_key(app, input));
     ImGui::OpenPopup(context_popup);
   }
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * app.scale, 8 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * app.ui.scale, 8 * app.ui.scale});
   if (ImGui::BeginPopup(context_popup)) {
-    if (app.view.menu_of_part && !app.selection().empty())
+    if (app.view.menu_of_part && !app.session.selection().empty())
       part_items(app);
     else
       view_items(app);

@@ -14,27 +14,27 @@ namespace {
 
 // What is on disk is known now and not wanted.
 void keep_mine(App& app) {
-  const std::filesystem::path file = app.document.file();
+  const std::filesystem::path file = app.session.document.file();
   try {
-    app.files.watch = FileWatch(file, read_bytes(file, 0.));
+    app.session.files.watch = FileWatch(file, read_bytes(file, 0.));
   } catch (const SceneError&) { // gone: there is nothing to be kept from
   }
-  const bool save_wanted = app.files.save_wanted;
-  app.files.conflict = app.files.save_wanted = false;
+  const bool save_wanted = app.session.files.save_wanted;
+  app.session.files.conflict = app.session.files.save_wanted = false;
   if (save_wanted) save_document(app);
 }
 
 void conflict(App& app) {
-  const UiColors& colors = colors_of(app);
-  const bool saving = app.files.save_wanted;
+  const UiColors& colors = colors_of(app.ui);
+  const bool saving = app.session.files.save_wanted;
   ImGui::AlignTextToFramePadding();
-  paragraph(std::string(icon::warning) + "  " + (saving ? "Not saved yet: " : "") + document_name(app) +
-                " has changed on disk, and there are unsaved changes here.",
+  paragraph(std::string(icon::warning) + "  " + (saving ? "Not saved yet: " : "") +
+                document_name(app.session) + " has changed on disk, and there are unsaved changes here.",
             colors.text);
-  if (text_button(app, "banner/reload", "Take the file's")) reload_document(app);
+  if (text_button(app.ui, "banner/reload", "Take the file's")) reload_document(app.session);
   help_on_hover("Read the file again. Undo brings the unsaved changes back.");
   ImGui::SameLine();
-  if (text_button(app, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true)) keep_mine(app);
+  if (text_button(app.ui, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true)) keep_mine(app);
 }
 
 void discarded(Session& session, Ui& ui, DialogState& dialog) {
@@ -52,9 +52,9 @@ void discarded(Session& session, Ui& ui, DialogState& dialog) {
 } // namespace
 
 void file_banner(App& app, const PanelRect& view) {
-  const bool both_changed = app.files.conflict && !app.document.file().empty();
-  if (app.dialog.showing || (!both_changed && app.files.aside.empty())) return;
-  const float s = app.scale;
+  const bool both_changed = app.session.files.conflict && !app.session.document.file().empty();
+  if (app.dialog.showing || (!both_changed && app.session.files.aside.empty())) return;
+  const float s = app.ui.scale;
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
   if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -67,7 +67,7 @@ void file_banner(App& app, const PanelRect& view) {
   if (both_changed)
     conflict(app);
   else
-    discarded(app, app, app.dialog);
+    discarded(app.session, app.ui, app.dialog);
   ImGui::End();
 }
 

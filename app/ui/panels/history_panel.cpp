@@ -36,11 +36,11 @@ void step_row(Session& session, Ui& ui, std::size_t i, float height) {
 } // namespace
 
 void history_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const PanelRect view = layout_of(app, screen.x, screen.y).view;
   const float height = ImGui::GetTextLineHeight() + 8 * s, bar = ImGui::GetFrameHeight();
-  const float rows = static_cast<float>(std::min<std::size_t>(app.document.steps().size(), 14));
+  const float rows = static_cast<float>(std::min<std::size_t>(app.session.document.steps().size(), 14));
   ImGui::SetNextWindowPos({view.x + view.width - 10 * s, view.y + 10 * s}, ImGuiCond_FirstUseEver, {1, 0});
   ImGui::SetNextWindowSize({std::min(250 * s, view.width), bar + rows * height + 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -50,8 +50,8 @@ void history_panel(App& app) {
   if (ImGui::Begin("History", &app.inspector.history,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
                        ImGuiWindowFlags_NoResize)) {
-    const auto count = static_cast<int>(app.document.steps().size());
-    const auto present = static_cast<int>(app.document.position());
+    const auto count = static_cast<int>(app.session.document.steps().size());
+    const auto present = static_cast<int>(app.session.document.position());
     // The present step stays in view.
     if (present != app.inspector.history_shown) {
       app.inspector.history_shown = present;
@@ -63,7 +63,7 @@ void history_panel(App& app) {
     clipper.Begin(count, height);
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        step_row(app, app, static_cast<std::size_t>(i), height);
+        step_row(app.session, app.ui, static_cast<std::size_t>(i), height);
   }
   ImGui::End();
   ImGui::PopStyleVar(4);

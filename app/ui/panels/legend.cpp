@@ -81,7 +81,7 @@ std::vector<LegendRow> pose_rows(const Session& session, const ToolState& tool, 
 } // namespace
 
 std::vector<LegendRow> legend_rows(App& app) {
-  std::vector<LegendRow> rows = pose_rows(app, app.tool, app.view);
+  std::vector<LegendRow> rows = pose_rows(app.session, app.tool, app.view);
   if (rows.empty()) return rows;
   if (const std::size_t hidden = app.view.scene.source.hidden.size())
     rows.push_back({.mark = LegendMark::note,
@@ -130,9 +130,9 @@ float legend_top(const Ui& ui, const ViewState& state, PanelState& panels, const
 void legend(App& app, const PanelRect& view, bool folds) {
   if (!folds && !app.panels.legend) return;
   const std::vector<LegendRow> rows = legend_rows(app);
-  if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+  if (rows.empty() || view.width < 260 * app.ui.scale || view.height < 160 * app.ui.scale) return;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale;
   const float line = ImGui::GetTextLineHeight(), side = std::round(0.55f * line);
   const float mark = std::round(1.4f * line);
   float width = mark; // of the widest mark
@@ -155,7 +155,7 @@ void legend(App& app, const PanelRect& view, bool folds) {
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
   ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s),
-                           std::round(legend_top(app, app.view, app.panels, view, size))},
+                           std::round(legend_top(app.ui, app.view, app.panels, view, size))},
                           ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
@@ -175,7 +175,7 @@ void legend(App& app, const PanelRect& view, bool folds) {
     else
       open_legend(app, !open);
   }
-  note_widget(app.widgets, "legend");
+  note_widget(app.ui.widgets, "legend");
   const bool lit = ImGui::IsItemHovered();
   help_on_hover(open ? "Fold the legend" : "What is drawn how");
   const ImU32 ink = packed(lit ? colors.text : colors.dim);
@@ -192,14 +192,14 @@ void legend(App& app, const PanelRect& view, bool folds) {
     const float top = at.y + std::round((line - side) / 2);
     const bool note = shown[i].mark == LegendMark::note;
     if (shown[i].mark == LegendMark::load)
-      draw_load_mark(app, shown[i], {at.x + s, at.y}, line);
+      draw_load_mark(app.ui, shown[i], {at.x + s, at.y}, line);
     else if (!note)
-      draw_mark(app, app, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
+      draw_mark(app.session, app.ui, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
     list.AddText({at.x + (note ? s : width + 7 * s), at.y}, packed(note ? colors.dim : colors.text),
                  shown[i].words.c_str());
     ImGui::Dummy({room, line});
     if (!shown[i].help.empty()) help_on_hover(shown[i].help.c_str());
-    note_widget(app.widgets, "legend/" + std::to_string(i));
+    note_widget(app.ui.widgets, "legend/" + std::to_string(i));
   }
   ImGui::End();
   ImGui::PopStyleVar(5);

@@ -160,16 +160,16 @@ bool load_tooltip(App& app, const ViewInput& input) {
   if (!hit) return false;
   const Load& load = scene.loads[scene.arrows.arrows[scene.arrows.arrow_of[hit->instance]].load];
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(app.ui.fonts.strong);
   ImGui::TextUnformatted(long_load_name(*shown.mechanism, load).c_str());
   ImGui::PopFont();
   ImGui::SameLine();
   ImGui::TextUnformatted(load_value_text(load).c_str());
-  note_widget(app.widgets, "load/pointed");
+  note_widget(app.ui.widgets, "load/pointed");
   ImGui::TextDisabled("%s", load_components_text(load).c_str());
-  if (is_one_of_many(app.answer.solution, load_part_name(*shown.mechanism, load), load)) {
+  if (is_one_of_many(app.session.answer.solution, load_part_name(*shown.mechanism, load), load)) {
     ImGui::TextUnformatted("The loops hold more than they need: the smallest of many.");
-    note_widget(app.widgets, "load/nonunique");
+    note_widget(app.ui.widgets, "load/nonunique");
   }
   ImGui::EndTooltip();
   return true;

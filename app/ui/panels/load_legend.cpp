@@ -87,7 +87,7 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
   const auto note = [&](std::string words) {
     rows.push_back({.mark = LegendMark::note, .words = std::move(words)});
   };
-  if (const std::string missing = loads_missing(app, app.tool, app.view); !missing.empty())
+  if (const std::string missing = loads_missing(app.session, app.tool, app.view); !missing.empty())
     return note(missing);
   const ShownScene& shown = app.view.scene;
   if (!shown.scene || !shown.source.loads) return;
@@ -102,7 +102,7 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
                               LoadKind::applied, LoadKind::air, LoadKind::inertia})
     for (const bool moment : {false, true})
       if (scene.arrows.scales.largest(kind, moment) > 0)
-        rows.push_back(load_row(app, scene.arrows.scales, kind, moment, pixel, diagram));
+        rows.push_back(load_row(app.ui, scene.arrows.scales, kind, moment, pixel, diagram));
   if (rows.size() == before)
     note("No forces act");
   else if (!diagram)

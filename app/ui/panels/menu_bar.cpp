@@ -18,16 +18,16 @@ constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{
                            Menu{"Help", "help."}};
 
 void recent_menu(App& app) {
-  const auto& files = app.files.recent;
+  const auto& files = app.session.files.recent;
   if (files.empty()) return;
   const bool open = ImGui::BeginMenu("Open recent");
-  if (!open) note_widget(app.widgets, "menu/recent");
+  if (!open) note_widget(app.ui.widgets, "menu/recent");
   if (!open) return;
   std::filesystem::path chosen;
   for (const std::filesystem::path& file : files) {
     ImGui::PushID(file.c_str());
     if (ImGui::MenuItem(file.filename().c_str(), nullptr)) chosen = file;
-    note_widget(app.widgets, "menu/recent/" + file.string());
+    note_widget(app.ui.widgets, "menu/recent/" + file.string());
     help_on_hover(file.c_str());
     ImGui::PopID();
   }
@@ -45,7 +45,7 @@ void items(App& app, const Menu& menu) {
                         is_enabled(app, command)))
       command.run(app);
     ImGui::PopID();
-    note_widget(app.widgets, std::string("menu/") + command.id);
+    note_widget(app.ui.widgets, std::string("menu/") + command.id);
     help_on_hover(command.help);
     if (command.id == std::string_view("file.open")) recent_menu(app);
   }
@@ -66,9 +66,9 @@ std::span<const char* const> menu_titles() {
 void menu_bar(App& app) {
   if (!ImGui::BeginMenuBar()) return;
   for (const Menu& menu : menus) {
-    if (app.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
+    if (app.ui.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
     const bool open = ImGui::BeginMenu(menu.title);
-    note_widget(app.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
+    note_widget(app.ui.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
     if (!open) continue;
     items(app, menu);
     ImGui::EndMenu();

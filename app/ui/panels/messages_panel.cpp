@@ -41,7 +41,7 @@ void message_row(Ui& ui, NoticeLog& log, std::size_t i, float wrap) {
 } // namespace
 
 void messages_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const PanelRect view = layout_of(app, screen.x, screen.y).view;
   const ImVec2 size(std::min(460 * s, view.width - 20 * s), std::min(300 * s, view.height - 20 * s));
@@ -52,10 +52,10 @@ void messages_panel(App& app) {
   if (ImGui::Begin("Messages", &app.notice_log.showing,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     const float wrap = ImGui::GetContentRegionAvail().x;
-    if (app.notice_log.past.empty()) paragraph("Nothing has been told yet.", colors_of(app).dim);
+    if (app.notice_log.past.empty()) paragraph("Nothing has been told yet.", colors_of(app.ui).dim);
     for (std::size_t i = app.notice_log.past.size(); i-- > 0;)
-      message_row(app, app.notice_log, i, wrap);
-    note_widget(app.widgets, "messages", KeyUse::none);
+      message_row(app.ui, app.notice_log, i, wrap);
+    note_widget(app.ui.widgets, "messages", KeyUse::none);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);

@@ -60,7 +60,7 @@ struct Outline {
   std::map<Part, std::size_t, PartOrder> mistakes;
   float height = 0;
 
-  const Mechanism& mechanism() const { return app.mechanism(); }
+  const Mechanism& mechanism() const { return app.session.mechanism(); }
   const OutlineRows& kept() const { return app.inspector.rows; }
 };
 
@@ -118,7 +118,7 @@ void keep_rows(const Session& session, const Ui& ui, InspectorState& inspector) 
 void choose(Outline& outline, const Part& part) {
   App& app = outline.app;
   const ImGuiIO& io = ImGui::GetIO();
-  Selection selection = app.selection();
+  Selection selection = app.session.selection();
   InspectorState& state = app.inspector;
   if (io.KeyShift && state.anchor.kind != PartKind::none) {
     const PartId anchor = find_part(outline.mechanism(), state.anchor);
@@ -145,19 +145,19 @@ void choose(Outline& outline, const Part& part) {
     state.anchor = part;
   }
   state.revealed = part; // it is under the hand
-  later(app, [&app, selection] { select(app, selection); });
+  later(app.ui, [&app, selection] { select(app.session, selection); });
 }
 
 void row_menu(App& app, const Part& part) {
   if (!ImGui::BeginPopupContextItem()) return;
-  if (ImGui::IsWindowAppearing() && !app.selection().has(part))
-    later(app, [&app, part] { select(app, {{part}}); });
+  if (ImGui::IsWindowAppearing() && !app.session.selection().has(part))
+    later(app.ui, [&app, part] { select(app.session, {{part}}); });
   for (const char* id : {"edit.rename", "edit.duplicate", "edit.mirror", "edit.circular", "edit.delete"}) {
     const Command& wanted = command(id);
     const std::string keys = key_text(wanted.key);
     if (ImGui::MenuItem(wanted.title, keys.c_str(), false, is_enabled(app, wanted)))
-      later(app, [&app, id] { run_command(app, id); });
-    note_widget(app.widgets, std::string("outline/menu/") + id);
+      later(app.ui, [&app, id] { run_command(app, id); });
+    note_widget(app.ui.widgets, std::string("outline/menu/") + id);
     help_on_hover(wanted.help);
   }
   ImGui::EndPopup();
@@ -166,9 +166,9 @@ void row_menu(App& app, const Part& part) {
 // The body's colour, or what kind of part it is.
 void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
   const App& app = outline.app;
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(app.ui);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float r = 5 * app.scale;
+  const float r = 5 * app.ui.scale;
   const ImVec2 middle(at.x + r, at.y);
   const auto i = static_cast<std::size_t>(id.index);
   if (id.kind == PartKind::body) {
@@ -183,23 +183,24 @@ void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
     const Joint& joint = outline.mechanism().joints[i];
     const bool driven =
         std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); });
-    list.AddCircle(middle, r - app.scale, packed(driven ? colors.accent : colors.dim), 0, 2 * app.scale);
-    if (driven) list.AddCircleFilled(middle, 2 * app.scale, packed(colors.accent));
+    list.AddCircle(middle, r - app.ui.scale, packed(driven ? colors.accent : colors.dim), 0,
+                   2 * app.ui.scale);
+    if (driven) list.AddCircleFilled(middle, 2 * app.ui.scale, packed(colors.accent));
   } else {
-    const float h = 4 * app.scale;
+    const float h = 4 * app.ui.scale;
     list.AddLine({middle.x - r, middle.y + h}, {middle.x + r, middle.y - h}, packed(colors.dim),
-                 2 * app.scale);
-    list.AddTriangleFilled({middle.x + r, middle.y - h}, {middle.x + r - 5 * app.scale, middle.y - h},
-                           {middle.x + r, middle.y - h + 5 * app.scale}, packed(colors.dim));
+                 2 * app.ui.scale);
+    list.AddTriangleFilled({middle.x + r, middle.y - h}, {middle.x + r - 5 * app.ui.scale, middle.y - h},
+                           {middle.x + r, middle.y - h + 5 * app.ui.scale}, packed(colors.dim));
   }
 }
 
 void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, float width, bool hovered) {
   App& app = outline.app;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, height = outline.height;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale, height = outline.height;
   const ImVec2 to(from.x + width, from.y + height);
-  const bool selected = app.selection().has(part), pointed = app.view.hovered == id;
+  const bool selected = app.session.selection().has(part), pointed = app.view.hovered == id;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImVec4 back = colors.accent;
   back.w = selected ? 0.22f : 0;
@@ -213,7 +214,7 @@ void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, 
   if (const auto mistake = outline.mistakes.find(part); mistake != outline.mistakes.end()) {
     right -= ImGui::CalcTextSize(icon::warning).x;
     list.AddText({right, y}, packed(colors.warn), icon::warning);
-    if (hovered) ImGui::SetTooltip("%s", words_for(app.mistakes[mistake->second]).c_str());
+    if (hovered) ImGui::SetTooltip("%s", words_for(app.session.mistakes[mistake->second]).c_str());
     right -= 6 * s;
   }
   if (std::ranges::find(app.view.hidden, part) != app.view.hidden.end()) {
@@ -241,25 +242,25 @@ void part_row(Outline& outline, PartId id) {
   const std::string widget = widget_of(part), field = widget + "/name";
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
-  if (typing_in(app, field)) {
-    draw_sign(outline, id, {from.x + 10 * app.scale, from.y + outline.height / 2});
-    ImGui::SetCursorScreenPos({from.x + 22 * app.scale, from.y});
+  if (typing_in(app.ui, field)) {
+    draw_sign(outline, id, {from.x + 10 * app.ui.scale, from.y + outline.height / 2});
+    ImGui::SetCursorScreenPos({from.x + 22 * app.ui.scale, from.y});
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        {6 * app.scale, (outline.height - ImGui::GetFontSize()) / 2});
-    name_field(app, app, field, part, width - 22 * app.scale);
+                        {6 * app.ui.scale, (outline.height - ImGui::GetFontSize()) / 2});
+    name_field(app.session, app.ui, field, part, width - 22 * app.ui.scale);
     ImGui::PopStyleVar();
     ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
     return;
   }
   ImGui::PushID(id.index);
   if (ImGui::InvisibleButton("row", {width, outline.height})) choose(outline, part);
-  note_widget(app.widgets, widget, KeyUse::row);
-  if (app.selection().has(part)) mark_chosen(app.widgets);
+  note_widget(app.ui.widgets, widget, KeyUse::row);
+  if (app.session.selection().has(part)) mark_chosen(app.ui.widgets);
   const bool hovered = ImGui::IsItemHovered();
   if (hovered) app.view.hovered = id;
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
-    later(app, [&app, field, name = part.name] { start_typing(app, app, field, name); });
-  if (takes_menu_key(app, widget)) ImGui::OpenPopup(ImGui::GetItemID());
+    later(app.ui, [&app, field, name = part.name] { start_typing(app.session, app.ui, field, name); });
+  if (takes_menu_key(app.ui, widget)) ImGui::OpenPopup(ImGui::GetItemID());
   row_menu(app, part);
   ImGui::PopID();
   draw_row(outline, id, part, from, width, hovered);
@@ -273,10 +274,11 @@ void part_section(Outline& outline, std::size_t section) {
   if (count == 0) return;
   const std::vector<PartId>& shown = outline.kept().listed[section];
   const std::string title = std::string(words.title) + "   " + std::to_string(count);
-  const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
+  const Part& last = app.session.selection().empty() ? Part{} : app.session.selection().parts.back();
   const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
-  if (reveal) app.sections.open[std::string("outline/") + words.list] = true;
-  if (!inspector_section(app, app, std::string("outline/") + words.list, title.c_str(), true)) return;
+  if (reveal) app.ui.sections.open[std::string("outline/") + words.list] = true;
+  if (!inspector_section(app.session, app.ui, std::string("outline/") + words.list, title.c_str(), true))
+    return;
   outline.open[section] = true;
   if (reveal) {
     const auto row = std::ranges::find(shown, find_part(outline.mechanism(), last));
@@ -318,40 +320,40 @@ void what_is_missing(Session& session, Ui& ui, InspectorState& inspector) {
 } // namespace
 
 void start_rename(App& app) {
-  if (app.selection().parts.size() != 1) return;
-  const Part& part = app.selection().parts.front();
-  const bool listed = app.mode == Mode::build;
+  if (app.session.selection().parts.size() != 1) return;
+  const Part& part = app.session.selection().parts.front();
+  const bool listed = app.session.mode == Mode::build;
   app.inspector.revealed = {}; // bring its row into view
-  start_typing(app, app, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
+  start_typing(app.session, app.ui, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
 }
 
 void outline_panel(App& app, const PanelRect& rect) {
   begin_panel("outline", rect);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
-  search_field(app, app, app.inspector);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.ui.scale, 0});
+  search_field(app.session, app.ui, app.inspector);
   // What is missing stays in view below the list.
-  const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
+  const float footer = app.session.mistakes.empty() ? 0 : app.inspector.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;
   ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false);
-  keep_rows(app, app, app.inspector);
+  keep_rows(app.session, app.ui, app.inspector);
   Outline outline{app, {}, {}, 0};
-  outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
-  for (std::size_t i = 0; i < app.mistakes.size(); ++i)
-    if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
+  outline.height = ImGui::GetTextLineHeight() + 8 * app.ui.scale;
+  for (std::size_t i = 0; i < app.session.mistakes.size(); ++i)
+    if (Part part = part_of(app.session.mechanism(), app.session.mistakes[i]); part.kind != PartKind::none)
       outline.mistakes.emplace(std::move(part), i);
   for (std::size_t i = 0; i < outline_sections.size(); ++i)
     part_section(outline, i);
-  const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
-  if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);
+  const bool none = app.session.mechanism().bodies.empty() && app.session.mechanism().joints.empty();
+  if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app.ui).dim);
   const bool found =
       std::ranges::any_of(outline.kept().listed, [](const auto& rows) { return !rows.empty(); });
   if (!none && !found && !app.inspector.search.empty())
-    paragraph("No part is called so.", colors_of(app).dim);
+    paragraph("No part is called so.", colors_of(app.ui).dim);
   // A click beside the rows selects nothing.
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
-    later(app, [&app] { select(app, {}); });
+    later(app.ui, [&app] { select(app.session, {}); });
   ImGui::EndChild();
-  if (!none && !app.mistakes.empty()) what_is_missing(app, app, app.inspector);
+  if (!none && !app.session.mistakes.empty()) what_is_missing(app.session, app.ui, app.inspector);
   ImGui::PopStyleVar();
   ImGui::End();
 }

@@ -148,7 +148,7 @@ Part part_of_address(const std::string& address) {
 }
 
 void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*shown_mechanism(app, app.tool), part);
+  const PartId id = find_part(*shown_mechanism(app.session, app.tool), part);
   const SceneList& scene = shown_scene(app)->solid;
   Bounds bounds;
   for (const Instance& instance : scene.instances)
@@ -159,7 +159,7 @@ void fit_part(App& app, const Part& part) {
   const Vec3 middle = bounds.center();
   bounds.add(Vec3(middle - around));
   bounds.add(Vec3(middle + around));
-  const WidgetRect& view = app.keyboard.view;
+  const WidgetRect& view = app.ui.keyboard.view;
   if (view.to.x <= view.from.x) return;
   app.view.camera.fit(
       bounds, {static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)});
@@ -167,19 +167,19 @@ void fit_part(App& app, const Part& part) {
 }
 
 void go_to_number(App& app, const std::string& address) {
-  const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
-  if (control != app.parameters.end()) {
-    set_mode(app, Mode::explore);
+  const auto control = std::ranges::find(app.session.parameters, address, &ParameterControl::address);
+  if (control != app.session.parameters.end()) {
+    set_mode(app.session, Mode::explore);
     PanelState& panels = app.panels;
     bool* sections[] = {&panels.pinned, &panels.drives, &panels.springs, &panels.dampers};
     *sections[static_cast<std::size_t>(control->group)] = true;
   } else {
     const Part part = part_of_address(address);
-    select(app, part.kind == PartKind::none ? Selection{} : Selection{{part}});
+    select(app.session, part.kind == PartKind::none ? Selection{} : Selection{{part}});
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    if (layout_of(app, screen.x, screen.y).inspector.width <= 0) set_mode(app, Mode::build);
+    if (layout_of(app, screen.x, screen.y).inspector.width <= 0) set_mode(app.session, Mode::build);
   }
-  seek_number(app, address);
+  seek_number(app.ui, address);
 }
 
 } // namespace
@@ -187,20 +187,20 @@ void go_to_number(App& app, const std::string& address) {
 const std::vector<PaletteEntry>& palette_entries(App& app) {
   if (!app.commands.index) app.commands.index = std::make_shared<PaletteIndex>();
   PaletteIndex& index = *app.commands.index;
-  read_mechanism(app, index);
+  read_mechanism(app.session, index);
   const std::string& search = app.commands.search;
   if (index.fresh && index.search == search) return index.found;
   std::vector<Ranked> ranked;
   for (const Command& command : commands())
-    try_entry(app, app.commands, search, command_entry(app, command), ranked);
+    try_entry(app.session, app.commands, search, command_entry(app, command), ranked);
   for (const PaletteEntry& entry : index.entries)
     if (!starts_empty(search) || recent_bonus(app.commands, entry.name) > 0)
-      try_entry(app, app.commands, search, entry, ranked);
+      try_entry(app.session, app.commands, search, entry, ranked);
   std::ranges::stable_sort(ranked, [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
   if (ranked.size() > most_entries) ranked.resize(most_entries);
   index.found.clear();
   for (Ranked& each : ranked) {
-    if (!each.entry.address.empty()) describe_number(app, each.entry);
+    if (!each.entry.address.empty()) describe_number(app.session, each.entry);
     index.found.push_back(std::move(each.entry));
   }
   index.search = search;
@@ -216,13 +216,14 @@ void use_palette_entry(App& app, const PaletteEntry& chosen) {
   if (recent.size() > most_recent) recent.resize(most_recent);
   if (entry.command) return entry.command->run(app);
   if (entry.part.kind != PartKind::none) {
-    select(app, {{entry.part}});
+    select(app.session, {{entry.part}});
     return fit_part(app, entry.part);
   }
   if (!entry.value) return go_to_number(app, entry.address);
-  change_parameter(app, entry.address, *entry.value);
-  app.notice =
-      entry.title + ": " + number_words(app, parameter_unit(app.mechanism(), entry.address), *entry.value);
+  change_parameter(app.session, entry.address, *entry.value);
+  app.session.notice =
+      entry.title + ": " +
+      number_words(app.session, parameter_unit(app.session.mechanism(), entry.address), *entry.value);
 }
 
 } // namespace flyball

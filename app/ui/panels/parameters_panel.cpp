@@ -202,53 +202,57 @@ bool sliders_moved(const Session& session) {
 }
 
 void group(App& app, ParameterGroup which, const char* name, const char* title, bool& open) {
-  const auto [first, last] = std::ranges::equal_range(app.parameters, which, {}, &ParameterControl::group);
-  if (first == last || !section(app, name, title, open)) return;
+  const auto [first, last] =
+      std::ranges::equal_range(app.session.parameters, which, {}, &ParameterControl::group);
+  if (first == last || !section(app.ui, name, title, open)) return;
   if (const auto sought = std::find_if(
-          first, last, [&](const ParameterControl& each) { return each.address == app.keyboard.sought; });
+          first, last, [&](const ParameterControl& each) { return each.address == app.ui.keyboard.sought; });
       sought != last) {
-    const float y = ImGui::GetCursorPosY() + static_cast<float>(sought - first) * row_height(app, which);
+    const float y = ImGui::GetCursorPosY() + static_cast<float>(sought - first) * row_height(app.ui, which);
     if (const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
-        y < top || y + row_height(app, which) > top + room)
+        y < top || y + row_height(app.ui, which) > top + room)
       ImGui::SetScrollY(std::max(y - room / 2, 0.f));
   }
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(last - first), row_height(app, which));
+  clipper.Begin(static_cast<int>(last - first), row_height(app.ui, which));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      parameter(app, app, app.panels, first[i]);
-  ImGui::Dummy({0, 4 * app.scale});
+      parameter(app.session, app.ui, app.panels, first[i]);
+  ImGui::Dummy({0, 4 * app.ui.scale});
 }
 
 } // namespace
 
 void parameters_panel(App& app, const PanelRect& rect) {
   begin_panel("parameters", rect);
-  if (!app.parameters.empty()) {
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
+  if (!app.session.parameters.empty()) {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.ui.scale, 3 * app.ui.scale});
     group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
     group(app, ParameterGroup::named, "parameters/named", "Parameters", app.panels.named);
-    const bool speeds = std::ranges::all_of(app.parameters, [](const ParameterControl& control) {
+    const bool speeds = std::ranges::all_of(app.session.parameters, [](const ParameterControl& control) {
       return control.group != ParameterGroup::drives || told_by_title(control);
     });
     group(app, ParameterGroup::drives, "parameters/drives", speeds ? "Drive speeds" : "Drives",
           app.panels.drives);
     group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
-    if (app.motion.on) // dampers move no steady state
+    if (app.session.motion.on) // dampers move no steady state
       group(app, ParameterGroup::dampers, "parameters/dampers", "Dampers", app.panels.dampers);
     ImGui::PopStyleVar();
-    if (text_button(app, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(app);
+    if (text_button(app.ui, "parameters/restart", "Restart from drawn pose"))
+      solve_from_drawn_pose(app.session);
     help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead "
                   "elsewhere.");
-    if (sliders_moved(app)) {
+    if (sliders_moved(app.session)) {
       ImGui::SameLine();
-      if (text_button(app, "parameters/reset", "Reset all")) later(app, [&app] { drop_explored(app); });
+      if (text_button(app.ui, "parameters/reset", "Reset all"))
+        later(app.ui, [&app] { drop_explored(app.session); });
     }
-    app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
+    app.panels.parameters_height =
+        (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.ui.scale;
   } else {
     paragraph("Drive speeds, spring constants and named parameters get a slider here, and every number that "
               "is pinned.",
-              colors_of(app).dim);
+              colors_of(app.ui).dim);
   }
   ImGui::End();
 }

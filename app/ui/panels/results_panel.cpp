@@ -106,8 +106,8 @@ void refusal(Session& session, Ui& ui) {
 PanelRect below_title(App& app, const PanelRect& rect) {
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   if (layout_of(app, window.x, window.y).inspector.height <= 0) return rect;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = ImGui::GetStyle().WindowPadding.x;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale, pad = ImGui::GetStyle().WindowPadding.x;
   PanelRect title = rect, rest = rect;
   title.height = std::min(std::round(ImGui::GetFontSize() + 9 * s), rect.height);
   rest.y += title.height;
@@ -118,10 +118,10 @@ PanelRect below_title(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({title.x, title.y}, {title.x + title.width, title.y + title.height},
                      packed(colors.raised));
-  list.AddText(app.fonts.strong, app.fonts.strong->FontSize,
-               {title.x + pad, std::round(title.y + (title.height - app.fonts.strong->FontSize) / 2)},
+  list.AddText(app.ui.fonts.strong, app.ui.fonts.strong->FontSize,
+               {title.x + pad, std::round(title.y + (title.height - app.ui.fonts.strong->FontSize) / 2)},
                packed(colors.text), "Results");
-  app.widgets["results/title"] = {{title.x, title.y}, {title.x + title.width, title.y + title.height}};
+  app.ui.widgets["results/title"] = {{title.x, title.y}, {title.x + title.width, title.y + title.height}};
   ImGui::End();
   return rest;
 }
@@ -160,8 +160,8 @@ void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& too
 
 void results_panel(App& app, const PanelRect& rect) {
   begin_panel("results", below_title(app, rect));
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
-  contents(app, app, app.panels, app.tool);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.ui.scale, 4 * app.ui.scale});
+  contents(app.session, app.ui, app.panels, app.tool);
   ImGui::PopStyleVar();
   ImGui::End();
 }

@@ -84,7 +84,7 @@ void shortcut_sheet(App& app) {
     return;
   }
   if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(1180 * s, window.x - 20 * s), std::min(670 * s, window.y - 20 * s)});
@@ -105,31 +105,31 @@ void shortcut_sheet(App& app) {
   const int columns = std::clamp(static_cast<int>(ImGui::GetContentRegionAvail().x / (200 * s)), 1, 4);
   if (ImGui::BeginTable("columns", columns, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
-    lines(app, "File", "file.");
-    lines(app, "Insert", "insert.");
+    lines(app.ui, "File", "file.");
+    lines(app.ui, "Insert", "insert.");
     ImGui::TableNextColumn();
-    lines(app, "Edit", "edit.");
-    lines(app, "Study", "study.");
-    lines(app, "Help", "help.");
+    lines(app.ui, "Edit", "edit.");
+    lines(app.ui, "Study", "study.");
+    lines(app.ui, "Help", "help.");
     ImGui::TableNextColumn();
-    lines(app, "View", "view.");
+    lines(app.ui, "View", "view.");
     ImGui::TableNextColumn();
-    heading(app, "Mouse in the view");
+    heading(app.ui, "Mouse in the view");
     if (begin_lines("mouse")) {
       for (const NavigationLine& entry : navigation_lines(app.navigation))
-        line(app, entry.keys, entry.does);
+        line(app.ui, entry.keys, entry.does);
       for (const NavigationLine& entry : mouse_lines)
-        line(app, entry.keys, entry.does);
+        line(app.ui, entry.keys, entry.does);
       ImGui::EndTable();
     }
-    fixed_lines(app, "Without a mouse", by_keys);
+    fixed_lines(app.ui, "Without a mouse", by_keys);
     ImGui::EndTable();
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
   const bool beside =
       ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
-  if (text_button(app, "shortcuts/close", "Close", true) || beside) app.commands.shortcuts = false;
+  if (text_button(app.ui, "shortcuts/close", "Close", true) || beside) app.commands.shortcuts = false;
   if (!app.commands.shortcuts) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }

@@ -62,11 +62,11 @@ void command_button(App& app, const char* id, const char* icon, bool show_state 
       (wanted.label ? label_of(app, wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
   ImGui::BeginDisabled(!is_enabled(app, wanted));
   const bool on = show_state && wanted.checked && wanted.checked(app);
-  if (icon_button(app, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
-                  on))
+  if (icon_button(app.ui, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon,
+                  help.c_str(), on))
     wanted.run(app);
   ImGui::EndDisabled();
-  next(app);
+  next(app.ui);
 }
 
 void file_buttons(App& app) {
@@ -74,7 +74,7 @@ void file_buttons(App& app) {
   command_button(app, "file.open", icon::folder_open);
   command_button(app, "file.save", icon::save);
   command_button(app, "file.export", icon::camera);
-  space_between_groups(app);
+  space_between_groups(app.ui);
   command_button(app, "edit.undo", icon::undo);
   command_button(app, "edit.redo", icon::redo);
 }
@@ -117,16 +117,16 @@ void play_buttons(Session& session, Ui& ui) {
 
 void direction_buttons(App& app) {
   for (const Direction& direction : directions) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.ui.scale, 5 * app.ui.scale});
     ImGui::PushID(direction.name);
     if (ImGui::Button(direction.text)) look_from(app.view, direction.azimuth, direction.elevation);
     ImGui::PopID();
     ImGui::PopStyleVar();
-    note_widget(app.widgets, direction.name);
+    note_widget(app.ui.widgets, direction.name);
     help_on_hover(direction.help);
-    next(app);
+    next(app.ui);
   }
-  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(app);
+  if (icon_button(app.ui, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(app);
 }
 
 // Whether these words have room as buttons beside what ends the bar; without it they are in the menu alone.
@@ -176,42 +176,43 @@ void factor_combo(Session& session, Ui& ui, const char* name, float width) {
 }
 
 void toolbar_panel(App& app, const PanelRect& rect) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 7 * s});
   begin_panel("toolbar", rect,
               ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_MenuBar);
   ImGui::PopStyleVar();
   menu_bar(app);
   file_buttons(app);
-  space_between_groups(app);
-  mode_switch(app, app);
-  space_between_groups(app);
-  ImGui::BeginDisabled(app.mode != Mode::explore); // what follows stays where it is
-  play_buttons(app, app);
+  space_between_groups(app.ui);
+  mode_switch(app.session, app.ui);
+  space_between_groups(app.ui);
+  ImGui::BeginDisabled(app.session.mode != Mode::explore); // what follows stays where it is
+  play_buttons(app.session, app.ui);
   ImGui::EndDisabled();
-  space_between_groups(app);
+  space_between_groups(app.ui);
   const float fit = ImGui::GetFrameHeight() + 2 * s + 17 * s; // the button, and the space behind it
-  if (have_room(app, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
+  if (have_room(app.ui, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
     direction_buttons(app);
-    space_between_groups(app);
-    if (have_room(app, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
-      toggle(app, "toolbar/ghost", "Ghost",
-             app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
+    space_between_groups(app.ui);
+    if (have_room(app.ui, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
+      toggle(app.ui, "toolbar/ghost", "Ghost",
+             app.session.mode == Mode::build ? "Where it settles, in grey (G)"
+                                             : "The drawn pose, in grey (G)",
              app.view.ghost);
-      toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
-      toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+      toggle(app.ui, "toolbar/grid", "Grid", "The floor", app.view.grid);
+      toggle(app.ui, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
     }
   }
   const float side = ImGui::GetFrameHeight() + 2 * s;
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
-  const bool light = app.theme == Theme::light;
-  if (icon_button(app, "toolbar/theme", light ? icon::moon : icon::sun,
+  const bool light = app.ui.theme == Theme::light;
+  if (icon_button(app.ui, "toolbar/theme", light ? icon::moon : icon::sun,
                   light ? "Dark colours" : "Light colours"))
     choose_theme(app, light ? ThemeChoice::dark : ThemeChoice::light);
   const float line = rect.height - std::max(1.f, std::round(s));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
-  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app.ui).border));
   list.PopClipRect();
   ImGui::End();
 }

@@ -13,7 +13,7 @@ void view_alone(App& app, const PanelRect& rect) {
   ImGui::PopStyleVar();
   ImGui::GetWindowDrawList()->AddImage(imgui_compat::texture_id(app.view.texture), {rect.x, rect.y},
                                        {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
-  load_labels(app, app.view, rect);
+  load_labels(app.ui, app.view, rect);
   ImGui::End();
   legend(app, rect, false);
 }

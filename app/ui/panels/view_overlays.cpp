@@ -49,7 +49,7 @@ WidgetRect draw_line(const Ui& ui, const PanelRect& rect, const std::string& tex
 void part_label(App& app) {
   const PartId part = app.view.hovered;
   if (places(app.tool.tool)) return;
-  const Mechanism& m = *shown_mechanism(app, app.tool);
+  const Mechanism& m = *shown_mechanism(app.session, app.tool);
   const auto i = static_cast<std::size_t>(part.index);
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
@@ -66,7 +66,7 @@ void part_label(App& app) {
     return;
   }
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(app.ui.fonts.strong);
   ImGui::TextUnformatted(name.c_str());
   ImGui::PopFont();
   ImGui::SameLine();
@@ -112,17 +112,17 @@ void motion_caption(const Session& session, const Ui& ui, const PanelRect& rect)
 }
 
 void view_lines(App& app, const PanelRect& rect) {
-  const UiColors& colors = colors_of(app);
-  float y = rect.y + rect.height - 42 * app.scale;
-  draw_line(app, rect, tool_hint(app, app.inspector, app.tool), colors.text, y);
+  const UiColors& colors = colors_of(app.ui);
+  float y = rect.y + rect.height - 42 * app.ui.scale;
+  draw_line(app.ui, rect, tool_hint(app.session, app.inspector, app.tool), colors.text, y);
   app.view.lines_top = y;
-  keep_notice(app, app.notice_log);
+  keep_notice(app.session, app.notice_log);
   app.notice_age.pointed = false;
-  if (is_error(app) || app.notice.empty()) return;
-  const WidgetRect plate =
-      draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app, app.notice_age));
+  if (is_error(app.session) || app.session.notice.empty()) return;
+  const WidgetRect plate = draw_line(app.ui, rect, app.session.notice, colors.dim, y,
+                                     notice_strength(app.session, app.notice_age));
   app.notice_age.pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(plate.from, plate.to);
-  app.widgets["notice"] = plate;
+  app.ui.widgets["notice"] = plate;
 }
 
 void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect& rect) {
@@ -204,9 +204,9 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
 }
 
 void problem_banner(App& app, const PanelRect& rect) {
-  if (app.problem.empty()) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = std::max(rect.width - 48 * s, 40 * s);
+  if (app.session.problem.empty()) return;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale, width = std::max(rect.width - 48 * s, 40 * s);
   ImGui::SetNextWindowPos({rect.x + 24 * s, rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -216,15 +216,15 @@ void problem_banner(App& app, const PanelRect& rect) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(app.ui.fonts.strong);
   ImGui::TextColored(colors.bad, "%s  The scene cannot be opened", icon::warning);
   ImGui::PopFont();
-  paragraph(app.problem, colors.text);
+  paragraph(app.session.problem, colors.text);
   ImGui::Dummy({0, 2 * s});
-  if (text_button(app, "problem/close", "Keep the open scene")) app.problem.clear();
+  if (text_button(app.ui, "problem/close", "Keep the open scene")) app.session.problem.clear();
   ImGui::SameLine();
-  if (text_button(app, "problem/open", "Open another…")) {
-    app.problem.clear();
+  if (text_button(app.ui, "problem/open", "Open another…")) {
+    app.session.problem.clear();
     show_open_dialog(app);
   }
   ImGui::End();

@@ -36,7 +36,7 @@ void use_tool(App& app, const ViewInput& input) {
   case Tool::torque:
   case Tool::drag:
   case Tool::vane: return use_forces(app, input);
-  case Tool::point: return pick_point(app, app.tool, input);
+  case Tool::point: return pick_point(app.session, app.tool, input);
   }
 }
 
@@ -49,35 +49,35 @@ void viewport_panel(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddImage(imgui_compat::texture_id(app.view.texture), {rect.x, rect.y},
                 {rect.x + rect.width, rect.y + rect.height}, {0, 1}, {1, 0});
-  use_view_cube(app, app.view, rect);
+  use_view_cube(app.ui, app.view, rect);
   ImGui::InvisibleButton("view", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  note_widget(app.widgets, "view", KeyUse::none);
-  ViewInput input = view_input(app, app.view, rect);
-  keep_tool_state(app, app.tool);
+  note_widget(app.ui.widgets, "view", KeyUse::none);
+  ViewInput input = view_input(app.ui, app.view, rect);
+  keep_tool_state(app.session, app.tool);
   use_tool_cursor(app, input);
   if (use_hand(app, input)) input.pressed = input.released = false;
   use_points(app, input);
   use_gizmo(app, input);
   use_selecting(app, input);
-  const std::uint64_t revision = app.document.revision();
+  const std::uint64_t revision = app.session.document.revision();
   const bool joining = app.tool.joint.has_value();
   use_tool(app, input);
-  follow_tool_cursor(app, app, app.tool, revision, joining);
+  follow_tool_cursor(app.session, app.ui, app.tool, revision, joining);
   steer(app, input);
-  load_labels(app, app.view, rect);
+  load_labels(app.ui, app.view, rect);
   draw_view_cube(app, rect);
   context_menu(app, input);
-  caption(app, app, rect);
-  status_chip(app, app, rect);
-  explored_chip(app, app, app.dialog, rect);
+  caption(app.session, app.ui, rect);
+  status_chip(app.session, app.ui, rect);
+  explored_chip(app.session, app.ui, app.dialog, rect);
   view_lines(app, rect); // clear of both
   ImGui::End();
   if (!load_tooltip(app, input)) part_label(app);
   tool_strip(app, rect);
   legend(app, rect);
-  error_line(app, app, app.view, rect);
+  error_line(app.session, app.ui, app.view, rect);
   joint_card(app, input);
   problem_banner(app, rect);
 }
@@ -92,9 +92,9 @@ void beside_panel(App& app, const PanelRect& rect) {
   ImGui::InvisibleButton("beside", {rect.width, rect.height},
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  note_widget(app.widgets, "beside", KeyUse::none);
-  steer(app, view_input(app, app.view, rect)); // one camera for both
-  motion_caption(app, app, rect);
+  note_widget(app.ui.widgets, "beside", KeyUse::none);
+  steer(app, view_input(app.ui, app.view, rect)); // one camera for both
+  motion_caption(app.session, app.ui, rect);
   ImGui::End();
 }
 

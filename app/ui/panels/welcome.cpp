@@ -31,9 +31,9 @@ constexpr std::array first_steps{
 } // namespace
 
 void welcome(App& app, const PanelRect& view) {
-  if (!app.mechanism().bodies.empty() || app.tool.tool != Tool::select || app.dialog.showing) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = std::min(430 * s, view.width - 90 * s);
+  if (!app.session.mechanism().bodies.empty() || app.tool.tool != Tool::select || app.dialog.showing) return;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale, width = std::min(430 * s, view.width - 90 * s);
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + view.height / 2}, ImGuiCond_Always,
                           {0.5f, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
@@ -44,10 +44,10 @@ void welcome(App& app, const PanelRect& view) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
-  heading(app, "Build a mechanism");
+  heading(app.ui, "Build a mechanism");
   for (const FirstStep& step : first_steps) {
     ImGui::Dummy({0, 3 * s});
-    ImGui::PushFont(app.fonts.strong);
+    ImGui::PushFont(app.ui.fonts.strong);
     ImGui::TextUnformatted(step.title);
     ImGui::PopFont();
     paragraph(step.text, colors.dim);
@@ -56,14 +56,14 @@ void welcome(App& app, const PanelRect& view) {
       if (!id) continue;
       if (!first) ImGui::SameLine();
       first = false;
-      if (text_button(app, std::string("welcome/") + id, command(id).title)) run_command(app, id);
+      if (text_button(app.ui, std::string("welcome/") + id, command(id).title)) run_command(app, id);
       help_on_hover(command(id).help);
     }
   }
   ImGui::Dummy({0, 6 * s});
-  if (text_button(app, "welcome/examples", "Start from an example…", true)) show_gallery(app);
+  if (text_button(app.ui, "welcome/examples", "Start from an example…", true)) show_gallery(app);
   ImGui::SameLine();
-  if (text_button(app, "welcome/open", "Open…")) show_open_dialog(app);
+  if (text_button(app.ui, "welcome/open", "Open…")) show_open_dialog(app);
   paragraph("Ctrl+P finds every command, ? lists the keys.", colors.dim);
   ImGui::End();
 }

@@ -52,7 +52,7 @@ void size_fields(Ui& ui, PlotSave& save) {
 bool save_plot(App& app) {
   const PlotSave& save = *app.dialog.plot;
   const std::filesystem::path file = typed_file(app.file_dialogs, extension_of(save.kind));
-  if (!may_replace(app, app.file_dialogs, file)) return false;
+  if (!may_replace(app.session, app.file_dialogs, file)) return false;
   if (save.kind == PlotFile::png) {
     app.export_request = ExportRequest{
         .file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = app.dialog.plot};
@@ -65,7 +65,7 @@ bool save_plot(App& app) {
                      : to_svg(save.plot,
                               {.width = save.pixels[0], .height = save.pixels[1], .ground = save.ground},
                               save.look));
-    app.notice = "Saved " + file.string();
+    app.session.notice = "Saved " + file.string();
     return true;
   } catch (const SceneError& error) {
     app.file_dialogs.message = error.what();
@@ -99,28 +99,30 @@ void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogSta
 }
 
 void plot_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::save_plot, "Save the plot", 560)) return;
+  if (!begin_dialog(app.ui, app.dialog, Dialog::save_plot, "Save the plot", 560)) return;
   if (!app.dialog.plot) { // nothing to be saved
     close(app.dialog);
     return end_dialog();
   }
   PlotSave& save = *app.dialog.plot;
   const char* extension = extension_of(save.kind);
-  bool accepted = path_field(app, app.file_dialogs, "save_plot", "Name");
-  folder_line(app, app.file_dialogs, "save_plot");
-  if (const auto clicked = file_list(app, app.file_dialogs, "save_plot", extension, false, 160 * app.scale))
+  bool accepted = path_field(app.ui, app.file_dialogs, "save_plot", "Name");
+  folder_line(app.ui, app.file_dialogs, "save_plot");
+  if (const auto clicked =
+          file_list(app.ui, app.file_dialogs, "save_plot", extension, false, 160 * app.ui.scale))
     app.file_dialogs.path = clicked->filename().string();
-  if (save.kind != PlotFile::csv) size_fields(app, save);
+  if (save.kind != PlotFile::csv) size_fields(app.ui, save);
   const std::filesystem::path file = typed_file(app.file_dialogs, extension);
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
-  ImGui::Dummy({0, 2 * app.scale});
+  const bool replaces = asks_to_replace(app.ui, app.file_dialogs, file);
+  if (!replaces && !app.file_dialogs.message.empty())
+    paragraph(app.file_dialogs.message, colors_of(app.ui).bad);
+  ImGui::Dummy({0, 2 * app.ui.scale});
   const bool usable = fits(save) && !app.file_dialogs.path.empty();
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(app, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
+  accepted = text_button(app.ui, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
-  const bool cancelled = text_button(app, "save_plot/cancel", "Cancel") || escape_pressed();
+  const bool cancelled = text_button(app.ui, "save_plot/cancel", "Cancel") || escape_pressed();
   std::error_code ignored;
   if (cancelled)
     close(app.dialog);

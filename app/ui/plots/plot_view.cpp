@@ -36,8 +36,8 @@ void draw_box(const PlotFrame& frame) {
                end = frame.pen.at(std::clamp(to[0], a.left, a.right), std::clamp(to[1], a.top, a.bottom));
   const ImVec2 low(std::min(from.x, end.x), std::min(from.y, end.y)),
       high(std::max(from.x, end.x), std::max(from.y, end.y));
-  ImVec4 accent = colors_of(frame.app).accent;
-  frame.pen.list.AddRect(low, high, packed(accent), 0, 0, std::max(1.f, std::round(frame.app.scale)));
+  ImVec4 accent = colors_of(frame.app.ui).accent;
+  frame.pen.list.AddRect(low, high, packed(accent), 0, 0, std::max(1.f, std::round(frame.app.ui.scale)));
   accent.w = 0.12f;
   frame.pen.list.AddRectFilled(low, high, packed(accent));
 }
@@ -53,12 +53,12 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
     return events;
   }
   ImGui::PushID(name.c_str());
-  const std::shared_ptr<const PlotLayout> layout = laid_out(app, view, plot, size);
+  const std::shared_ptr<const PlotLayout> layout = laid_out(app.ui, view, plot, size);
   const PlotPen pen{*ImGui::GetWindowDrawList(),
-                    app.fonts,
+                    app.ui.fonts,
                     {std::round(at.x), std::round(at.y)},
-                    app.scale,
-                    plot_ground(app.theme)};
+                    app.ui.scale,
+                    plot_ground(app.ui.theme)};
   const std::string path = "plot/" + name;
   const PlotFrame frame{app, path, view, plot, *layout, pen, events};
   view.cursor.reset();

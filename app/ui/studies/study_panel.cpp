@@ -57,39 +57,39 @@ bool tab(const Session& session, Ui& ui, const Tab& wanted) {
 } // namespace
 
 void study_panel(App& app, const PanelRect& rect) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
   begin_panel("study", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   ImGui::GetWindowDrawList()->AddLine({rect.x, rect.y}, {rect.x + rect.width, rect.y},
-                                      packed(colors_of(app).border), std::max(1.f, std::round(s)));
+                                      packed(colors_of(app.ui).border), std::max(1.f, std::round(s)));
   StudyKind wanted = StudyKind::none;
   const float top = ImGui::GetCursorPosY();
   for (const Tab& each : tabs)
-    if (tab(app, app, each) && each.study != app.study.open) wanted = each.study;
+    if (tab(app.session, app.ui, each) && each.study != app.session.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
-  if (app.study.open == StudyKind::motion && app.motion.on) {
+  if (app.session.study.open == StudyKind::motion && app.session.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
     ImGui::SetCursorPosX(from);
-    motion_transport(app, app, rect.width - side - 24 * s - from);
+    motion_transport(app.session, app.ui, rect.width - side - 24 * s - from);
     ImGui::SameLine();
   }
   ImGui::SetCursorPos({rect.width - side - 8 * s, top});
-  const bool closed = icon_button(app, "study/close", icon::close, "Close");
-  switch (app.study.open) {
+  const bool closed = icon_button(app.ui, "study/close", icon::close, "Close");
+  switch (app.session.study.open) {
   case StudyKind::none: break;
   case StudyKind::motion: motion_panel(app); break;
   case StudyKind::compare: compare_panel(app); break;
   case StudyKind::response: response_panel(app); break;
-  case StudyKind::states: states_panel(app, app); break;
+  case StudyKind::states: states_panel(app.session, app.ui); break;
   case StudyKind::modes: modes_panel(app); break;
   case StudyKind::map: map_panel(app); break;
   case StudyKind::spread: spread_panel(app); break;
   case StudyKind::transfer: transfer_panel(app); break;
   }
   ImGui::End();
-  if (closed) open_study(app, StudyKind::none);
-  if (wanted != StudyKind::none) open_study(app, wanted);
+  if (closed) open_study(app.session, StudyKind::none);
+  if (wanted != StudyKind::none) open_study(app.session, wanted);
 }
 
 } // namespace flyball

@@ -81,7 +81,7 @@ Vec3 on_rod(const Instance& rod, const Ray& ray, double step) {
 }
 
 Aim find_aim(App& app, const ViewInput& input) {
-  const Mechanism& mechanism = app.mechanism();
+  const Mechanism& mechanism = app.session.mechanism();
   const SceneList& scene = cached_scene(app);
   // Bodies come first in the list. A joint's sign in front of one does not hide it.
   const auto last = std::ranges::find_if_not(scene.instances,
@@ -95,9 +95,9 @@ Aim find_aim(App& app, const ViewInput& input) {
   Aim aim;
   aim.step = snap ? grid_step(input) : 0;
   aim.plane = work_plane(input.camera, app.tool.last_point.value_or(Vec3::Zero()));
-  if (const SnapPoint* point =
-          snap ? snap_point(cached_snap_points(app, app.tool), input.camera, input.size, input.cursor, reach)
-               : nullptr) {
+  if (const SnapPoint* point = snap ? snap_point(cached_snap_points(app.session, app.tool), input.camera,
+                                                 input.size, input.cursor, reach)
+                                    : nullptr) {
     aim.plane.through = aim.point = point->point;
     aim.what = point->what;
     aim.named = point->named;
@@ -155,7 +155,7 @@ double grid_step(const ViewInput& input) {
 
 const Aim& aim_at(App& app, const ViewInput& input) {
   ToolCaches& cache = app.tool.caches;
-  const std::uint64_t revision = app.document.revision();
+  const std::uint64_t revision = app.session.document.revision();
   if (cache.aim_revision != revision || cache.aim_cursor != input.cursor ||
       cache.aim_camera != input.camera || cache.aim_snaps != snaps(app.tool, input)) {
     cache.aim = find_aim(app, input);

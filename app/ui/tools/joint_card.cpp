@@ -194,7 +194,7 @@ std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
   const std::array<std::string, 2>& names = app.tool.joint->guessed;
   for (const Instance& solid : cached_scene(app).instances) {
     if (solid.part.kind != PartKind::body) continue;
-    const std::string& name = app.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
+    const std::string& name = app.session.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
     if (name != names[0] && name != names[1]) continue;
     const Bounds box = instance_bounds(solid);
     ImVec2 low(1e9f, 1e9f), high(-1e9f, -1e9f);
@@ -220,7 +220,7 @@ float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
 // Beside the point, rather on the side where less of the mechanism is, and within the view, above what is
 // written at its foot; in a corner of it where the card would lie on the bodies that are joined.
 void place_card(App& app, const ViewInput& input, ImVec2 size) {
-  const float s = app.scale, gap = 28 * s, edge = 8 * s;
+  const float s = app.ui.scale, gap = 28 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
   const ImVec2 corner(rect.x, rect.y);
   const ImVec2 at = input.on_screen(app.tool.joint->at).value_or(corner);
@@ -252,7 +252,7 @@ void place_card(App& app, const ViewInput& input, ImVec2 size) {
 
 void joint_card(App& app, const ViewInput& input) {
   if (!app.tool.joint) return;
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const bool bearing = app.tool.tool == Tool::bearing;
   // It has a place for all the rows that a type and two bodies bring: more of them do not move it.
   const float most_rows = bearing ? 0 : 12.5f * (ImGui::GetFrameHeight() + 4 * s);
@@ -266,23 +266,23 @@ void joint_card(App& app, const ViewInput& input) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(2);
-  heading(app, bearing ? "Bearing" : "Join");
-  body_rows(app, app, app.tool);
+  heading(app.ui, bearing ? "Bearing" : "Join");
+  body_rows(app.session, app.ui, app.tool);
   ImGui::Dummy({0, s});
-  if (!bearing) type_rows(app, app, app.tool, input);
-  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, app, app.tool, input);
-  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app, app.tool);
+  if (!bearing) type_rows(app.session, app.ui, app.tool, input);
+  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app.session, app.ui, app.tool, input);
+  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app.ui, app.tool);
   ImGui::Dummy({0, 2 * s});
   // The card stays as tall as it was: fewer rows do not move what is clicked next.
   const float foot =
       app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
   ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
-  if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
-    make_joint(app, app, app.tool);
+  if (text_button(app.ui, "tools/join", bearing ? "Insert" : "Join", true)) {
+    make_joint(app.session, app.ui, app.tool);
   } else {
     ImGui::SameLine();
-    if (text_button(app, "tools/cancel", "Cancel")) {
-      select(app, app.tool.joint->before);
+    if (text_button(app.ui, "tools/cancel", "Cancel")) {
+      select(app.session, app.tool.joint->before);
       app.tool.joint.reset();
     }
   }

@@ -97,29 +97,29 @@ void select_point(Session& session, ToolState& tool, const std::string& name) {
 void use_points(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
   tool.hovered_name.clear();
-  if (!are_shown(app, app.tool)) return;
-  const auto all = marks(app, app, input);
+  if (!are_shown(app.session, app.tool)) return;
+  const auto all = marks(app.session, app.ui, input);
   const ImVec2 cursor = input.on_screen(input.cursor);
   const bool can = input.hovered && !tool.grab && (tool.tool == Tool::point || !places(tool.tool)) &&
                    (!input.active || input.pressed || !input.moved);
   if (can) {
     for (const auto& [point, mark] : all)
       if (is_in(mark.name, cursor)) tool.hovered_name = point->name;
-    const NamedPoint* near = tool.hovered_name.empty() ? point_near(app, input) : nullptr;
+    const NamedPoint* near = tool.hovered_name.empty() ? point_near(app.session, input) : nullptr;
     if (near && (tool.tool == Tool::point || !part_under_cursor(app, input))) tool.hovered_name = near->name;
   }
   if (!tool.hovered_name.empty()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   const std::string& taken = tool.grab ? tool.grab->stands : tool.point;
   for (const auto& [point, mark] : all) {
-    draw_mark(app, *point, mark, point->name == tool.hovered_name || point->name == taken);
-    app.widgets["point/" + point->name] = mark.name;
+    draw_mark(app.ui, *point, mark, point->name == tool.hovered_name || point->name == taken);
+    app.ui.widgets["point/" + point->name] = mark.name;
   }
 }
 
 void begin_picking(App& app) {
-  if (app.fields.picking.empty()) return;
+  if (app.ui.fields.picking.empty()) return;
   set_tool(app, Tool::point);
-  app.tool.standing = std::exchange(app.fields.picking, {});
+  app.tool.standing = std::exchange(app.ui.fields.picking, {});
 }
 
 void pick_point(Session& session, ToolState& tool, const ViewInput& input) {

@@ -41,9 +41,9 @@ double distance_to_second(App& app, const std::vector<int>& bodies, const Vec3& 
 
 // Where a joint, link or force is most likely wanted: the point where the selected bodies meet, or any two.
 std::optional<Vec3> likely_point(App& app) {
-  const Mechanism& mechanism = app.mechanism();
+  const Mechanism& mechanism = app.session.mechanism();
   std::vector<int> bodies;
-  for (const std::string& name : app.selection().names(PartKind::body))
+  for (const std::string& name : app.session.selection().names(PartKind::body))
     bodies.push_back(body_index(mechanism, name));
   if (app.tool.tool != Tool::joint && app.tool.tool != Tool::bearing && !bodies.empty())
     return mechanism.bodies[static_cast<std::size_t>(bodies.front())].position;
@@ -52,7 +52,7 @@ std::optional<Vec3> likely_point(App& app) {
       bodies.push_back(i);
   std::optional<Vec3> best;
   std::tuple<double, bool> least{std::numeric_limits<double>::max(), true};
-  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
+  for (const SnapPoint& snap : cached_snap_points(app.session, app.tool)) {
     if (snap.part.kind == PartKind::none) continue;
     // Rather a body's own point than that of a joint that is there already.
     const std::tuple<double, bool> worth{distance_to_second(app, bodies, snap.point),
@@ -69,7 +69,7 @@ bool is_free(App& app, Vec2 pixel, ViewSize view) {
   const auto last =
       std::ranges::find_if_not(all, [](const Instance& i) { return i.part.kind == PartKind::body; });
   return !pick(std::span<const Instance>(all.begin(), last), app.view.camera.ray(pixel, view),
-               20 * static_cast<double>(app.scale));
+               20 * static_cast<double>(app.ui.scale));
 }
 
 Vec2 first_place(App& app, ViewSize view) {
@@ -79,7 +79,7 @@ Vec2 first_place(App& app, ViewSize view) {
   case Tool::block:
   case Tool::plate:
   case Tool::rod: {
-    const double step = aside * static_cast<double>(app.scale);
+    const double step = aside * static_cast<double>(app.ui.scale);
     for (Vec2 place = middle; place.x() < view.width - step; place.x() += step)
       if (is_free(app, place, view)) return place;
     return middle;
@@ -93,7 +93,7 @@ Vec2 first_place(App& app, ViewSize view) {
 // Left to right and top to bottom, as they are seen.
 std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool back) {
   std::vector<std::pair<double, double>> places;
-  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
+  for (const SnapPoint& snap : cached_snap_points(app.session, app.tool)) {
     if (app.tool.tool == Tool::point && snap.named.empty()) continue;
     if (const auto at = app.view.camera.project(snap.point, view))
       if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
@@ -124,8 +124,8 @@ double arrow_step(const Ui& ui, const ToolState& tool, const ViewState& state, c
 
 bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
   ToolState& tool = app.tool;
-  const Vec2 now = tool.cursor.value_or(app.keyboard.in_view.value_or(first_place(app, view)));
-  const double step = arrow_step(app, app.tool, app.view, key, view);
+  const Vec2 now = tool.cursor.value_or(app.ui.keyboard.in_view.value_or(first_place(app, view)));
+  const double step = arrow_step(app.ui, app.tool, app.view, key, view);
   Vec2 by = Vec2::Zero();
   switch (key.key) {
   case keys::right: by.x() = step; break;
@@ -147,9 +147,9 @@ bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
 
 void use_tool_cursor(App& app, ViewInput& input) {
   ToolState& tool = app.tool;
-  app.keyboard.in_view = input.hovered ? std::optional(input.cursor) : std::nullopt;
+  app.ui.keyboard.in_view = input.hovered ? std::optional(input.cursor) : std::nullopt;
   const bool click = std::exchange(tool.cursor_click, false);
-  if (!app.keyboard.by_key || app.mode != Mode::build || !places(tool.tool)) {
+  if (!app.ui.keyboard.by_key || app.session.mode != Mode::build || !places(tool.tool)) {
     tool.cursor.reset();
     return;
   }

@@ -79,9 +79,9 @@ bool glyph_button(Ui& ui, const char* name, bool on, const Draw& draw) {
 } // namespace
 
 void tool_strip(App& app, const PanelRect& view) {
-  if (app.mode != Mode::build) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+  if (app.session.mode != Mode::build) return;
+  const UiColors& colors = colors_of(app.ui);
+  const float s = app.ui.scale;
   // In a low view the groups stand in as many columns as they need.
   const float room = std::max(view.height / s - top - bottom, 4 * button_side + 2 * strip_pad);
   ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
@@ -113,15 +113,15 @@ void tool_strip(App& app, const PanelRect& view) {
   for (const ToolButton& button : buttons) {
     place(button.separated);
     const bool on = app.tool.tool == button.tool;
-    if (glyph_button(app, button.name, on, [&](ImDrawList& list, ImVec2 center, float half, ImU32 ink) {
+    if (glyph_button(app.ui, button.name, on, [&](ImDrawList& list, ImVec2 center, float half, ImU32 ink) {
           draw_tool_glyph(list, button.tool, center, half, ink);
         }))
       set_tool(app, button.tool);
-    tell(app, button.command);
+    tell(app.ui, button.command);
   }
   place(true);
-  if (glyph_button(app, "tools/snap", app.tool.snap, draw_magnet_glyph)) app.tool.snap = !app.tool.snap;
-  tell(app, "view.snap");
+  if (glyph_button(app.ui, "tools/snap", app.tool.snap, draw_magnet_glyph)) app.tool.snap = !app.tool.snap;
+  tell(app.ui, "view.snap");
   ImGui::End();
 }
 

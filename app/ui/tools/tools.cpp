@@ -150,7 +150,8 @@ bool step_back(Session& session, ToolState& tool) {
 
 void take_tool_keys(App& app) {
   if (ImGui::GetIO().WantTextInput || app.dialog.showing || app.commands.palette_showing) return;
-  std::erase_if(app.keys, [&](const KeyPress& key) { return take_key(app, app, app.tool, key); });
+  std::erase_if(app.ui.keys,
+                [&](const KeyPress& key) { return take_key(app.session, app.ui, app.tool, key); });
 }
 
 void end_tool(ToolState& tool, const ViewInput& input) {
@@ -244,16 +245,17 @@ const std::vector<SnapPoint>& cached_snap_points(const Session& session, ToolSta
 }
 
 const SceneList& cached_scene(App& app) {
-  if (app.mode == Mode::build) return shown_scene(app)->solid;
+  if (app.session.mode == Mode::build) return shown_scene(app)->solid;
   ToolCaches& cache = app.tool.caches;
   // Marks of cut joints come with the answer.
-  if (cache.scene_revision != app.document.revision() || cache.scene_ticket != app.answer.ticket) {
+  if (cache.scene_revision != app.session.document.revision() ||
+      cache.scene_ticket != app.session.answer.ticket) {
     ViewFrame frame = view_frame(app);
-    frame.mechanism = &app.mechanism();
+    frame.mechanism = &app.session.mechanism();
     frame.poses = {};
     cache.scene = scene_of(frame);
-    cache.scene_revision = app.document.revision();
-    cache.scene_ticket = app.answer.ticket;
+    cache.scene_revision = app.session.document.revision();
+    cache.scene_ticket = app.session.answer.ticket;
   }
   return cache.scene;
 }

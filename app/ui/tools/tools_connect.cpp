@@ -126,9 +126,9 @@ void use_connecting(App& app, const ViewInput& input) {
   std::string mistake;
   if (tool.first) {
     const Aim& from = *tool.first;
-    aim = second_end(app, app.tool, input, from, aim, mistake);
-    draw_between(app, app.tool, input, from.point, aim.point);
-    const ShownUnit unit = shown_unit("m", app.units);
+    aim = second_end(app.session, app.tool, input, from, aim, mistake);
+    draw_between(app.ui, app.tool, input, from.point, aim.point);
+    const ShownUnit unit = shown_unit("m", app.session.units);
     std::string head =
         "length " + (tool.typed.empty()
                          ? short_text(unit.shown((aim.point - from.point).norm()), 4) + " " + unit.text
@@ -137,9 +137,9 @@ void use_connecting(App& app, const ViewInput& input) {
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)
       head += ", on " + aim.body;
-    draw_aim(app, app, input, aim, head);
+    draw_aim(app.session, app.ui, input, aim, head);
   } else {
-    draw_aim(app, app, input, aim);
+    draw_aim(app.session, app.ui, input, aim);
   }
   if (tool.spent) return;
   if (input.pressed && !tool.first) tool.first = aim;
@@ -151,15 +151,15 @@ void use_connecting(App& app, const ViewInput& input) {
     return;
   }
   if (!mistake.empty()) {
-    app.notice = "“" + tool.typed + "” is no length. " + mistake;
+    app.session.notice = "“" + tool.typed + "” is no length. " + mistake;
     return;
   }
   if (const std::string reason = obstacle(tool.tool, from, aim); !reason.empty()) {
-    app.notice = reason;
+    app.session.notice = reason;
     if (!tool.first_clicked && !entered) tool.first.reset();
     return;
   }
-  add(app, app.tool, input, from, aim);
+  add(app.session, app.tool, input, from, aim);
   tool.last_point = aim.point;
   tool.spent = input.held; // Enter, while the button is down
   end_tool(app.tool, input);

@@ -37,19 +37,20 @@ void use_forces(App& app, const ViewInput& input) {
   if (on_body && tool.tool == Tool::force) {
     const double length = 40 * input.point * metres_per_pixel(input.camera, aim.point, input.size);
     const auto from = input.on_screen(aim.point);
-    const auto to = input.on_screen(Vec3(aim.point + length * first_vector(app, app.tool, input, aim)));
-    if (from && to) draw_line(app, *from, *to, palette(app.theme).accent, 2.5f);
+    const auto to =
+        input.on_screen(Vec3(aim.point + length * first_vector(app.session, app.tool, input, aim)));
+    if (from && to) draw_line(app.ui, *from, *to, palette(app.ui.theme).accent, 2.5f);
   }
-  draw_aim(app, app, input, aim, on_body && aim.what.empty() ? "on " + aim.body : aim.what);
+  draw_aim(app.session, app.ui, input, aim, on_body && aim.what.empty() ? "on " + aim.body : aim.what);
   if (!input.clicked() || tool.spent) return;
   if (!on_body) {
-    app.notice = "There is no body here: click one.";
+    app.session.notice = "There is no body here: click one.";
     return;
   }
   const ForceType type = type_of(tool.tool);
-  edit(app, "Add " + std::string(type_name(type)), [&](Mechanism& mechanism, Selection& selection) {
+  edit(app.session, "Add " + std::string(type_name(type)), [&](Mechanism& mechanism, Selection& selection) {
     const std::string name =
-        add_force(mechanism, type, aim.body, aim.point, first_vector(app, app.tool, input, aim));
+        add_force(mechanism, type, aim.body, aim.point, first_vector(app.session, app.tool, input, aim));
     stand_at(mechanism, "forces." + name + ".at", aim.named);
     selection.set({PartKind::force, name});
   });

@@ -171,15 +171,15 @@ void move(Session& session, InspectorState& inspector, ToolState& tool, const Vi
 
 void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app, app.tool);
+    step_back(app.session, app.tool);
     return;
   }
   if (is_ring(app.tool.grab->handle))
-    turn_by_gizmo(app, app.inspector, app.tool, input, gizmo);
+    turn_by_gizmo(app.session, app.inspector, app.tool, input, gizmo);
   else
-    move(app, app.inspector, app.tool, input, gizmo);
+    move(app.session, app.inspector, app.tool, input, gizmo);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go(app, app.tool, true);
+    let_go(app.session, app.tool, true);
     // Letting go is no click; but a click on a handle means the part behind it, if there is any.
     app.tool.spent = input.moved || !part_under_cursor(app, input);
   }
@@ -222,11 +222,12 @@ void let_go(Session& session, ToolState& tool, bool keep) {
 
 void use_gizmo(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
-  const bool wanted = app.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
-  const NamedPoint* named = selected_point(app, app.tool);
+  const bool wanted =
+      app.session.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
+  const NamedPoint* named = selected_point(app.session, app.tool);
   const auto centre = !wanted ? std::nullopt
                       : named ? std::optional(named->at)
-                              : cached_centre(app, app.tool);
+                              : cached_centre(app.session, app.tool);
   const Handle before = std::exchange(tool.hovered, Handle::none);
   if (!centre) {
     tool.hovered_point.reset();
@@ -239,8 +240,8 @@ void use_gizmo(App& app, const ViewInput& input) {
               input.size,
               input.point};
   if (tool.grab) {
-    draw_grabbed(app, app, app.tool, input);
-    draw_ends(app, app, app.tool, input);
+    draw_grabbed(app.session, app.ui, app.tool, input);
+    draw_ends(app.session, app.ui, app.tool, input);
     gizmo.centre = tool.grab->centre;
     gizmo.normal = tool.grab->normal;
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
@@ -253,17 +254,17 @@ void use_gizmo(App& app, const ViewInput& input) {
   // A click on a handle neither picks nor drops anything behind it.
   if (input.active && !input.pressed && before != Handle::none) tool.hovered = before;
   if (tool.frame) tool.hovered = Handle::none;
-  draw_handles(app, input, shapes, tool.hovered);
-  draw_ends(app, app, app.tool, input);
-  note_handles(app, input, shapes);
+  draw_handles(app.ui, input, shapes, tool.hovered);
+  draw_ends(app.session, app.ui, app.tool, input);
+  note_handles(app.ui, input, shapes);
   if (tool.hovered_point) tool.hovered = Handle::none;
   if (tool.hovered_point || tool.hovered != Handle::none) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (!input.pressed) return;
   if (tool.hovered_point) {
-    gizmo.centre = cached_ends(app, app.tool)[static_cast<std::size_t>(tool.hovered_point->end)];
-    take_hold(app, app.tool, input, gizmo, Handle::plane, tool.hovered_point);
+    gizmo.centre = cached_ends(app.session, app.tool)[static_cast<std::size_t>(tool.hovered_point->end)];
+    take_hold(app.session, app.tool, input, gizmo, Handle::plane, tool.hovered_point);
   } else if (tool.hovered != Handle::none) {
-    take_hold(app, app.tool, input, gizmo, tool.hovered, std::nullopt);
+    take_hold(app.session, app.tool, input, gizmo, tool.hovered, std::nullopt);
   }
 }
 

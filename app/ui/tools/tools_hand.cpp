@@ -43,7 +43,7 @@ std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input) {
                                              [](const Instance& i) { return i.part.kind == PartKind::body; });
   const auto hit = pick(std::span(scene.instances.begin(), last), input.ray(), 4 * input.point);
   if (!hit) return {};
-  return HandHit{part_of(*shown_mechanism(app, app.tool), hit->part).name, hit->point};
+  return HandHit{part_of(*shown_mechanism(app.session, app.tool), hit->part).name, hit->point};
 }
 
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
@@ -57,11 +57,11 @@ std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
 
 bool use_hand(App& app, const ViewInput& input) {
   ToolState& tool = app.tool;
-  follow_pull(app, app.tool);
-  follow_reach(app, app.tool);
-  if (tool.assembly && app.mode != Mode::build) let_go_assembly(app, app.tool, true);
-  if (tool.pull && app.mode != Mode::explore) let_go_pull(app, app.tool, true);
-  if (tool.reach && app.mode != Mode::explore) let_go_reach(app, app.tool, true);
+  follow_pull(app.session, app.tool);
+  follow_reach(app.session, app.tool);
+  if (tool.assembly && app.session.mode != Mode::build) let_go_assembly(app.session, app.tool, true);
+  if (tool.pull && app.session.mode != Mode::explore) let_go_pull(app.session, app.tool, true);
+  if (tool.reach && app.session.mode != Mode::explore) let_go_reach(app.session, app.tool, true);
   if (!holds(app.tool)) {
     if (!is_hand(app.tool, input) || tool.grab || tool.frame || tool.spent || !input.hovered) return false;
     if (!input.pressed) {
@@ -71,27 +71,27 @@ bool use_hand(App& app, const ViewInput& input) {
     }
     const auto hit = body_under_cursor(app, input);
     if (!hit) return false;
-    if (app.mode == Mode::build)
-      take_assembly(app, app.tool, input, *hit);
+    if (app.session.mode == Mode::build)
+      take_assembly(app.session, app.tool, input, *hit);
     else if (input.shift)
-      take_reach(app, app.tool, input, *hit);
+      take_reach(app.session, app.tool, input, *hit);
     else
-      take_pull(app, app.tool, input, *hit);
+      take_pull(app.session, app.tool, input, *hit);
     return holds(app.tool);
   }
   ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app, app.tool);
+    step_back(app.session, app.tool);
     return true;
   }
   if (tool.assembly)
-    hold_assembly(app, app, app.tool, input);
+    hold_assembly(app.session, app.ui, app.tool, input);
   else if (tool.reach)
-    hold_reach(app, app, app.tool, input);
+    hold_reach(app.session, app.ui, app.tool, input);
   else
-    hold_pull(app, app, app.tool, input);
+    hold_pull(app.session, app.ui, app.tool, input);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go_hand(app, app.tool, true);
+    let_go_hand(app.session, app.tool, true);
     tool.spent = input.moved; // letting go is no click, but a click selects
     return input.moved;
   }

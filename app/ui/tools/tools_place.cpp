@@ -96,26 +96,26 @@ void use_placing(App& app, const ViewInput& input) {
   NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
   std::string mistake;
   const bool typing = !tool.typed.empty();
-  if (const auto size = typing ? typed_length(tool.typed, app.units, &mistake) : std::nullopt)
+  if (const auto size = typing ? typed_length(tool.typed, app.session.units, &mistake) : std::nullopt)
     take_typed_size(body, *size, from.plane.normal);
-  draw_body_outline(app, input, body);
+  draw_body_outline(app.ui, input, body);
   if (typing)
-    draw_tag(app, input, input.cursor, from.what,
+    draw_tag(app.ui, input, input.cursor, from.what,
              (form == BodyForm::ball ? "radius " : "edge ") +
-                 typed_text(tool.typed, shown_unit("m", app.units).text));
+                 typed_text(tool.typed, shown_unit("m", app.session.units).text));
   else if (drawing)
-    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
+    draw_tag(app.ui, input, input.cursor, aim.what, size_text(body, from.step, app.session.units));
   else
-    draw_aim(app, app, input, from);
+    draw_aim(app.session, app.ui, input, from);
   if (tool.spent) return;
   if (input.pressed) tool.first = aim;
   if (!entered && (!input.released || !tool.first)) return;
   if (typing && !mistake.empty()) {
-    app.notice = "“" + tool.typed + "” is no size. " + mistake;
+    app.session.notice = "“" + tool.typed + "” is no size. " + mistake;
     tool.first.reset();
     return;
   }
-  edit(app, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
+  edit(app.session, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
     const Part part{PartKind::body, add_body(mechanism, body)};
     stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
     selection.set(part);

@@ -50,7 +50,7 @@ void point_at_body(App& app, const ViewInput& input) {
   app.view.hovered = {};
   app.view.pointed_at = Vec2::Constant(-1);
   if (attaches && input.hovered)
-    app.view.hovered = find_part(app.mechanism(), {PartKind::body, aim_at(app, input).body});
+    app.view.hovered = find_part(app.session.mechanism(), {PartKind::body, aim_at(app, input).body});
 }
 
 void click_part(Session& session, ToolState& tool, const ViewState& view, const ViewInput& input) {
@@ -66,9 +66,9 @@ void click_part(Session& session, ToolState& tool, const ViewState& view, const 
 }
 
 void select_framed(App& app, const ViewInput& input) {
-  const Mechanism& mechanism = *shown_mechanism(app, app.tool);
+  const Mechanism& mechanism = *shown_mechanism(app.session, app.tool);
   Selection selection;
-  if (input.shift) selection = app.selection();
+  if (input.shift) selection = app.session.selection();
   std::vector<Part> parts = selection.parts;
   for (const PartId id : parts_in_frame(part_anchors(mechanism, view_frame(app).poses), input.camera,
                                         input.size, {*app.tool.frame, input.cursor})) {
@@ -76,7 +76,7 @@ void select_framed(App& app, const ViewInput& input) {
     if (!input.shift || !selection.has(part)) parts.push_back(std::move(part));
   }
   selection.parts = std::move(parts);
-  select(app, std::move(selection));
+  select(app.session, std::move(selection));
 }
 
 void draw_frame(const Ui& ui, const ToolState& tool, const ViewInput& input) {
@@ -96,7 +96,7 @@ void use_selecting(App& app, const ViewInput& input) {
     point_at_body(app, input);
     return;
   }
-  if (tool.frame && input.moved) draw_frame(app, app.tool, input);
+  if (tool.frame && input.moved) draw_frame(app.ui, app.tool, input);
   point_at_parts(app, input);
   if (tool.grab || tool.spent) return;
   const bool handle = tool.hovered != Handle::none || tool.hovered_point;
@@ -110,7 +110,7 @@ void use_selecting(App& app, const ViewInput& input) {
     if (tool.tool == Tool::box && !input.shift) tool.tool = Tool::select;
   } else if (input.clicked() && !handle) {
     tool.frame.reset();
-    click_part(app, app.tool, app.view, input);
+    click_part(app.session, app.tool, app.view, input);
   }
 }
 

@@ -96,18 +96,19 @@ void words(Session& session, Ui& ui) {
 } // namespace
 
 void compare_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   ImGui::BeginChild("words", {words_width * s, 0});
-  words(app, app);
+  words(app.session, app.ui);
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (const auto& measured = app.study.compare.measured.found) {
+  if (const auto& measured = app.session.study.compare.measured.found) {
     CompareView& drawn = app.plots.compare;
-    if (drawn.of != measured || drawn.shown != app.study.compare.shown) {
+    if (drawn.of != measured || drawn.shown != app.session.study.compare.shown) {
       drawn.of = measured;
-      drawn.shown = app.study.compare.shown;
-      replace_plot(drawn.plot, comparison_plot("", measured->result, shown_measure(app, measured->result)));
+      drawn.shown = app.session.study.compare.shown;
+      replace_plot(drawn.plot,
+                   comparison_plot("", measured->result, shown_measure(app.session, measured->result)));
       fit_plot(drawn.view);
     }
     const ImVec2 room = ImGui::GetContentRegionAvail();

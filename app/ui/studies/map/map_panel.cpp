@@ -181,14 +181,14 @@ void map_choices(Session& session, Ui& ui, MapView& drawn) {
 } // namespace
 
 void map_panel(App& app) {
-  const float s = app.scale;
-  MapState& map = app.study.map;
+  const float s = app.ui.scale;
+  MapState& map = app.session.study.map;
   MapView& drawn = app.plots.map;
-  map_choices(app, app, drawn);
+  map_choices(app.session, app.ui, drawn);
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   if (map.cells.found) {
-    draw_map(app, drawn);
+    draw_map(app.session, drawn);
     const PlotEvents events = plot_view(
         app, "map", drawn.view, drawn.plot,
         {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
@@ -197,8 +197,10 @@ void map_panel(App& app) {
     const bool same =
         axes[0].address == map.choice.axes[0].address && axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
-      later(app, [&app, place = std::array{(*place)[0] / drawn.plot.x.factor,
-                                           (*place)[1] / drawn.plot.y.factor}] { go_to_place(app, place); });
+      later(app.ui,
+            [&app, place = std::array{(*place)[0] / drawn.plot.x.factor, (*place)[1] / drawn.plot.y.factor}] {
+              go_to_place(app.session, place);
+            });
   }
   ImGui::EndChild();
 }

@@ -171,9 +171,9 @@ std::string speed_words(const VibrationMode& mode) {
 }
 
 void transport(App& app) {
-  ModesState& modes = app.study.modes;
-  const UiColors& colors = colors_of(app);
-  const VibrationMode* mode = moving_mode(app);
+  ModesState& modes = app.session.study.modes;
+  const UiColors& colors = colors_of(app.ui);
+  const VibrationMode* mode = moving_mode(app.session);
   if (!mode) {
     ImGui::AlignTextToFramePadding();
     paragraph(modes.list.found && modes.list.found->result.modes.empty() ? ""
@@ -181,55 +181,56 @@ void transport(App& app) {
               colors.dim);
     return;
   }
-  if (icon_button(app, "modes/play", modes.playing ? icon::pause : icon::play,
+  if (icon_button(app.ui, "modes/play", modes.playing ? icon::pause : icon::play,
                   modes.playing ? "Pause (Space)" : "Play (Space)", modes.playing))
     modes.playing = !modes.playing;
   ImGui::SameLine();
-  if (icon_button(app, "modes/export", icon::save, "Export as MP4, GIF or numbered pictures…"))
+  if (icon_button(app.ui, "modes/export", icon::save, "Export as MP4, GIF or numbered pictures…"))
     show_mode_movie_dialog(app);
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(110 * app.scale);
+  ImGui::SetNextItemWidth(110 * app.ui.scale);
   constexpr double least = 0.01, most = 0.6;
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.ui.scale);
   ImGui::SliderScalar("##amplitude", ImGuiDataType_Double, &modes.amplitude, &least, &most, "");
-  note_widget(app.widgets, "modes/amplitude", KeyUse::slide);
-  nudge_value(app, "modes/amplitude", modes.amplitude, least, most);
+  note_widget(app.ui.widgets, "modes/amplitude", KeyUse::slide);
+  nudge_value(app.ui, "modes/amplitude", modes.amplitude, least, most);
   help_on_hover("How far it is shown swinging; the linearised motion is for small swings.");
   ImGui::SameLine();
   ImGui::BeginGroup();
-  clipped_text(largest_movement(app, *mode), ImGui::GetContentRegionAvail().x);
+  clipped_text(largest_movement(app.session, *mode), ImGui::GetContentRegionAvail().x);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
   clipped_text(speed_words(*mode), ImGui::GetContentRegionAvail().x);
   ImGui::PopStyleColor();
   ImGui::EndGroup();
-  note_widget(app.widgets, "modes/speed");
+  note_widget(app.ui.widgets, "modes/speed");
 }
 
 void modes_list(App& app) {
-  ModesState& modes = app.study.modes;
-  const UiColors& colors = colors_of(app);
+  ModesState& modes = app.session.study.modes;
+  const UiColors& colors = colors_of(app.ui);
   auto& search = modes.list;
   if (!search.problem.empty()) return paragraph(search.problem, colors.bad);
-  if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
+  if (!converged(app.session))
+    return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
   const bool finding = search.running();
   if (finding && (!search.found || search.seconds() > modes_patience)) {
-    if (text_button(app, "modes/cancel", "Cancel")) search.stop();
+    if (text_button(app.ui, "modes/cancel", "Cancel")) search.stop();
     ImGui::SameLine();
-    task_bar(app, "modes/progress", search.progress(), search.seconds());
+    task_bar(app.ui, "modes/progress", search.progress(), search.seconds());
   }
   if (!search.found) return;
   const FoundModes& found = search.found->result;
-  if (!modes_are_current(app) && !finding) {
+  if (!modes_are_current(app.session) && !finding) {
     paragraph("Of the state before the last changes.", colors.warn);
-    if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
+    if (text_button(app.ui, "modes/again", "Find again", true)) find_modes_again(app.session);
   }
-  verdict(app, app, found);
+  verdict(app.session, app.ui, found);
   if (found.modes.empty())
     return paragraph(found.singular_loops ? std::string(singular_loops_message)
                                           : "No coordinate is free to swing.",
                      colors.dim);
-  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
-  list(app, app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
+  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.ui.scale;
+  list(app.session, app.ui, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.ui.scale));
   transport(app);
 }
 
@@ -304,31 +305,32 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
 }
 
 void show_campbell(App& app) {
-  CampbellState& campbell = app.study.modes.campbell;
-  const UiColors& colors = colors_of(app);
-  const std::string drive = campbell_drive(app);
+  CampbellState& campbell = app.session.study.modes.campbell;
+  const UiColors& colors = colors_of(app.ui);
+  const std::string drive = campbell_drive(app.session);
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
-  campbell_choices(app, app, app.plots.campbell, drive);
+  campbell_choices(app.session, app.ui, app.plots.campbell, drive);
   const auto& diagram = campbell.diagram;
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
   if (!diagram.found) return;
-  draw_campbell(app, app.plots.campbell);
+  draw_campbell(app.session, app.plots.campbell);
   if (const std::string& words = app.plots.campbell.critical; !words.empty()) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
-    note_widget(app.widgets, "campbell/critical");
+    note_widget(app.ui.widgets, "campbell/critical");
   }
-  if (const std::string without = left_out(diagram.found->result, parameter_unit(app.mechanism(), drive));
+  if (const std::string without =
+          left_out(diagram.found->result, parameter_unit(app.session.mechanism(), drive));
       !without.empty())
     paragraph(without, colors.dim);
-  if (!campbell.on_branch && converged(app) && !solving(app) && !diagram.running())
+  if (!campbell.on_branch && converged(app.session) && !solving(app.session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(
       app, "campbell", app.plots.campbell.view, app.plots.campbell.plot,
       {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
   const auto set = [&](double speed) {
-    later(app, [&app, drive, speed] { change_parameter(app, drive, speed); });
+    later(app.ui, [&app, drive, speed] { change_parameter(app.session, drive, speed); });
   };
   if (diagram.found->of.drive != drive) return;
   if (events.clicked_at) set((*events.clicked_at)[0]);
@@ -338,7 +340,7 @@ void show_campbell(App& app) {
 } // namespace
 
 void modes_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
   ImGui::BeginChild("modes", {width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});

@@ -190,22 +190,22 @@ void run_settings(Session& session, Ui& ui) {
 }
 
 void motion_choices(App& app) {
-  const bool computing = computing_motion(app);
-  if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app, app);
+  const bool computing = computing_motion(app.session);
+  if (text_button(app.ui, "motion/run", computing ? "Restart" : "Run again", true)) anew(app.session, app.ui);
   if (computing) {
     ImGui::SameLine();
-    if (text_button(app, "motion/stop", "Stop")) stop_motion(app);
+    if (text_button(app.ui, "motion/stop", "Stop")) stop_motion(app.session);
     ImGui::SameLine();
-    progress_bar(app, app);
-  } else if (shown_motion(app)) {
+    progress_bar(app.session, app.ui);
+  } else if (shown_motion(app.session)) {
     ImGui::SameLine();
-    if (text_button(app, "motion/keep", "Keep state")) keep_motion_state(app);
+    if (text_button(app.ui, "motion/keep", "Keep state")) keep_motion_state(app.session);
     help_on_hover("Keeps the state that is shown, to start from.");
     ImGui::SameLine();
-    if (text_button(app, "motion/export", "Export…")) show_movie_dialog(app);
+    if (text_button(app.ui, "motion/export", "Export…")) show_movie_dialog(app);
     help_on_hover("Saves the run as MP4, GIF or numbered pictures.");
   }
-  run_settings(app, app);
+  run_settings(app.session, app.ui);
 }
 
 // The combo above a plot.
@@ -262,9 +262,9 @@ std::string first_shown(const std::vector<MotionQuantity>& all, std::size_t plot
 }
 
 void plots(App& app) {
-  const MotionRun* shown = shown_motion(app);
+  const MotionRun* shown = shown_motion(app.session);
   if (!shown) {
-    paragraph(computing_motion(app) ? "Computing…" : "No motion.", colors_of(app).dim);
+    paragraph(computing_motion(app.session) ? "Computing…" : "No motion.", colors_of(app.ui).dim);
     return;
   }
   const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
@@ -273,8 +273,8 @@ void plots(App& app) {
     const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
     if (!known) shown_plots[i].quantity = first_shown(all, i);
   }
-  const float gap = 10 * app.scale, whole = ImGui::GetContentRegionAvail().x;
-  const bool narrow = whole < 520 * app.scale;
+  const float gap = 10 * app.ui.scale, whole = ImGui::GetContentRegionAvail().x;
+  const bool narrow = whole < 520 * app.ui.scale;
   const std::size_t count = narrow ? 1 : shown_plots.size();
   const float width = std::floor((whole - gap * static_cast<float>(count - 1)) / static_cast<float>(count));
   for (std::size_t i = 0; i < count; ++i) {
@@ -282,21 +282,21 @@ void plots(App& app) {
     if (i > 0) ImGui::SameLine(0, gap);
     ImGui::BeginGroup();
     const std::string name = "motion/plot" + std::to_string(i + 1);
-    quantity_choice(app, each, all, name, width);
+    quantity_choice(app.ui, each, all, name, width);
     const auto run = [&](std::size_t k) {
-      return app.motion.runs[k].wanted ? app.motion.runs[k].run : nullptr;
+      return app.session.motion.runs[k].wanted ? app.session.motion.runs[k].run : nullptr;
     };
-    const MotionPlot::Of of{{run(0), run(1)}, each.quantity, app.answer.ticket, app.units};
+    const MotionPlot::Of of{{run(0), run(1)}, each.quantity, app.session.answer.ticket, app.session.units};
     if (each.of != of) {
       each.of = of;
-      replace_plot(each.plot, motion_plot(app, each.quantity));
+      replace_plot(each.plot, motion_plot(app.session, each.quantity));
     }
-    each.plot.marker = play_head(app, each.plot, each.view.look);
+    each.plot.marker = play_head(app.session, each.plot, each.view.look);
     const PlotEvents events =
         plot_view(app, name, each.view, each.plot, {width, std::max(ImGui::GetContentRegionAvail().y, 40.f)});
     if (events.dragged_to) {
-      app.playback.playing = false;
-      seek_motion(app, events.dragged_to->x);
+      app.session.playback.playing = false;
+      seek_motion(app.session, events.dragged_to->x);
     }
     ImGui::EndGroup();
   }
@@ -348,7 +348,7 @@ void motion_transport(Session& session, Ui& ui, float width) {
 }
 
 void motion_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   ImGui::BeginChild("choices", {motion_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
   motion_choices(app);
@@ -357,10 +357,10 @@ void motion_panel(App& app) {
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plots", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (app.motion.on) {
+  if (app.session.motion.on) {
     plots(app);
   } else {
-    paragraph("Run again shows the motion.", colors_of(app).dim);
+    paragraph("Run again shows the motion.", colors_of(app.ui).dim);
   }
   ImGui::EndChild();
 }

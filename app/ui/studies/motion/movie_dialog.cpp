@@ -146,60 +146,60 @@ void progress(Ui& ui, MovieState& movie, const MovieState::Progress& at) {
 
 void choices(App& app) {
   MovieState& movie = app.movie;
-  bool accepted = path_field(app, app.file_dialogs, "movie", "Name");
-  ending_buttons(app, app.file_dialogs);
-  size_fields(app, "movie", movie_sizes, fields_column, movie.width, movie.height);
-  plain_quantity_field(app, app, "movie/rate", "Frames a second", "",
+  bool accepted = path_field(app.ui, app.file_dialogs, "movie", "Name");
+  ending_buttons(app.ui, app.file_dialogs);
+  size_fields(app.ui, "movie", movie_sizes, fields_column, movie.width, movie.height);
+  plain_quantity_field(app.session, app.ui, "movie/rate", "Frames a second", "",
                        "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
                        Least::above_zero);
   if (movie.of == Filmed::mode)
-    swing_fields(app, app, app.movie);
+    swing_fields(app.session, app.ui, app.movie);
   else
-    time_fields(app, app, app.movie, *shown_motion(app)->run);
+    time_fields(app.session, app.ui, app.movie, *shown_motion(app.session)->run);
 
-  const MovieRequest request = request_of(app, app.file_dialogs, app.movie);
-  const std::size_t frames = requested_moments(app, request).size();
-  const std::string problem = problem_of(app, app.movie, request, frames);
+  const MovieRequest request = request_of(app.session, app.file_dialogs, app.movie);
+  const std::size_t frames = requested_moments(app.session, request).size();
+  const std::string problem = problem_of(app.session, app.movie, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
-  ImGui::Dummy({0, 2 * app.scale});
+  ImGui::Dummy({0, 2 * app.ui.scale});
   if (!problem.empty())
-    paragraph(problem, complete(app, app.movie) ? colors_of(app).bad : colors_of(app).dim);
+    paragraph(problem, complete(app.session, app.movie) ? colors_of(app.ui).bad : colors_of(app.ui).dim);
   else
     paragraph(std::to_string(frames) + " frames, " +
                   short_text(static_cast<double>(frames) / request.rate, 4) + " s long" +
                   (movie.of == Filmed::mode ? ", with the amplitude that is shown"
                                             : ": from " + short_text(request.from) + " s to " +
                                                   short_text(request.to) + " s of the run"),
-              colors_of(app).dim);
-  if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
-  const bool replaces = asks_to_replace(app, app.file_dialogs, first);
-  ImGui::Dummy({0, 2 * app.scale});
+              colors_of(app.ui).dim);
+  if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app.ui).bad);
+  const bool replaces = asks_to_replace(app.ui, app.file_dialogs, first);
+  ImGui::Dummy({0, 2 * app.ui.scale});
   ImGui::BeginDisabled(!problem.empty());
-  accepted = text_button(app, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(app.ui, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && problem.empty() && may_replace(app, app.file_dialogs, first)) {
-    play(app, false); // all the time there is goes into the film
+  if (accepted && problem.empty() && may_replace(app.session, app.file_dialogs, first)) {
+    play(app.session, false); // all the time there is goes into the film
     movie.request = request;
     movie.problem.clear();
   }
   ImGui::SameLine();
-  if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (text_button(app.ui, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
 }
 
 void show_dialog_of(App& app, Filmed of) {
   app.movie.of = of;
-  if (!shown(app, app.movie)) return;
+  if (!shown(app.session, app.movie)) return;
   app.dialog.wanted = Dialog::export_run;
   std::error_code ignored;
   show_folder(app.file_dialogs, std::filesystem::current_path(ignored));
   app.file_dialogs.replacing.clear();
   app.movie.problem.clear();
   app.movie.done = false;
-  const std::filesystem::path& file = app.document.file();
-  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  const std::filesystem::path& file = app.session.document.file();
+  const std::string stem = file.empty() ? file_stem(app.session.mechanism().name) : file.stem().string();
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
   const std::string which =
-      of == Filmed::mode ? "-mode-" + std::to_string(*app.study.modes.chosen + 1) : std::string();
+      of == Filmed::mode ? "-mode-" + std::to_string(*app.session.study.modes.chosen + 1) : std::string();
   app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + which + ending)).string();
 }
 
@@ -215,12 +215,12 @@ void show_mode_movie_dialog(App& app) {
 
 void movie_dialog(App& app) {
   MovieState& movie = app.movie;
-  if (!begin_dialog(app, app.dialog, Dialog::export_run,
+  if (!begin_dialog(app.ui, app.dialog, Dialog::export_run,
                     movie.of == Filmed::mode ? "Export the mode" : "Export the run", 480))
     return;
   if (movie.request || movie.progress)
-    progress(app, app.movie, movie.progress.value_or(MovieState::Progress{}));
-  else if (movie.done || !shown(app, app.movie)) // nothing is: another document
+    progress(app.ui, app.movie, movie.progress.value_or(MovieState::Progress{}));
+  else if (movie.done || !shown(app.session, app.movie)) // nothing is: another document
     close_dialog();
   else
     choices(app);

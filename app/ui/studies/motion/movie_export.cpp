@@ -51,11 +51,11 @@ std::vector<double> requested_moments(const Session& session, const MovieRequest
 }
 
 void MovieExport::begin(App& app, const MovieRequest& request) {
-  std::unique_ptr<FilmedScene> scene = filmed_scene(app, request.of);
+  std::unique_ptr<FilmedScene> scene = filmed_scene(app.session, request.of);
   if (!scene) return;
   const ViewFrame look = view_frame(app);
   file_ = request.file;
-  film_.emplace(std::move(scene), requested_moments(app, request), request.file,
+  film_.emplace(std::move(scene), requested_moments(app.session, request), request.file,
                 MovieFormat{request.width, request.height, request.rate, 0}, look, app.view.samples);
 }
 
@@ -71,7 +71,7 @@ void MovieExport::update(App& app, ViewRenderer& renderer) {
       begin(app, *request);
     }
     if (film_ && film_->step(renderer, longest_wait)) {
-      app.notice = saved_words(file_, film_->frames());
+      app.session.notice = saved_words(file_, film_->frames());
       film_.reset();
       state.done = true;
     }

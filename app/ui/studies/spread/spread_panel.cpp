@@ -294,15 +294,15 @@ void spread_words(Session& session, Ui& ui) {
 }
 
 void draw_histogram(App& app) {
-  const SpreadState& state = app.study.spread;
+  const SpreadState& state = app.session.study.spread;
   SpreadView& drawn = app.plots.spread;
-  const SpreadOutput* output = shown_output(app);
+  const SpreadOutput* output = shown_output(app.session);
   if (!output) return;
-  const SpreadView::Of of{state.samples.found, state.output, app.units};
+  const SpreadView::Of of{state.samples.found, state.output, app.session.units};
   if (drawn.of != of) {
     const auto& all = state.samples.found->result.outputs;
     Plot plot = histogram_plot(state.samples.found->result, static_cast<std::size_t>(output - all.data()));
-    show_axis(plot, 0, output->unit, app.units);
+    show_axis(plot, 0, output->unit, app.session.units);
     if (drawn.of.output != of.output) fit_plot(drawn.view);
     replace_plot(drawn.plot, std::move(plot));
     drawn.of = of;
@@ -314,11 +314,11 @@ void draw_histogram(App& app) {
 } // namespace
 
 void spread_panel(App& app) {
-  const float s = app.scale;
+  const float s = app.ui.scale;
   const auto column = [&](const char* name, float width, auto contents) {
     ImGui::BeginChild(name, {width, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-    contents(app, app);
+    contents(app.session, app.ui);
     ImGui::PopStyleVar();
     ImGui::EndChild();
     ImGui::SameLine(0, 14 * s);
