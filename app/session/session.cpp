@@ -115,6 +115,7 @@ void open_document(Session& session, Document document) {
   session.poses.clear();
   if (!same_file) {
     session.points.clear();
+    find_cycle(session, false);
     session.playback = {.factor = session.playback.factor};
     session.mode = session.mechanism().bodies.empty() ? Mode::build : Mode::explore;
   }

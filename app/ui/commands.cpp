@@ -657,6 +657,17 @@ const std::array all_commands{
             .run = [](App& app) { open_study(app.session, StudyKind::compare); },
             .enabled = of_session<holds_parts>,
             .checked = [](const App& app) { return app.session.study.open == StudyKind::compare; }},
+    Command{.id = "study.cycle",
+            .title = "Find the limit cycle",
+            .help = "Where the steady state is left by swings that grow: the motion that they come to, "
+                    "in the results.",
+            .run =
+                [](App& app) {
+                  find_cycle(app.session, !app.session.study.periodic.cycle_wanted);
+                  set_mode(app.session, Mode::explore);
+                },
+            .enabled = of_session<hunts>,
+            .checked = [](const App& app) { return app.session.study.periodic.cycle_wanted; }},
     Command{.id = "study.export",
             .title = "Export the run…",
             .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",

@@ -15,24 +15,6 @@ std::string part_text(double value, double largest) {
   return value_text(value, std::max(largest * 1e-5, 1e-12), {6, 1e-16, false});
 }
 
-// Where the linearised motion turns with the drives: what a period makes of a disturbance.
-void multiplier_results(Ui& ui, PanelState& panels, const Floquet& floquet) {
-  if (!section(ui, "results/eigenvalues", "Floquet multipliers", panels.eigenvalues)) return;
-  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
-            "times what it "
-            "was: above 1 in size it grows.",
-            colors_of(ui).dim);
-  row(ui, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
-  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
-    const std::complex<double> mu = floquet.multipliers[i];
-    if (mu.imag() < 0) continue; // its conjugate stands for both
-    const double size = std::abs(floquet.multipliers.front());
-    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
-    row(ui, "Multiplier", part_text(mu.real(), size) + imaginary, "");
-    row(ui, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
-  }
-}
-
 void lines_of(const Ui& ui, const std::vector<std::complex<double>>& eigenvalues) {
   double largest = 0;
   for (const std::complex<double>& z : eigenvalues)
@@ -47,7 +29,28 @@ void lines_of(const Ui& ui, const std::vector<std::complex<double>>& eigenvalues
   }
 }
 
+// Where the linearised motion turns with the drives: what a period makes of a disturbance.
+void multiplier_results(Ui& ui, PanelState& panels, const Floquet& floquet) {
+  if (!section(ui, "results/eigenvalues", "Floquet multipliers", panels.eigenvalues)) return;
+  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
+            "times what it was: above 1 in size it grows.",
+            colors_of(ui).dim);
+  row(ui, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
+  floquet_rows(ui, floquet);
+}
+
 } // namespace
+
+void floquet_rows(Ui& ui, const Floquet& floquet) {
+  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
+    const std::complex<double> mu = floquet.multipliers[i];
+    if (mu.imag() < 0) continue; // its conjugate stands for both
+    const double size = std::abs(floquet.multipliers.front());
+    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
+    row(ui, "Multiplier", part_text(mu.real(), size) + imaginary, "");
+    row(ui, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
+  }
+}
 
 void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels) {
   if (const PeriodicState* motion = periodic_motion(session); motion && !motion->floquet.multipliers.empty())

@@ -3,6 +3,7 @@
 
 namespace flyball {
 
+struct Floquet;
 struct PanelState;
 struct Session;
 struct ToolState;
@@ -14,6 +15,9 @@ void measure_results(Session& session, Ui& ui);
 void friction_results(const Session& session, Ui& ui);
 // Where a drive makes the balance turn: the motion in its place.
 void periodic_results(Session& session, Ui& ui);
+// Where the steady state hunts: the limit cycle beside it, if it is asked for.
+void cycle_results(Session& session, Ui& ui);
+void floquet_rows(Ui& ui, const Floquet& floquet);
 void solver_results(const Session& session, Ui& ui);
 // While a hand pulls.
 void pull_results(const Session& session, Ui& ui, const ToolState& tool);

@@ -139,6 +139,7 @@ void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& too
     verdict(session, ui);
     remedies(session, ui);
     periodic_results(session, ui);
+    cycle_results(session, ui);
     warning_rows(session, ui, "results/warnings", 3);
     pull_results(session, ui, tool);
     neutral_joints(session, ui);
