@@ -419,18 +419,40 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
       CHECK(point[0] <= 5000 * (1 + 1e-12));
 }
 
-TEST_CASE("a mechanism without a steady state says why there is no curve") {
+TEST_CASE("a mechanism whose balance turns has periodic motions for a curve, and steady states again") {
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;
+  choose_response_end(app.session, &ResponseChoice::to, 1);
+  robot.frames(2);
+  REQUIRE(robot.state().curve.found);
   edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
   robot.frames(3);
-  CHECK_THAT(response_refusal(app.session), ContainsSubstring("No steady state: the weight"));
-  CHECK(app.ui.widgets.count("response/problem") == 1);
-  CHECK(app.ui.widgets.count("plot/response/area") == 0);
+  CHECK_FALSE(robot.state().curve.found);
+  REQUIRE(robot.state().resonance.found);
+  CHECK(app.ui.widgets.count("response/find") == 0);
   undo(app.session);
   robot.frames(3);
+  CHECK_FALSE(robot.state().resonance.found);
+  REQUIRE(robot.state().curve.found);
   CHECK(response_refusal(app.session).empty());
   CHECK(app.ui.widgets.count("plot/response/area") == 1);
+}
+
+TEST_CASE("where nothing moves periodically either, the response says why") {
+  ResponseRobot robot("conical_pendulum");
+  App& app = robot.app;
+  choose_response_end(app.session, &ResponseChoice::to, 1);
+  edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) {
+    mechanism.gravity = {3, -9, 0};
+    for (Joint& joint : mechanism.joints) // it sticks and slips
+      for (Coordinate& coordinate : joint.coordinates)
+        if (!coordinate.drive) coordinate.friction.emplace().limit = 1e-3;
+  });
+  robot.frames(3);
+  REQUIRE(app.session.answer.solution.status == Status::no_steady_state);
+  CHECK_THAT(response_refusal(app.session), ContainsSubstring("dry friction"));
+  CHECK(app.ui.widgets.count("response/problem") == 1);
+  CHECK(app.ui.widgets.count("plot/response/area") == 0);
 }
 
 TEST_CASE("a closed response takes everything with it but what was chosen") {

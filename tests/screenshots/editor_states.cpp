@@ -222,6 +222,22 @@ TEST_CASE("the landscape is drawn below the view") {
   }
 }
 
+TEST_CASE("periodic motions are drawn over a number where the balance turns") {
+  Hand hand("horizontal_rotor.json");
+  set_mode(hand.app.session, Mode::explore);
+  open_study(hand.app.session, StudyKind::response);
+  hand.app.session.study.response.choice.quantity = "value up";
+  hand.check("study-resonance");
+}
+
+TEST_CASE("the limit cycle is told beside the steady state that hunts") {
+  Hand hand("governor_engine.json");
+  set_mode(hand.app.session, Mode::explore);
+  change_parameter(hand.app.session, "joints.slide.damping", 15);
+  find_cycle(hand.app.session, true);
+  hand.check("limit-cycle");
+}
+
 TEST_CASE("the boundary of hunting is drawn in the map: Vyshnegradsky's diagram") {
   Hand hand("governor_engine.json");
   set_mode(hand.app.session, Mode::explore);
