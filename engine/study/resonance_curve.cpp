@@ -12,6 +12,9 @@
 namespace flyball {
 namespace {
 
+// Of a point from which no steady state is found, as sweep() looks for others (see SolveOptions::search).
+constexpr double point_search = 0.05; // s
+
 using Outputs = std::vector<ResonanceOutput>;
 
 PeriodicRange standing(double value, double error = std::nan("")) {
@@ -61,6 +64,7 @@ class Curve {
     try {
       analysis_.set(std::vector{number});
       SolveOptions solve;
+      solve.search = point_search;
       solve.cancel = options_.cancel;
       const Solution solution = analysis_.solve(solve);
       if (solution.status != Status::no_steady_state) return resonance_point(solution, number);

@@ -6,8 +6,13 @@
 #include "engine/periodic/periodic_state.hpp"
 #include "engine/task/progress.hpp"
 
+#include <atomic>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace flyball {
 
