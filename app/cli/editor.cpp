@@ -12,8 +12,10 @@
 #include "app/platform/system_colors.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/file_commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/file.hpp"
@@ -204,7 +206,7 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
   while (!app.quit && !ends()) {
     // A film is drawn all the same.
     const bool hidden = !app.movie.progress && !window.visible();
-    const bool waits = hidden || (settling == 0 && !in_motion(app));
+    const bool waits = hidden || (settling == 0 && !in_motion(app.session, app.view));
     const double longest =
         waits ? std::min({idle, next_file_update(app.session),
                           next_notice_change(app.session, app.notice_age), app.ui.tooltip.due})
@@ -215,7 +217,7 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     last = now;
     const bool help = app.ui.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
     const bool fades = next_notice_change(app.session, app.notice_age) <= elapsed;
-    if (const auto found = colors.take()) take_system_theme(app, theme_of(*found));
+    if (const auto found = colors.take()) take_system_theme(app.ui, theme_of(*found));
     const bool news = update_files(app.session, elapsed) || help || fades;
     age_notice(app.session, app.notice_age, elapsed);
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
@@ -249,8 +251,8 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive() || app.file_dialogs.gallery.drawing || app.movie.progress ||
-        stage.resting() || app.ui.slider_press.place)
+    if (ImGui::IsAnyItemActive() || app.panels->gallery.drawing || app.movie.progress || stage.resting() ||
+        app.ui.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     shown.tell(app);

@@ -2,6 +2,8 @@
 
 #include "app/ui/app.hpp"
 #include "app/ui/plots/plot_picture.hpp"
+#include "app/ui/plots/plot_save.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/mechanism/file.hpp"
 
 #include <algorithm>
@@ -15,7 +17,7 @@ Image view_picture(App& app, PixelSize size) {
   update(app, 0, {static_cast<double>(size.width), static_cast<double>(size.height)});
   ViewRenderer renderer;
   Framebuffer target(size.width, size.height, app.view.samples);
-  ViewFrame frame = view_frame(app);
+  ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   frame.hovered = {};
   renderer.draw(frame, target);
   return target.read();

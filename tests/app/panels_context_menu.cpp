@@ -1,5 +1,7 @@
 // The menu of a right click in the view.
 #include "app/ui/commands.hpp"
+#include "app/ui/shown_scene.hpp"
+#include "app/ui/view_frame.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
@@ -46,7 +48,8 @@ TEST_CASE("a right click on a part selects it and offers what can be done with i
   robot.frames(2);
   CHECK_FALSE(open(app));
   CHECK(app.view.loads);
-  CHECK(view_frame(app).loads_body == body_index(app.session.mechanism(), "ball1"));
+  CHECK(view_frame(app.session, app.ui, app.tool, app.view).loads_body ==
+        body_index(app.session.mechanism(), "ball1"));
   const std::size_t bodies = app.session.mechanism().bodies.size();
   open_at(robot, robot.pixel(place(app, "ball2")));
   robot.click("view/menu/edit.delete");
@@ -122,19 +125,19 @@ TEST_CASE("hidden parts are neither seen nor pointed at, and come back") {
   Robot robot({1280, 900});
   App& app = robot.app;
   const ImVec2 ball = robot.pixel(place(app, "ball1"));
-  const std::size_t all = shown_scene(app)->solid.instances.size();
+  const std::size_t all = shown_scene(app.context())->solid.instances.size();
   robot.click(ball);
   robot.key('H', false, true);
-  CHECK(shown_scene(app)->solid.instances.size() < all);
+  CHECK(shown_scene(app.context())->solid.instances.size() < all);
   robot.point({ball.x + 1, ball.y});
   robot.frames(1);
   CHECK(part_of(app.session.mechanism(), app.view.hovered).name != "ball1");
   CHECK(converged(app.session)); // it acts as before
   robot.key('H', true, true);
-  CHECK(shown_scene(app)->solid.instances.size() == all);
+  CHECK(shown_scene(app.context())->solid.instances.size() == all);
   robot.click(ball);
   robot.key('I');
-  for (const Instance& instance : shown_scene(app)->solid.instances)
+  for (const Instance& instance : shown_scene(app.context())->solid.instances)
     CHECK(instance.part == find_part(app.session.mechanism(), {PartKind::body, "ball1"}));
   const double distance = app.view.camera.distance;
   robot.key('Z');

@@ -1,4 +1,5 @@
 // New, save, and questions before work is lost.
+#include "app/ui/panel_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/parts.hpp"
@@ -59,7 +60,7 @@ TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as
   robot.key('E', true);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(fs::path(app.file_dialogs.path).parent_path() == file.parent_path());
+  CHECK(fs::path(app.panels->save.query().path).parent_path() == file.parent_path());
 }
 
 TEST_CASE("saving over another file is asked about, and a failure loses nothing") {
@@ -73,7 +74,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
   show_save_dialog(app);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(app.file_dialogs.path == "governor.json");
+  CHECK(app.panels->save.query().path == "governor.json");
 
   SECTION("asked twice, then replaced") {
     robot.click("save/other.json"); // from the list
@@ -99,7 +100,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.type((folder / "no such folder/x").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("x.json was not saved"));
+    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("x.json was not saved"));
     CHECK(app.session.document.file() == file);
     CHECK(robot.speed_now() == 5);
     CHECK(app.session.document.unsaved());
@@ -129,7 +130,7 @@ TEST_CASE("a file that cannot be written any more asks for another place") {
   fs::remove_all(folder / "gone");
   robot.key('S', true);
   REQUIRE(robot.app.dialog.showing);
-  CHECK_THAT(robot.app.file_dialogs.message, ContainsSubstring("governor.json was not saved"));
+  CHECK_THAT(robot.app.panels->save.query().message, ContainsSubstring("governor.json was not saved"));
   CHECK(robot.app.session.document.unsaved());
 }
 

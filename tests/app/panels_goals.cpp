@@ -1,6 +1,7 @@
 // Sliders in reverse by mouse and keys: read-outs and bodies dragged to where they should be.
 #include "robot.hpp"
 
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"

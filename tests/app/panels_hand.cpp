@@ -2,8 +2,10 @@
 #include "robot.hpp"
 
 #include "app/document/redraw.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/tools_hand.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/solve/assembly_drag.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/solutions.hpp"
@@ -112,7 +114,7 @@ TEST_CASE("a body pulled while building moves along its joints, in one step") {
   CHECK((hand.drawn("collar") - collar).norm() > 0.01);
   CHECK((hand.drawn("spindle") - spindle).norm() < 1e-9);
   // The start is seen beside it.
-  const ViewFrame frame = view_frame(hand.app);
+  const ViewFrame frame = view_frame(hand.app.session, hand.app.ui, hand.app.tool, hand.app.view);
   REQUIRE(frame.ghost.size() == before.bodies.size());
   CHECK(frame.ghost_pose == GhostPose::drawn);
   CHECK(frame.ghost[static_cast<std::size_t>(body_index(before, "ball1"))].position == ball);
@@ -201,7 +203,7 @@ TEST_CASE("the steady state can become the drawn pose") {
   Hand hand(::flyball::Mode::build);
   const Mechanism before = hand.app.session.mechanism();
   const double arm = hand.settled("arm1");
-  run_command(hand.app, "edit.settle");
+  hand.app.commands.run("edit.settle");
   hand.frames(2);
   CHECK(hand.app.session.mechanism() != before);
   CHECK(hand.settled("arm1") == Approx(arm).epsilon(1e-12));
@@ -210,7 +212,7 @@ TEST_CASE("the steady state can become the drawn pose") {
   for (std::size_t i = 0; i < m.bodies.size(); ++i)
     CHECK((hand.app.session.answer.solution.poses[i].position - m.bodies[i].position).norm() < 1e-10);
   CHECK(hand.app.session.document.position() == 1);
-  run_command(hand.app, "edit.settle");
+  hand.app.commands.run("edit.settle");
   CHECK(hand.app.session.document.position() == 1);
   undo(hand.app.session);
   CHECK(hand.app.session.mechanism() == before);
@@ -352,7 +354,7 @@ TEST_CASE("whatever is pulled in whatever way, the mechanism stays whole") {
   std::mt19937 dice(3);
   const auto below = [&](int n) { return static_cast<int>(dice() % static_cast<unsigned>(n)); };
   Hand hand(::flyball::Mode::explore);
-  run_command(hand.app, "edit.settle"); // drawn with its loops closed to the last digit
+  hand.app.commands.run("edit.settle"); // drawn with its loops closed to the last digit
   hand.frames(2);
   const Mechanism first = hand.app.session.mechanism();
   for (int i = 0; i < 40; ++i) {

@@ -1,6 +1,7 @@
 // What a person does at the window, done by a robot off-screen.
 #include "robot.hpp"
 
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -154,7 +155,7 @@ TEST_CASE("a picture is exported with and without the panels") {
   robot.frames(2);
   REQUIRE(robot.app.dialog.showing);
   robot.click("export/720p"); // leaves the field of the path
-  robot.app.file_dialogs.path = file.string();
+  robot.app.panels->picture.query().path = file.string();
   const bool panels = GENERATE(false, true);
   if (panels) robot.click("export/panels");
   robot.click("export/save");

@@ -1,4 +1,5 @@
 // The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
+#include "app/ui/tools/tools.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "tests/catch.hpp"
@@ -42,7 +43,7 @@ TEST_CASE("two bodies that are joined already are not offered again") {
 
 TEST_CASE("a bearing may lie where a joint is") {
   SliderCrank d;
-  set_tool(d.app, Tool::bearing);
+  set_tool(d.app.session, d.app.ui, d.app.tool, Tool::bearing);
   d.frames(1);
   d.begin(slider_crank_pin);
   CHECK(d.app.tool.joint->bodies == Pair{"rod2", "block1"});

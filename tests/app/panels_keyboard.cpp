@@ -5,6 +5,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/address.hpp"
@@ -296,9 +297,9 @@ TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it"
   CHECK(get_parameter(app.session.mechanism(), spin_speed) > before);
   CHECK(converged(app.session));
   hand.key('=');
-  CHECK(app.plots.response.view.look.range[0]);
+  CHECK(app.panels->studies.shown().response.view.look.range[0]);
   hand.key(keys::home);
-  CHECK_FALSE(app.plots.response.view.look.range[0]);
+  CHECK_FALSE(app.panels->studies.shown().response.view.look.range[0]);
   // The context menu, and back.
   hand.key(keys::f10, false, true);
   hand.frames(2);

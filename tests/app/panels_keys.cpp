@@ -6,6 +6,7 @@
 #include "app/session/number_text.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -48,7 +49,7 @@ struct Hand : Robot {
   Hand() : Robot({1280, 1100}) {
     imgui_compat::map_key(ImGuiKey_Tab, keys::tab);
     set_mode(app.session, Mode::build);
-    app.panels.inspector_share = 0.9f;
+    app.sizes.inspector_share = 0.9f;
     select(app.session, {{{PartKind::joint, "spin"}}});
     frames(2);
   }
@@ -178,26 +179,26 @@ TEST_CASE("the sheet of keys has the keys, and goes with Escape") {
   Hand hand;
   hand.key('?');
   hand.frames(2);
-  REQUIRE(hand.app.commands.shortcuts);
+  REQUIRE(hand.app.panels->shortcuts.open);
   const Look before = look(hand.app);
   hand.key('P', true);
   hand.strike("mrj1 ");
   hand.key(keys::del);
   hand.key(keys::tab);
   CHECK(look(hand.app) == before);
-  CHECK_FALSE(hand.app.commands.palette_showing);
-  REQUIRE(hand.app.commands.shortcuts);
+  CHECK_FALSE(hand.app.panels->palette.showing());
+  REQUIRE(hand.app.panels->shortcuts.open);
   const auto way = GENERATE(0, 1, 2, 3);
   if (way == 0) hand.key(key_escape);
   if (way == 1) hand.key('?');
   if (way == 2) hand.click("shortcuts/close");
   if (way == 3) hand.click(ImVec2{5, 400}); // beside it: that closes it and selects nothing behind
   hand.frames(2);
-  CHECK_FALSE(hand.app.commands.shortcuts);
+  CHECK_FALSE(hand.app.panels->shortcuts.open);
   CHECK(look(hand.app) == before);
   hand.key('?'); // and comes again
   hand.frames(2);
-  CHECK(hand.app.commands.shortcuts);
+  CHECK(hand.app.panels->shortcuts.open);
 }
 
 TEST_CASE("a menu has the keys, and goes with Escape") {
@@ -238,7 +239,7 @@ TEST_CASE("dialogs and the palette have the keys, and go with Escape") {
   if (what == 2) hand.key('E', true);
   if (what == 3) hand.key('O', true);
   hand.frames(3);
-  const auto open = [&] { return hand.app.commands.palette_showing || hand.app.dialog.showing; };
+  const auto open = [&] { return hand.app.panels->palette.showing() || hand.app.dialog.showing; };
   REQUIRE(open());
   hand.strike("jm1");
   hand.key(keys::del);
@@ -258,7 +259,7 @@ TEST_CASE("Enter goes ahead in Mirror and Circular copy, and in their fields end
   select(app.session, {{{PartKind::body, "ball1"}}});
   hand.frames(2);
   const std::string which = GENERATE("mirror", "circular");
-  run_command(app, "edit." + which);
+  app.commands.run("edit." + which);
   hand.frames(3);
   REQUIRE(app.dialog.showing);
   const std::size_t bodies = app.session.mechanism().bodies.size();
@@ -268,7 +269,7 @@ TEST_CASE("Enter goes ahead in Mirror and Circular copy, and in their fields end
     hand.type("0.1");
     hand.key(key_enter);
     hand.frames(3);
-    CHECK(app.commands.copy.point.x() == 0.1);
+    CHECK(app.panels->copies.choice().point.x() == 0.1);
     REQUIRE(app.dialog.showing);
     CHECK(app.session.mechanism().bodies.size() == bodies);
   }
@@ -308,7 +309,7 @@ TEST_CASE("keys that come with the one that opens something do not pass it") {
   const Look before = look(hand.app);
   hand.app.ui.keys = {{'P', true, false}, {'J', false, false}, {'M', false, false}};
   hand.frames(3);
-  CHECK(hand.app.commands.palette_showing);
+  CHECK(hand.app.panels->palette.showing());
   CHECK(look(hand.app) == before);
 }
 

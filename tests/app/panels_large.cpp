@@ -1,4 +1,5 @@
 // The interface of a mechanism of ten thousand bodies: what a frame costs does not grow with them.
+#include "app/ui/panel_list.hpp"
 #include "large_answer.hpp"
 #include "large_mechanisms.hpp"
 #include "robot.hpp"
@@ -70,7 +71,7 @@ void open_large(Robot& robot, const Mechanism& mechanism) {
   open_document(robot.app.session, Document(unsolved(mechanism)));
   REQUIRE_FALSE(robot.app.session.mistakes.empty());
   answer_as_drawn(robot.app);
-  robot.app.panels.reactions = true;
+  robot.app.panels->results.sections().reactions = true;
   robot.frames(2);
 }
 

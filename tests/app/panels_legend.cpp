@@ -1,8 +1,11 @@
 // The view tells which pose is drawn how.
 #include "app/session/motion.hpp"
 #include "app/session/periodic.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/view_frame.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "tests/catch.hpp"
@@ -16,7 +19,7 @@ namespace {
 
 std::vector<std::string> words(App& app) {
   std::vector<std::string> all;
-  for (const LegendRow& row : legend_rows(app))
+  for (const LegendRow& row : legend_rows(app.context()))
     all.push_back(row.words);
   return all;
 }
@@ -31,7 +34,7 @@ TEST_CASE("the legend names what is in the view, and no more") {
   change_parameter(app.session, "joints.spin.drive.speed", 18);
   robot.frames(2);
   CHECK(words(app) == Words{"Steady state", "Drawn pose"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
   app.view.ghost = false;
   robot.frames(1);
   CHECK(words(app) == Words{"Steady state"});
@@ -42,8 +45,8 @@ TEST_CASE("the legend names what is in the view, and no more") {
   keep_explored(app.session);
   robot.frames(2);
   CHECK(words(app) == Words{"Drawn pose", "Steady state"});
-  CHECK(legend_rows(app)[0].mark == LegendMark::outlined);
-  CHECK(legend_rows(app)[1].mark == LegendMark::glass);
+  CHECK(legend_rows(app.context())[0].mark == LegendMark::outlined);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::glass);
   set_mode(app.session, Mode::explore);
   app.session.motion.duration = 0.2;
   robot.key('M');
@@ -69,7 +72,7 @@ TEST_CASE("the legend names the periodic motion and the drawn pose beside it") {
   play(app.session, false);
   robot.frames(2);
   CHECK(words(app) == Words{"Periodic motion", "Drawn pose"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
   set_mode(app.session, Mode::build);
   robot.frames(2);
   CHECK(words(app) == Words{"Drawn pose"}); // at its phase the crank stands as drawn
@@ -81,7 +84,7 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
   set_mode(app.session, Mode::build);
   look_from(app.view, 0, 0);
   robot.frames(3);
-  set_tool(app, Tool::pull);
+  set_tool(app.session, app.ui, app.tool, Tool::pull);
   robot.frames(1);
   const auto ball = static_cast<std::size_t>(body_index(app.session.mechanism(), "ball1"));
   const Vec3 at = app.session.mechanism().bodies[ball].position;
@@ -93,7 +96,7 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
   robot.frames(2);
   REQUIRE(app.tool.assembly);
   CHECK(words(app) == Words{"Drawn pose", "Before the pull"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
   robot.release();
   robot.frames(3);
   CHECK(words(app).front() == "Drawn pose");
@@ -127,7 +130,7 @@ TEST_CASE("the legend's amber is that of the motion, as pale as the glass in the
   app.session.motion.duration = 0.2;
   robot.key('M');
   robot.frames(3);
-  const std::vector<LegendRow> rows = legend_rows(app);
+  const std::vector<LegendRow> rows = legend_rows(app.context());
   REQUIRE(rows.back().mark == LegendMark::motion);
   const WidgetRect row = robot.widget("legend/" + std::to_string(rows.size() - 1));
   const Image picture = robot.picture();
@@ -160,7 +163,7 @@ TEST_CASE("the legend folds") {
   Robot robot;
   REQUIRE(robot.app.ui.widgets.count("legend/0") == 1);
   robot.click("legend");
-  CHECK_FALSE(robot.app.panels.legend);
+  CHECK_FALSE(robot.app.view.legend);
   CHECK(robot.app.ui.widgets.count("legend/0") == 0);
   robot.frames(30); // else it would be a double click
   robot.click("legend");
@@ -173,7 +176,7 @@ TEST_CASE("drawn pose and steady state are drawn in different ways") {
   change_parameter(app.session, "joints.spin.drive.speed", 18);
   keep_explored(app.session);
   robot.frames(2);
-  const ViewScene exploring = view_scene(view_frame(app));
+  const ViewScene exploring = view_scene(view_frame(app.session, app.ui, app.tool, app.view));
   CHECK(exploring.ghost.empty());
   CHECK_FALSE(exploring.drawn.empty());
   CHECK_FALSE(exploring.drawn_is_solid);
@@ -187,7 +190,7 @@ TEST_CASE("drawn pose and steady state are drawn in different ways") {
   CHECK(outlined(exploring, "collar"));
   set_mode(app.session, Mode::build);
   robot.frames(2);
-  const ViewScene building = view_scene(view_frame(app));
+  const ViewScene building = view_scene(view_frame(app.session, app.ui, app.tool, app.view));
   CHECK_FALSE(building.ghost.empty());
   CHECK(building.drawn_is_solid);
   CHECK(outlined(building, "collar"));

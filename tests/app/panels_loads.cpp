@@ -1,6 +1,9 @@
 // Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/load_view.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/panels/legend.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/snapshot.hpp"
 #include "robot.hpp"
 #include "temporary_folder.hpp"
@@ -26,8 +29,9 @@ int differing(const Robot& robot, const Image& a, const Image& b) {
 }
 
 bool has_row(App& app, const std::string& words) {
-  return std::ranges::any_of(
-      legend_rows(app), [&](const LegendRow& row) { return row.words.find(words) != std::string::npos; });
+  return std::ranges::any_of(legend_rows(app.context()), [&](const LegendRow& row) {
+    return row.words.find(words) != std::string::npos;
+  });
 }
 
 } // namespace
@@ -58,7 +62,7 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
   select(app.session, {{Part{PartKind::body, "ball1"}}});
   robot.frames(2);
   CHECK(has_row(app, "Free body: ball1"));
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   CHECK(std::ranges::count(scene.loads, LoadKind::weight, &Load::kind) == 1);
   for (const Instance& instance : scene.free_body)
     CHECK(instance.part == find_part(app.session.mechanism(), {PartKind::body, "ball1"}));
@@ -113,7 +117,7 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   App& app = robot.app;
   const double drawn_from = app.view.camera.distance;
   const auto all_seen = [&] {
-    return std::ranges::all_of(shown_scene(app)->arrows.arrows, [&](const LoadArrow& arrow) {
+    return std::ranges::all_of(shown_scene(app.context())->arrows.arrows, [&](const LoadArrow& arrow) {
       const auto at = app.view.camera.project(arrow.to, app.view.size);
       return at && at->x() > 0 && at->y() > 0 && at->x() < app.view.size.width &&
              at->y() < app.view.size.height;
@@ -121,7 +125,7 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   };
   robot.key('A');
   robot.frames(30, 0.04);
-  REQUIRE(shown_scene(app)->arrows.arrows.size() > 4);
+  REQUIRE(shown_scene(app.context())->arrows.arrows.size() > 4);
   CHECK(all_seen());
   CHECK(app.view.camera.distance > drawn_from);
   robot.key('A');
@@ -138,7 +142,7 @@ TEST_CASE("an arrow that is pointed at tells what it is") {
   Robot robot({1280, 900});
   App& app = robot.app;
   robot.key('A');
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   const auto arrow = std::ranges::find_if(scene.arrows.arrows, [&](const LoadArrow& each) {
     return scene.loads[each.load].kind == LoadKind::inertia && !scene.loads[each.load].moment;
   });
@@ -157,7 +161,7 @@ TEST_CASE("a reaction that is one of many says so when it is pointed at") {
   robot.frames(3);
   REQUIRE(app.session.answer.solution.reactions_nonunique);
   robot.key('A');
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   int told = 0;
   for (const LoadArrow& arrow : scene.arrows.arrows) {
     robot.point_at(0.2 * arrow.from + 0.8 * arrow.to);
@@ -173,7 +177,7 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   App& app = robot.app;
   robot.key('A');
   const auto reaction = [&] {
-    for (const Load& load : shown_scene(app)->loads)
+    for (const Load& load : shown_scene(app.context())->loads)
       if (load.kind == LoadKind::inertia && !load.moment && load.vector.norm() > 1) return load.vector;
     return Vec3(Vec3::Zero());
   };
@@ -188,15 +192,15 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   robot.key(' ');
   open_scene(app.session, shipped_file("rate_gyro"));
   robot.frames(3);
-  CHECK(!shown_scene(app)->loads.empty());
+  CHECK(!shown_scene(app.context())->loads.empty());
   robot.key(' ');
   robot.frames(5, 0.03);
-  CHECK(shown_scene(app)->loads.empty());
+  CHECK(shown_scene(app.context())->loads.empty());
   CHECK(has_row(app, "at the drawn phase only"));
   robot.key(' ');
   rewind(app.session);
   robot.frames(2);
-  CHECK(!shown_scene(app)->loads.empty());
+  CHECK(!shown_scene(app.context())->loads.empty());
   robot.key(258); // Tab: building
   CHECK(has_row(app, "while exploring"));
 }
@@ -217,7 +221,7 @@ TEST_CASE("an exported picture has the arrows where that is ticked") {
   CHECK_FALSE(app.view.alone);
   robot.key('E', true);
   robot.frames(2);
-  CHECK_FALSE(app.dialog.loads);
+  CHECK_FALSE(app.panels->picture.loads());
   robot.click("export/loads");
-  CHECK(app.dialog.loads);
+  CHECK(app.panels->picture.loads());
 }

@@ -3,6 +3,7 @@
 
 #include "app/plot/csv.hpp"
 #include "app/session/map.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -62,7 +63,7 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   const auto columns = static_cast<std::size_t>(choice.axes[0].count);
   REQUIRE(cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
-  const Plot& plot = robot.app.plots.map.plot;
+  const Plot& plot = robot.app.panels->studies.shown().map.plot;
   REQUIRE(plot.heat);
   for (std::size_t i = 7; i < cells.size(); i += 173) {
     CAPTURE(i);
@@ -101,7 +102,7 @@ TEST_CASE("unstable places are hatched, which is neither read off nor written to
   const MapCells& cells = map.cells.found->result;
   const auto unstable = std::ranges::count(cells, std::optional(false), &MapCell::stable);
   REQUIRE(unstable > 0);
-  const Plot& plot = plain.app.plots.map.plot;
+  const Plot& plot = plain.app.panels->studies.shown().map.plot;
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
   REQUIRE(hatch != plot.curves.end());
   CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
@@ -126,9 +127,9 @@ TEST_CASE("a click in the map sets both numbers as one step, and the answer is t
     const double share = k == 0 ? 0.7 : 0.6;
     CHECK(place[k] == Approx(axis.from + share * (axis.to - axis.from)).margin(0.01 * (axis.to - axis.from)));
   }
-  REQUIRE(robot.app.plots.map.plot.marker);
-  CHECK(robot.app.plots.map.plot.marker->x == place[0]);
-  CHECK(robot.app.plots.map.plot.marker->y == place[1]);
+  REQUIRE(robot.app.panels->studies.shown().map.plot.marker);
+  CHECK(robot.app.panels->studies.shown().map.plot.marker->x == place[0]);
+  CHECK(robot.app.panels->studies.shown().map.plot.marker->y == place[1]);
   const std::optional<MapQuantity> shown = map_quantity(app.session);
   REQUIRE(shown);
   CHECK(shown->value.value() ==
@@ -180,7 +181,7 @@ TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length
       ++points;
     }
   CHECK(points > 10);
-  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
+  CHECK(std::ranges::any_of(robot.app.panels->studies.shown().map.plot.curves,
                             [](const PlotCurve& c) { return c.name == "crossings"; }));
 }
 
@@ -203,7 +204,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
         }
   CHECK(points > 5);
   // It is drawn, with its value and unit in the legend.
-  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
+  CHECK(std::ranges::any_of(robot.app.panels->studies.shown().map.plot.curves,
                             [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
   CHECK(app.ui.widgets.count("map/level/value") == 1);
 }
@@ -305,7 +306,7 @@ TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft o
   REQUIRE(robot.map().curves.found->result.hunting);
   const PlaneCurves& found = *robot.map().curves.found->result.hunting;
   REQUIRE(found.curves.size() == 1);
-  const Plot& plot = app.plots.map.plot;
+  const Plot& plot = app.panels->studies.shown().map.plot;
   const auto drawn = std::ranges::find(plot.curves, std::string("hunting begins hard"), &PlotCurve::name);
   REQUIRE(drawn != plot.curves.end());
   REQUIRE(drawn->points.size() == found.curves[0].points.size());

@@ -3,7 +3,10 @@
 
 #include "app/session/campbell.hpp"
 #include "app/session/modes.hpp"
+#include "app/ui/camera_glide.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -66,15 +69,15 @@ TEST_CASE("no modes before they are asked for, and a closed study leaves nothing
   REQUIRE(robot.app.session.study.modes.list.found);
   robot.click("modes/row/1");
   CHECK_FALSE(robot.app.session.study.modes.poses.empty());
-  CHECK(in_motion(robot.app));
+  CHECK(in_motion(robot.app.session, robot.app.view));
   robot.click("study/close");
   const ModesState& modes = robot.app.session.study.modes;
   CHECK_FALSE(modes.list.asked);
   CHECK_FALSE(modes.list.found);
   CHECK_FALSE(modes.campbell.diagram.asked);
   CHECK(modes.poses.empty());
-  CHECK_FALSE(in_motion(robot.app));
-  CHECK(view_frame(robot.app).motion.empty());
+  CHECK_FALSE(in_motion(robot.app.session, robot.app.view));
+  CHECK(view_frame(robot.app.session, robot.app.ui, robot.app.tool, robot.app.view).motion.empty());
 }
 
 TEST_CASE("the governor's modes are its eigenvalues, and agree with its potential") {
@@ -115,7 +118,7 @@ TEST_CASE("a chosen mode moves about the steady state, and the governor's links 
   CHECK(furthest < 0.2);
   CHECK((seen.front() - seen[10]).norm() > 1e-4);
   // Amber beside the solid one.
-  const ViewFrame frame = view_frame(app);
+  const ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   CHECK(frame.motion.size() == app.session.poses.size());
   CHECK(frame.poses.size() == app.session.poses.size());
   CHECK(frame.ghost.empty());
@@ -171,7 +174,7 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   ModesRobot robot("rate_gyro");
   App& app = robot.app;
   const CampbellState& campbell = app.session.study.modes.campbell;
-  const CampbellView& drawn = app.plots.campbell;
+  const CampbellView& drawn = app.panels->studies.shown().campbell;
   REQUIRE(campbell.diagram.found);
   REQUIRE_FALSE(drawn.plot.curves.empty());
   double highest = 0;
@@ -227,8 +230,9 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   // The diagram still holds: only the speed has changed.
   CHECK(app.session.study.modes.campbell.current);
   CHECK(app.session.study.modes.campbell.diagram.found == followed);
-  REQUIRE_FALSE(app.plots.campbell.plot.references.empty());
-  CHECK(app.plots.campbell.plot.references[0].at == get_parameter(app.session.mechanism(), speed));
+  REQUIRE_FALSE(app.panels->studies.shown().campbell.plot.references.empty());
+  CHECK(app.panels->studies.shown().campbell.plot.references[0].at ==
+        get_parameter(app.session.mechanism(), speed));
   // Another number changes it.
   app.session.study.modes.campbell.diagram.found->run_time = 0; // whatever it took on a busy machine
   change_parameter(app.session, "joints.slide.spring.stiffness", 1500);

@@ -2,7 +2,10 @@
 #include "robot.hpp"
 
 #include "app/session/motion.hpp"
+#include "app/ui/camera_glide.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
@@ -240,7 +243,7 @@ TEST_CASE("the motion can have a view of its own") {
   robot.frames(2);
   const WidgetRect left = robot.widget("view"), right = robot.widget("beside");
   CHECK(right.from.x == Approx(left.to.x));
-  CHECK(view_frame(app).motion.empty());
+  CHECK(view_frame(app.session, app.ui, app.tool, app.view).motion.empty());
   // One camera for both.
   const double azimuth = app.view.camera.azimuth;
   robot.drag("beside", {0.4f, 0.5f}, {0.6f, 0.5f});
@@ -254,7 +257,7 @@ TEST_CASE("while nothing changes nothing is drawn, also with a motion") {
   const int drawn = robot.stage.views_changed();
   robot.frames(5);
   CHECK(robot.stage.views_changed() == drawn);
-  CHECK_FALSE(in_motion(robot.app));
+  CHECK_FALSE(in_motion(robot.app.session, robot.app.view));
   robot.click("motion/forward");
   CHECK(robot.stage.views_changed() > drawn);
 }
@@ -322,7 +325,7 @@ TEST_CASE("the comparison is measured and drawn") {
   CHECK(c.status == Status::converged);
   REQUIRE(c.best);
   CHECK(c.best->ratio() > 1);
-  CHECK(app.plots.compare.plot.curves.size() > 3);
+  CHECK(app.panels->studies.shown().compare.plot.curves.size() > 3);
   CHECK(app.ui.widgets.count("compare/ratio") == 1);
   // Its table has a line for each mark and run, below the heading.
   std::ptrdiff_t lines = 2 + std::ssize(c.direct);
@@ -348,9 +351,9 @@ TEST_CASE("the comparison shows the errors of a measure") {
   robot.frames(2);
   REQUIRE(app.session.study.compare.measured.found);
   CHECK(app.ui.widgets.count("compare/shown") == 1);
-  CHECK(app.plots.compare.plot.y.label == "error |q - q*|");
+  CHECK(app.panels->studies.shown().compare.plot.y.label == "error |q - q*|");
   app.session.study.compare.shown = "height";
   robot.frames(2);
-  CHECK(app.plots.compare.plot.y.label == "error of height");
-  CHECK(app.plots.compare.plot.y.unit == "m");
+  CHECK(app.panels->studies.shown().compare.plot.y.label == "error of height");
+  CHECK(app.panels->studies.shown().compare.plot.y.unit == "m");
 }

@@ -2,6 +2,7 @@
 #include "robot.hpp"
 
 #include "app/document/transform.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -75,7 +76,7 @@ TEST_CASE("a typed position does the same, and a tick leaves joints behind") {
   const bool leave = GENERATE(false, true);
   if (leave) {
     hand.click("inspector/leave joints");
-    CHECK(hand.app.inspector.leave_joints);
+    CHECK(hand.app.tool.leave_joints);
   }
   hand.click("inspector/position/x");
   hand.type("70 mm");

@@ -132,8 +132,7 @@ TEST_CASE("a vector takes a named point that is clicked in the view") {
   s.frames(2);
   REQUIRE(s.app.tool.tool == Tool::point);
   CHECK(s.app.ui.widgets.contains("point/A"));
-  CHECK(tool_hint(s.app.session, s.app.inspector, s.app.tool).find("Click the named point") !=
-        std::string::npos);
+  CHECK(tool_hint(s.app.session, s.app.tool).find("Click the named point") != std::string::npos);
   SECTION("by its place") {
     s.click_at(place_a);
   }
@@ -215,8 +214,7 @@ TEST_CASE("what is placed on a named point stands there, undone whole; with Ctrl
     s.hold(freely, false);
     s.point_at(place_a);
     s.frames(1);
-    CHECK((tool_hint(s.app.session, s.app.inspector, s.app.tool).find("It stands at A then") !=
-           std::string::npos) == !freely);
+    CHECK((tool_hint(s.app.session, s.app.tool).find("It stands at A then") != std::string::npos) == !freely);
     s.click_at(place_a);
     s.hold(false, false);
     s.key(key_enter);
@@ -248,8 +246,7 @@ TEST_CASE("what is dragged onto a named point stands there, in the same step") {
     s.pull("gizmo/centre", place_b - from + Vec3(0.004, -0.003, 0));
     REQUIRE(s.app.tool.grab);
     CHECK(s.app.tool.grab->stands == "B");
-    CHECK(tool_hint(s.app.session, s.app.inspector, s.app.tool).find("It stands at B then") !=
-          std::string::npos);
+    CHECK(tool_hint(s.app.session, s.app.tool).find("It stands at B then") != std::string::npos);
     s.release();
     CHECK(s.at_of(vector) == "B.x B.y B.z");
     CHECK(s.joint().at == place_b);
@@ -299,8 +296,8 @@ TEST_CASE("a body that is placed on a named point stands there with all of it") 
       s.hold(freely, false);
       s.point_at(place_a);
       s.frames(1);
-      CHECK((tool_hint(s.app.session, s.app.inspector, s.app.tool).find("It stands at A then") !=
-             std::string::npos) == !freely);
+      CHECK((tool_hint(s.app.session, s.app.tool).find("It stands at A then") != std::string::npos) ==
+            !freely);
       s.click_at(place_a);
       s.hold(false, false);
       s.frames(2);

@@ -72,7 +72,7 @@ TEST_CASE("what was told before is listed, the latest first") {
   robot.frames(2);
   app.session.notice.clear();
   robot.frames(2);
-  run_command(app, "help.messages");
+  app.commands.run("help.messages");
   robot.frames(3);
   REQUIRE(app.notice_log.past.size() >= 2);
   CHECK(app.notice_log.past.back().text == "Not saved: the disk is full");

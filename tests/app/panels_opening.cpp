@@ -1,4 +1,5 @@
 // The open dialog, recent files and the gallery of examples.
+#include "app/ui/panel_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 
@@ -73,7 +74,7 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
     robot.type((folder / "inner/none.json").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("There is no"));
+    CHECK_THAT(app.panels->open.query().message, ContainsSubstring("There is no"));
     CHECK(app.session.document.file() == here);
   }
   SECTION("Escape") {
@@ -87,10 +88,10 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   const TemporaryFolder folder;
   FileRobot robot(folder);
   App& app = robot.app;
-  show_gallery(app);
+  app.commands.run("file.examples");
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  const auto& cards = app.file_dialogs.gallery.cards;
+  const auto& cards = app.panels->gallery.cards();
   std::size_t shipped = 0;
   for (const auto& entry : fs::directory_iterator(app.session.options.scenes))
     shipped += entry.path().extension() == ".json" ? 1 : 0;
@@ -102,12 +103,12 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   }
   CHECK(pictures.size() == shipped);
   CHECK_FALSE(pictures.contains(0));
-  CHECK_FALSE(app.file_dialogs.gallery.drawing);
+  CHECK_FALSE(app.panels->gallery.drawing);
 
   SECTION("with the mouse") {
     robot.click("gallery/" + cards[1].file.filename().string());
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.session.document.file() == app.file_dialogs.gallery.cards[1].file);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[1].file);
     CHECK(app.session.answer.solution.status == Status::converged);
   }
   SECTION("with the keys") {
@@ -115,19 +116,19 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
     robot.key(key_right);
     robot.key(key_enter);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.session.document.file() == app.file_dialogs.gallery.cards[2].file);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[2].file);
   }
   SECTION("asking first") {
     robot.key(key_escape);
     robot.set_speed(5);
-    show_gallery(app);
+    app.commands.run("file.examples");
     robot.frames(2);
     robot.click("gallery/" + cards[0].file.filename().string());
     robot.frames(2);
     REQUIRE(robot.shows("unsaved/discard"));
     CHECK(robot.speed_now() == 5);
     robot.click("unsaved/discard");
-    CHECK(app.session.document.file() == app.file_dialogs.gallery.cards[0].file);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[0].file);
   }
 }
 
@@ -136,16 +137,16 @@ TEST_CASE("the gallery opens at once, its pictures come one a frame and again in
   FileRobot robot(folder);
   App& app = robot.app;
   app.session.options.mode = LiveSolver::Mode::background; // a person's window
-  show_gallery(app);
+  app.commands.run("file.examples");
   const auto drawn = [&] {
-    return std::ranges::count_if(app.file_dialogs.gallery.cards,
+    return std::ranges::count_if(app.panels->gallery.cards(),
                                  [](const SceneCard& card) { return card.picture != 0; });
   };
-  const auto count = static_cast<std::ptrdiff_t>(app.file_dialogs.gallery.cards.size());
+  const auto count = static_cast<std::ptrdiff_t>(app.panels->gallery.cards().size());
   for (std::ptrdiff_t i = 1; i <= count; ++i) {
     robot.frames(1);
     CHECK(drawn() == i);
-    CHECK(app.file_dialogs.gallery.drawing == (i < count));
+    CHECK(app.panels->gallery.drawing == (i < count));
   }
   app.ui.theme = Theme::dark;
   robot.frames(1);

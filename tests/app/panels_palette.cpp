@@ -3,6 +3,7 @@
 
 #include "app/session/fuzzy_match.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/panels/palette_entries.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -21,12 +22,12 @@ struct Finder : Robot {
   void find(const std::string& text) {
     key('P', true);
     frames(2);
-    REQUIRE(app.commands.palette_showing);
+    REQUIRE(app.panels->palette.showing());
     type(text);
     frames(2);
   }
   const PaletteEntry& entry(std::size_t i = 0) {
-    const std::vector<PaletteEntry>& found = palette_entries(app);
+    const std::vector<PaletteEntry>& found = app.panels->palette.found();
     REQUIRE(found.size() > i);
     return found[i];
   }
@@ -66,7 +67,7 @@ TEST_CASE("a part that is found is selected and brought into view") {
   CHECK(robot.entry().name == "part/body/ball1");
   robot.key(key_enter);
   robot.frames(2);
-  CHECK_FALSE(app.commands.palette_showing);
+  CHECK_FALSE(app.panels->palette.showing());
   CHECK(app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
   CHECK(app.view.camera.distance < before.distance);
   const int ball = body_index(app.session.mechanism(), "ball1");
@@ -121,7 +122,7 @@ TEST_CASE("a number behind its name is shown as what would be set, and set by En
 TEST_CASE("what was used last comes first, and all commands without a word") {
   Finder robot;
   robot.find("");
-  const std::vector<PaletteEntry> all = palette_entries(robot.app);
+  const std::vector<PaletteEntry> all = robot.app.panels->palette.found();
   for (const Command& command : commands())
     CHECK(std::ranges::any_of(all, [&](const PaletteEntry& entry) { return entry.name == command.id; }));
   robot.key(key_escape);

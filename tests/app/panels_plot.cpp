@@ -5,6 +5,7 @@
 #include "app/render/offscreen.hpp"
 #include "app/ui/app.hpp"
 #include "app/ui/plots/plot_picture.hpp"
+#include "app/ui/plots/plot_save.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 #include "temporary_folder.hpp"
@@ -36,6 +37,7 @@ struct Bench {
            .scenes = {},
            .theme = Theme::light,
            .numbers = {}}};
+  PlotDialog dialog;
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context{ImGui::CreateContext(),
                                                                  ImGui::DestroyContext};
   Plot plot = two_lines();
@@ -69,10 +71,10 @@ struct Bench {
       ImGui::SetNextWindowPos({0, 0});
       ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
       ImGui::Begin("bench", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-      now = plot_view(app, "test", view, plot, {600 * app.ui.scale, 400 * app.ui.scale});
+      now = plot_view(app.session, app.ui, "test", view, plot, {600 * app.ui.scale, 400 * app.ui.scale});
       ImGui::Dummy({10, 2000 * app.ui.scale});
       ImGui::End();
-      plot_dialog(app);
+      if (auto picture = dialog.draw(app.session, app.ui, app.dialog)) app.export_request = picture;
       ImGui::Render();
       vertices = ImGui::GetDrawData()->TotalVtxCount;
       ImGui::GetIO().MouseWheel = 0;

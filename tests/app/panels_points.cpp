@@ -20,7 +20,7 @@ constexpr const char* body = "ball1";
 // The results have all of the window's height below the inspector.
 struct Hand : Robot {
   Hand() : Robot({1280, 1600}) {
-    app.panels.inspector_share = 0.4f;
+    app.sizes.inspector_share = 0.4f;
     select(app.session, {{{PartKind::body, body}}});
     frames(3);
   }

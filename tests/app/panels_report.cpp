@@ -1,5 +1,6 @@
 // A report from the File menu: asked where to, written in the background, and told of.
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
@@ -18,8 +19,8 @@ TEST_CASE("a report is exported of what is shown") {
   const bool building = GENERATE(false, true);
   set_mode(robot.app.session, building ? Mode::build : Mode::explore);
   const Theme theme = robot.app.ui.theme;
-  run_command(robot.app, "file.report");
-  robot.app.file_dialogs.path = file.string(); // before the field has it
+  robot.app.commands.run("file.report");
+  robot.app.panels->report.query().path = file.string(); // before the field has it
   robot.frames(3);
   robot.click("report/save");
   REQUIRE(robot.app.export_request);

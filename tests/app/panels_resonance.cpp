@@ -5,6 +5,7 @@
 #include "app/plot/csv.hpp"
 #include "app/session/resonance.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/parts.hpp"
@@ -36,11 +37,11 @@ struct ResonanceRobot : Robot {
     frames(3);
   }
   ResponseState& state() { return app.session.study.response; }
-  const Plot& plot() { return app.plots.response.plot; }
+  const Plot& plot() { return app.panels->studies.shown().response.plot; }
   ImVec2 place(double x, double y) {
     const WidgetRect area = widget("plot/response/area");
-    REQUIRE(app.plots.response.view.kept.layout);
-    const PlotLayout& l = *app.plots.response.view.kept.layout;
+    REQUIRE(app.panels->studies.shown().response.view.kept.layout);
+    const PlotLayout& l = *app.panels->studies.shown().response.view.kept.layout;
     return {area.from.x + static_cast<float>(l.x.pixel(x) - l.area.left),
             area.from.y + static_cast<float>(l.y.pixel(y) - l.area.top)};
   }
@@ -246,11 +247,11 @@ TEST_CASE("the limit cycle is asked for by the palette, and goes where the dampe
   const PeriodicState* cycle = limit_cycle(app.session);
   REQUIRE(cycle);
   CHECK(cycle->status == PeriodicStatus::found);
-  CHECK(is_enabled(app, command("study.cycle")));
+  CHECK(app.commands.enabled(command("study.cycle")));
   change_parameter(app.session, "joints.slide.damping", 30);
   robot.frames(3);
   CHECK_FALSE(hunts(app.session));
   CHECK_FALSE(limit_cycle(app.session));
-  CHECK_FALSE(is_enabled(app, command("study.cycle")));
+  CHECK_FALSE(app.commands.enabled(command("study.cycle")));
   CHECK(app.ui.widgets.count("results/cycle") == 0);
 }

@@ -4,6 +4,7 @@
 
 #include "app/session/response.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
 #include "engine/mechanism/address.hpp"
@@ -41,7 +42,7 @@ struct ResponseRobot : Robot {
   }
 
   ResponseState& state() { return app.session.study.response; }
-  ResponseView& drawn() { return app.plots.response; }
+  const ResponseView& drawn() { return app.panels->studies.shown().response; }
   const PlotLayout& layout() {
     REQUIRE(drawn().view.kept.layout);
     return *drawn().view.kept.layout;

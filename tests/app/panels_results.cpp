@@ -22,7 +22,7 @@ TEST_CASE("a number is told in SI below only where that is another unit") {
   App& app = robot.app;
   // "0.78561568149 rad  +- 1.8e-15 rad" beside "+- 2.7e-16 m"
   CHECK(width(robot.widget("results/slide/error")) < 0.6f * width(robot.widget("results/arm1/error")));
-  choose_units(app, {AngleUnit::radian, LengthUnit::millimetre, SpeedUnit::radian});
+  choose_units(app.session, app.ui, app.view, {AngleUnit::radian, LengthUnit::millimetre, SpeedUnit::radian});
   robot.frames(2);
   CHECK(width(robot.widget("results/arm1/error")) < 0.6f * width(robot.widget("results/slide/error")));
 }

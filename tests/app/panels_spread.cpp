@@ -3,6 +3,7 @@
 #include "robot.hpp"
 
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -26,7 +27,7 @@ struct SpreadRobot : Robot {
     frames(3);
   }
   SpreadState& state() { return app.session.study.spread; }
-  const Plot& plot() { return app.plots.spread.plot; }
+  const Plot& plot() { return app.panels->studies.shown().spread.plot; }
   void retype(const std::string& field, const std::string& text) {
     click(field);
     key('A', true);
@@ -178,7 +179,7 @@ TEST_CASE("from the spread to the band around the response, which is switched of
   CHECK(robot.app.session.study.open == StudyKind::response);
   choose_response(robot.app.session, "parameters.w");
   robot.frames(4);
-  const Plot& plot = robot.app.plots.response.plot;
+  const Plot& plot = robot.app.panels->studies.shown().response.plot;
   REQUIRE_FALSE(plot.bands.empty());
   CHECK(plot.bands[0].name == "5 % to 95 % of samples");
   // The state that is shown lies within.
@@ -196,6 +197,6 @@ TEST_CASE("from the spread to the band around the response, which is switched of
   CHECK(robot.app.ui.widgets.count("response/band/words") == 1);
   robot.click("response/band");
   robot.frames(3);
-  CHECK(robot.app.plots.response.plot.bands.empty());
+  CHECK(robot.app.panels->studies.shown().response.plot.bands.empty());
   CHECK_FALSE(robot.app.session.study.band.computed.found);
 }

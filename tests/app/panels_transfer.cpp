@@ -1,5 +1,6 @@
 // The linear model as a person uses it: an input and an output, Bode's plots, poles and zeros, and the file.
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
@@ -31,7 +32,7 @@ struct TransferRobot : Robot {
     REQUIRE(state().found.found);
     return state().found.found->result;
   }
-  const TransferView& view() { return app.plots.transfer; }
+  const TransferView& view() { return app.panels->studies.shown().transfer; }
 };
 
 // What stands at a frequency of a plot's only curve, between its points.
@@ -154,9 +155,9 @@ TEST_CASE("the model is exported, by the ending of its name") {
        {"flyball_model.m", "flyball_model.py", "flyball_model.json", "flyball_model.npz"}) {
     const std::filesystem::path file = folder / name;
     std::filesystem::remove(file);
-    CHECK(is_enabled(robot.app, command("file.model")));
-    run_command(robot.app, "file.model");
-    robot.app.file_dialogs.path = file.string(); // before the field has it
+    CHECK(robot.app.commands.enabled(command("file.model")));
+    robot.app.commands.run("file.model");
+    robot.app.panels->model.query().path = file.string(); // before the field has it
     robot.frames(3);
     robot.click("model/save");
     robot.frames(2);
@@ -169,8 +170,8 @@ TEST_CASE("the model is exported, by the ending of its name") {
   robot.click("transfer/save");
   robot.click("model/cancel");
   robot.frames(2);
-  run_command(robot.app, "file.model");
-  robot.app.file_dialogs.path = file.string();
+  robot.app.commands.run("file.model");
+  robot.app.panels->model.query().path = file.string();
   robot.frames(3);
   robot.click("model/save");
   robot.frames(2);

@@ -104,13 +104,11 @@ TEST_CASE("what is typed can be mended, and what is no length is told") {
   }
   SECTION("Escape takes the number back, then the end, then the tool") {
     d.strike("0.25");
-    CHECK_THAT(tool_hint(d.app.session, d.app.inspector, d.app.tool),
-               ContainsSubstring("Esc drops the number"));
+    CHECK_THAT(tool_hint(d.app.session, d.app.tool), ContainsSubstring("Esc drops the number"));
     d.key(key_escape);
     CHECK(d.app.tool.typed.empty());
     CHECK(d.app.tool.first);
-    CHECK_THAT(tool_hint(d.app.session, d.app.inspector, d.app.tool),
-               ContainsSubstring("Esc drops the first"));
+    CHECK_THAT(tool_hint(d.app.session, d.app.tool), ContainsSubstring("Esc drops the first"));
     d.key(key_escape);
     CHECK_FALSE(d.app.tool.first);
     CHECK(d.app.tool.tool == Tool::rod);
@@ -132,7 +130,7 @@ TEST_CASE("the length of links, springs and dampers is typed as well") {
   });
   d.frames(2);
   const Tool tool = GENERATE(Tool::spring, Tool::damper, Tool::distance);
-  set_tool(d.app, tool);
+  set_tool(d.app.session, d.app.ui, d.app.tool, tool);
   d.frames(1);
   d.click_at({-0.2, 0, 0});
   d.point_at({0.15, 0, 0});

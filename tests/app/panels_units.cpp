@@ -3,6 +3,7 @@
 #include "app/session/quantity.hpp"
 #include "app/session/settings.hpp"
 #include "app/ui/choices.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "robot.hpp"
@@ -56,7 +57,7 @@ TEST_CASE("a plain number is in the unit shown, and any unit can be typed") {
 TEST_CASE("fields, sliders and results show one and the same unit") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(2);
   robot.click(std::string("parameters/") + speed + "/value");
   CHECK_THAT(app.ui.fields.typing.text, ContainsSubstring("rpm"));
@@ -81,7 +82,7 @@ TEST_CASE("fields, sliders and results show one and the same unit") {
 TEST_CASE("the hand's steps on a slider are round in the unit shown") {
   Robot robot;
   App& app = robot.app;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(2);
   robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.71f, 0.5f});
   const double rpm = get_parameter(app.session.mechanism(), speed) * 30 / std::numbers::pi;
@@ -116,12 +117,12 @@ TEST_CASE("what was chosen is there when the program starts again") {
   {
     App app(options);
     CHECK(app.session.units == DisplayUnits{});
-    choose_units(app, workshop);
-    open_legend(app, false);
+    choose_units(app.session, app.ui, app.view, workshop);
+    open_legend(app.session, app.ui, app.view, false);
   }
   App again(options);
   CHECK(again.session.units == workshop);
-  CHECK_FALSE(again.panels.legend);
+  CHECK_FALSE(again.view.legend);
 }
 
 TEST_CASE("settings that cannot be read are as at first") {
@@ -135,14 +136,14 @@ TEST_CASE("settings that cannot be read are as at first") {
 TEST_CASE("the lines below sliders change with the units at once") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  choose_units(app, si);
+  choose_units(app.session, app.ui, app.view, si);
   robot.frames(2);
   REQUIRE(robot.app.ui.widgets.contains(std::string("parameters/") + speed + "/rate"));
   const std::uint64_t ticket = app.session.answer.ticket;
-  const auto shown = [&] { return app.panels.rates.at(speed).rates.front(); };
+  const auto shown = [&] { return app.panels->parameters.rates().at(speed).rates.front(); };
   REQUIRE(shown().unit == "rad/(rad/s)");
   const double value = shown().value;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(1);
   CHECK(app.session.answer.ticket == ticket);
   CHECK(shown().unit == "°/rpm");

@@ -146,5 +146,5 @@ TEST_CASE("where the legend would cover a fifth of the view, it folds until it i
   robot.click("legend");
   robot.frames(2);
   CHECK_FALSE(app.ui.widgets.contains("legend/0"));
-  CHECK(app.panels.legend); // of larger views
+  CHECK(app.view.legend); // of larger views
 }

@@ -2,6 +2,7 @@
 
 #include "app/render/imgui_compat.hpp"
 
+#include "app/ui/camera_glide.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 

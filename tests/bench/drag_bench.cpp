@@ -4,6 +4,7 @@
 // costs while a body is pulled by hand.
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/app.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"

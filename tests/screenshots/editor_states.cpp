@@ -7,6 +7,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/tools.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ TEST_CASE("a named point is picked for a joint") {
   Hand hand("governor_parametric.json");
   hand.key('1');
   hand.choose(PartKind::joint, "slide");
-  set_tool(hand.app, Tool::point);
+  set_tool(hand.app.session, hand.app.ui, hand.app.tool, Tool::point);
   hand.app.tool.standing = "joints.slide.at";
   hand.frames(3);
   hand.check("editor-picking-point");
@@ -114,7 +115,7 @@ TEST_CASE("each kind of part has its inspector") {
       set_expression(next, "bodies.ball1.turn.2", "20 deg");
       name_number(next, "bodies.ball1.shapes.1.radius", "rod");
     });
-    hand.app.panels.inspector_share = 0.9f;
+    hand.app.sizes.inspector_share = 0.9f;
     hand.app.ui.sections.open["inspector/mass section"] = false;
     hand.choose(PartKind::body, "ball1");
     hand.check("inspector-shapes");
@@ -173,7 +174,7 @@ TEST_CASE("the sheet of shortcuts lists every key") {
 
 TEST_CASE("the examples have pictures") {
   Hand hand;
-  show_gallery(hand.app);
+  hand.app.commands.run("file.examples");
   hand.frames(30);
   hand.check("gallery");
 }
@@ -312,7 +313,7 @@ TEST_CASE("what acts on the governor is drawn, and on one ball of it") {
 TEST_CASE("the context menu of a body") {
   Hand hand("governor.json");
   hand.choose(PartKind::body, "ball1");
-  run_command(hand.app, "view.menu");
+  hand.app.commands.run("view.menu");
   hand.frames(2);
   hand.check("context-menu");
 }

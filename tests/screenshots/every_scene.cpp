@@ -3,6 +3,7 @@
 
 #include "app/render/offscreen.hpp"
 #include "app/ui/file_commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/panels.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -40,7 +41,8 @@ TEST_CASE("dark colours and twice the scale look as they did", "[egl]") {
   const OffscreenContext context;
   App app(steady_options(Theme::dark));
   open_scene(app.session, FLYBALL_ASSETS "/scenes/governor.json");
-  app.panels.reactions = app.panels.eigenvalues = app.panels.system = true;
+  app.panels->results.sections().reactions = app.panels->results.sections().eigenvalues =
+      app.panels->results.sections().system = true;
   check_stored("governor-dark-2x", interface_picture(app, {2400, 1700}, 2));
 }
 
@@ -60,8 +62,8 @@ TEST_CASE("the dialog for pictures looks as it did") {
   App app(steady_options());
   app.view.samples = 1;
   open_scene(app.session, FLYBALL_ASSETS "/scenes/rate_gyro.json");
-  show_export_dialog(app);
-  app.file_dialogs.path = "/home/somebody/rate_gyro.png";
+  app.commands.run("file.export");
+  app.panels->picture.query().path = "/home/somebody/rate_gyro.png";
   check_stored("export-dialog", interface_picture(app, interface_size, 1));
 }
 

@@ -1,5 +1,4 @@
 // How small disturbances of the steady state behave.
-#include "app/ui/panel_state.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -30,8 +29,8 @@ void lines_of(const Ui& ui, const std::vector<std::complex<double>>& eigenvalues
 }
 
 // Where the linearised motion turns with the drives: what a period makes of a disturbance.
-void multiplier_results(Ui& ui, PanelState& panels, const Floquet& floquet) {
-  if (!section(ui, "results/eigenvalues", "Floquet multipliers", panels.eigenvalues)) return;
+void multiplier_results(Ui& ui, ResultSections& open, const Floquet& floquet) {
+  if (!section(ui, "results/eigenvalues", "Floquet multipliers", open.eigenvalues)) return;
   paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
             "times what it was: above 1 in size it grows.",
             colors_of(ui).dim);
@@ -52,14 +51,13 @@ void floquet_rows(Ui& ui, const Floquet& floquet) {
   }
 }
 
-void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels) {
+void eigenvalue_results(const Session& session, Ui& ui, ResultSections& open) {
   if (const PeriodicState* motion = periodic_motion(session); motion && !motion->floquet.multipliers.empty())
-    return multiplier_results(ui, panels, motion->floquet);
-  if (session.answer.solution.floquet)
-    return multiplier_results(ui, panels, *session.answer.solution.floquet);
+    return multiplier_results(ui, open, motion->floquet);
+  if (session.answer.solution.floquet) return multiplier_results(ui, open, *session.answer.solution.floquet);
   const auto& eigenvalues = session.answer.solution.eigenvalues;
   if (!eigenvalues || eigenvalues->empty()) return;
-  if (!section(ui, "results/eigenvalues", "Eigenvalues", panels.eigenvalues)) return;
+  if (!section(ui, "results/eigenvalues", "Eigenvalues", open.eigenvalues)) return;
   paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.",
             colors_of(ui).dim);
   lines_of(ui, *eigenvalues);

@@ -4,10 +4,14 @@
 namespace flyball {
 
 struct Floquet;
-struct PanelState;
 struct Session;
 struct ToolState;
 struct Ui;
+
+// Which are open.
+struct ResultSections {
+  bool torques = true, reactions = false, eigenvalues = false, system = false;
+};
 
 void coordinate_results(Session& session, Ui& ui);
 void measure_results(Session& session, Ui& ui);
@@ -24,9 +28,9 @@ void pull_results(const Session& session, Ui& ui, const ToolState& tool);
 // Position, speed and acceleration of the selected bodies.
 void body_results(Session& session, Ui& ui);
 // Drive torques, reactions.
-void load_results(const Session& session, Ui& ui, PanelState& panels);
-void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels);
-void system_results(const Session& session, Ui& ui, PanelState& panels);
+void load_results(const Session& session, Ui& ui, ResultSections& open);
+void eigenvalue_results(const Session& session, Ui& ui, ResultSections& open);
+void system_results(const Session& session, Ui& ui, ResultSections& open);
 // The residual after each iteration, on a logarithmic scale.
 void history_plot(const Session& session, Ui& ui, float width, float height);
 

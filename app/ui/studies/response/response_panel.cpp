@@ -2,7 +2,6 @@
 #include "app/session/resonance.hpp"
 #include "app/session/response_pull.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/response/resonance_plot.hpp"
 #include "app/ui/studies/response/response_plot.hpp"
@@ -391,40 +390,39 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
 
 } // namespace
 
-void response_panel(App& app) {
-  const float s = app.ui.scale;
+void response_panel(Session& session, Ui& ui, ResponseView& drawn) {
+  const float s = ui.scale;
   ImGui::BeginChild("choices", {response_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  response_choices(app.session, app.ui, app.plots.response);
+  response_choices(session, ui, drawn);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  ResponseView& drawn = app.plots.response;
-  const bool resonance = is_resonance(app.session);
-  const bool found = resonance ? app.session.study.response.resonance.found != nullptr
-                               : app.session.study.response.curve.found != nullptr;
-  if (found && response_refusal(app.session).empty()) {
+  const bool resonance = is_resonance(session);
+  const bool found = resonance ? session.study.response.resonance.found != nullptr
+                               : session.study.response.curve.found != nullptr;
+  if (found && response_refusal(session).empty()) {
     if (resonance)
-      draw_resonance(app.session, drawn);
+      draw_resonance(session, drawn);
     else
-      draw_response(app.session, drawn);
+      draw_response(session, drawn);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotEvents events =
-        plot_view(app, "response", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+    const PlotEvents events = plot_view(session, ui, "response", drawn.view, drawn.plot,
+                                        {std::max(room.x, 40.f), std::max(room.y, 40.f)});
     const bool dragged = events.dragged_to.has_value();
     if (const auto hit = dragged ? events.dragged_to : events.clicked)
-      later(app.ui, [&app, hit = *hit, dragged, resonance] {
+      later(ui, [&session, &drawn, hit = *hit, dragged, resonance] {
         if (resonance)
-          go_to_resonance(app.session, app.plots.response, hit);
+          go_to_resonance(session, drawn, hit);
         else
-          go_to_hit(app.session, app.plots.response, hit, dragged);
+          go_to_hit(session, drawn, hit, dragged);
       });
     if (const auto& to = events.pulled_to)
-      later(app.ui, [&app, x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
-                     y = to->y / drawn.plot.y.factor] { pull_response(app.session, x, y); });
-  } else if (!app.session.mistakes.empty()) {
-    paragraph("The mechanism is not finished; see the line below the view.", colors_of(app.ui).dim);
+      later(ui, [&session, x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
+                 y = to->y / drawn.plot.y.factor] { pull_response(session, x, y); });
+  } else if (!session.mistakes.empty()) {
+    paragraph("The mechanism is not finished; see the line below the view.", colors_of(ui).dim);
   }
   ImGui::EndChild();
 }
