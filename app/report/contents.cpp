@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t most_curves = 12; // sliders that are followed
 constexpr int most_modes = 20;
-constexpr int motions_in_order = 25, most_motions = 129; // points of a curve of periodic motions
-constexpr long most_evaluations = 4'000'000;             // of the equations of motion, for such a curve
+constexpr int motions_in_order = 25, most_motions = 65; // points of a curve of periodic motions
+constexpr long most_evaluations = 2'500'000;            // of the equations of motion, for such a curve
 
 // Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice.
 std::vector<Slider> curve_parameters(const Mechanism& m) {

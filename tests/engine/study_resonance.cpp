@@ -12,7 +12,7 @@ using Catch::Matchers::WithinAbs;
 
 namespace {
 
-constexpr double rotor_mass = 4, rotor_stiffness = 1e4, rotor_damping = 40, rotor_eccentricity = 1e-3;
+constexpr double rotor_mass = 4, rotor_stiffness = 1e4, rotor_damping = 120, rotor_eccentricity = 1e-3;
 const std::string rotor_speed = "joints.spin.drive.speed";
 
 // A disc in a block that slides in x and y on springs, its mass centre beside its axis; weight along -y.
@@ -41,12 +41,13 @@ double whirl_at(double speed) {
 TEST_CASE("A resonance curve goes through the closed form, and is drawn close where it bends") {
   std::vector<std::size_t> published;
   ResonanceOptions options;
-  options.coarse = 17;
+  options.coarse = 9;
+  options.tolerance = 0.03;
   options.publish = [&](const ResonanceCurve& so_far) { published.push_back(so_far.points.size()); };
   const ResonanceCurve curve = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
   CHECK(curve.whole);
-  REQUIRE(curve.points.size() > 25);
-  CHECK(curve.points.size() < 120);
+  REQUIRE(curve.points.size() > 15);
+  CHECK(curve.points.size() < 60);
   REQUIRE(published.size() == curve.points.size()); // one after the other
   for (std::size_t i = 0; i < published.size(); ++i)
     CHECK(published[i] == i + 1);
@@ -71,12 +72,12 @@ TEST_CASE("A resonance curve goes through the closed form, and is drawn close wh
     CHECK(point->range_of(OutputKind::drive, "spin"));
     CHECK_FALSE(point->range_of(OutputKind::coordinate, "spin")); // prescribed
   }
-  // Straight lines between the points keep to the closed form within a hundredth of its height.
-  const double peak = whirl_at(50);
+  // Straight lines between the points keep to the closed form within two hundredths of its height.
+  const double peak = whirl_at(55);
   for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) {
     const double from = curve.points[i]->number, to = curve.points[i + 1]->number;
     CHECK(from < to);
-    CHECK_THAT((whirl_at(from) + whirl_at(to)) / 2, WithinAbs(whirl_at((from + to) / 2), 0.01 * peak));
+    CHECK_THAT((whirl_at(from) + whirl_at(to)) / 2, WithinAbs(whirl_at((from + to) / 2), 0.02 * peak));
   }
 }
 

@@ -95,8 +95,7 @@ void found_motions(Session& session, Ui& ui) {
   const auto& found = session.study.response.resonance.found;
   if (!found) return;
   const NumberStyle& numbers = session.options.numbers;
-  row(ui, resonance_words(session), numbers.run_times ? duration_text(found->result.run_time_s, numbers) : "",
-      "",
+  row(ui, resonance_words(session), numbers.run_times ? duration_text(found->run_time, numbers) : "", "",
       "The balance turns with the drives: of the motion that comes back after each period the line is the "
       "mean, the band reaches from least to most. Dashed where Floquet's multipliers say that it is left.");
   note_widget(ui.widgets, "response/found");
