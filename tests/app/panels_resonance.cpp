@@ -143,9 +143,11 @@ TEST_CASE("where there is no motion is told with the reason, and steady states a
   const ResonanceCurve& curve = app.session.study.response.resonance.found->result;
   CHECK(curve.points.front()->steady);
   const std::vector<ResonanceGap> gaps = resonance_gaps(curve);
-  REQUIRE(gaps.size() == 1);
-  CHECK(gaps[0].from == Approx(50).margin(1));
-  CHECK_THAT(gaps[0].why, ContainsSubstring("grows without end"));
+  const auto critical =
+      std::ranges::find_if(gaps, [](const ResonanceGap& gap) { return gap.from <= 50 && gap.to >= 50; });
+  REQUIRE(critical != gaps.end());
+  CHECK(critical->to - critical->from < 2);
+  CHECK_THAT(critical->why, ContainsSubstring("grows without end"));
   CHECK(app.ui.widgets.count("response/gap/1") == 1);
   CHECK_THAT(resonance_words(app.session), ContainsSubstring("1 steady"));
   CHECK_THAT(resonance_words(app.session), ContainsSubstring("without a motion"));

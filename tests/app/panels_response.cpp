@@ -443,6 +443,7 @@ TEST_CASE("where nothing moves periodically either, the response says why") {
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;
   choose_response_end(app.session, &ResponseChoice::to, 1);
+  choose_response_end(app.session, &ResponseChoice::from, 0.5); // it would stand where nothing turns
   edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) {
     mechanism.gravity = {3, -9, 0};
     for (Joint& joint : mechanism.joints) // it sticks and slips

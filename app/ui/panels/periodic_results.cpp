@@ -46,9 +46,12 @@ void range_row(Session& session, Ui& ui, const RangeWords& words, const Periodic
                colors_of(ui).dim);
   ImGui::Dummy({0, 0});
   if (!amplitude) return;
-  right_digits(
-      ui, "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, digits) + " " + unit.text,
-      colors_of(ui).dim);
+  const std::string within =
+      std::isfinite(range.error) ? " ± " + magnitude_text(range.error * unit.factor, numbers) : "";
+  right_digits(ui,
+               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, digits) + within +
+                   " " + unit.text,
+               colors_of(ui).dim);
   ImGui::Dummy({0, 0});
 }
 
@@ -104,7 +107,7 @@ void periodic_results(Session& session, Ui& ui) {
   motion_rows(session, ui, *state, "results/periodic");
 }
 
-void cycle_results(Session& session, Ui& ui) {
+void cycle_offer(Session& session, Ui& ui) {
   if (!hunts(session)) return;
   const auto& search = session.study.periodic.cycle;
   const bool wanted = session.study.periodic.cycle_wanted;
@@ -120,10 +123,13 @@ void cycle_results(Session& session, Ui& ui) {
   }
   if (!state) return;
   const UiColors& colors = colors_of(ui);
-  const bool found = state->status == PeriodicStatus::found;
-  paragraph(state->message, !found ? colors.warn : colors.dim);
+  paragraph(state->message, state->status == PeriodicStatus::found ? colors.dim : colors.warn);
   note_widget(ui.widgets, "results/cycle/message");
-  if (!found) return;
+}
+
+void cycle_results(Session& session, Ui& ui) {
+  const PeriodicState* state = limit_cycle(session);
+  if (!state || state->status != PeriodicStatus::found) return;
   heading(ui, state->drive_periods == 0 ? "Limit cycle, over a period" : "Periodic motion, over a period");
   motion_rows(session, ui, *state, "results/cycle");
   if (!state->floquet.multipliers.empty()) {

@@ -19,7 +19,8 @@ void measure_results(Session& session, Ui& ui);
 void friction_results(const Session& session, Ui& ui);
 // Where a drive makes the balance turn: the motion in its place.
 void periodic_results(Session& session, Ui& ui);
-// Where the steady state hunts: the limit cycle beside it, if it is asked for.
+// Where the steady state hunts: the limit cycle beside it can be asked for, and is told.
+void cycle_offer(Session& session, Ui& ui);
 void cycle_results(Session& session, Ui& ui);
 void floquet_rows(Ui& ui, const Floquet& floquet);
 void solver_results(const Session& session, Ui& ui);

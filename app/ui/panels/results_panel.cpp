@@ -138,13 +138,14 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, const ToolS
     verdict(session, ui);
     remedies(session, ui);
     periodic_results(session, ui);
-    cycle_results(session, ui);
+    cycle_offer(session, ui);
     warning_rows(session, ui, "results/warnings", 3);
     pull_results(session, ui, tool);
     neutral_joints(session, ui);
     coordinate_results(session, ui);
     friction_results(session, ui);
     measure_results(session, ui);
+    cycle_results(session, ui);
     body_results(session, ui);
     // What runs away leaves a residual that says nothing: it is small because everything else is large.
     if (session.answer.solution.unheld.empty()) solver_results(session, ui);
