@@ -1,5 +1,6 @@
 #include "app/plot/resonance_plot.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
@@ -11,6 +12,13 @@ Piece piece_of(const ResonancePoint& point) {
   if (point.steady) return point.stable == true ? Piece::steady_stable : Piece::steady_other;
   if (!point.stable) return Piece::motion_undecided;
   return *point.stable ? Piece::motion_stable : Piece::motion_unstable;
+}
+
+// What is nothing but rounding is told as zero.
+double mean_of(const PeriodicRange& range) {
+  constexpr double rounding = 1e-12; // of what it goes through
+  const double error = std::isfinite(range.error) ? range.error : 0;
+  return std::abs(range.mean) <= std::max(error, rounding * (range.most - range.least)) ? 0 : range.mean;
 }
 
 PlotCurve empty_curve(Piece piece, bool band) {
@@ -58,9 +66,10 @@ void add_resonance(Plot& plot, const ResonanceCurve& curve, OutputKind kind, con
       piece = piece_of(point);
       plot.curves.push_back(empty_curve(piece, banded));
       // Up to the point where it changes, so that no gap is left that is none.
-      if (before) plot.curves.back().points.push_back({before->number, before->range_of(kind, name)->mean});
+      if (before)
+        plot.curves.back().points.push_back({before->number, mean_of(*before->range_of(kind, name))});
     }
-    plot.curves.back().points.push_back({point.number, range->mean});
+    plot.curves.back().points.push_back({point.number, mean_of(*range)});
     if (banded) {
       if (!band) band = &plot.bands.emplace_back(PlotBand{"least to most", {}, plot_color::sky_blue});
       band->points.push_back({point.number, range->least, range->most});

@@ -97,7 +97,9 @@ void found_motions(Session& session, Ui& ui) {
   const NumberStyle& numbers = session.options.numbers;
   row(ui, resonance_words(session), numbers.run_times ? duration_text(found->run_time, numbers) : "", "",
       "The balance turns with the drives: of the motion that comes back after each period the line is the "
-      "mean, the band reaches from least to most. Dashed where Floquet's multipliers say that it is left.");
+      "mean, the band reaches from least to most. Dashed where Floquet's multipliers say that it is left.\n"
+      "Points lie closer where the curve bends; a peak narrower than the first of them are apart, a 32nd of "
+      "the range, may lie between two: a shorter range shows it.");
   note_widget(ui.widgets, "response/found");
   const ShownUnit unit = shown_unit(parameter_unit(*found->of.mechanism, found->of.address), session.units);
   const std::string after = unit.text.empty() ? "" : " " + unit.text;
