@@ -60,7 +60,7 @@ TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as
   robot.key('E', true);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(fs::path(app.panels->save.query().path).parent_path() == file.parent_path());
+  CHECK(fs::path(app.panels->picture.query().path).parent_path() == file.parent_path());
 }
 
 TEST_CASE("saving over another file is asked about, and a failure loses nothing") {

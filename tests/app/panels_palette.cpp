@@ -89,6 +89,21 @@ TEST_CASE("a number that is found has its value and unit, and its slider or fiel
     CHECK(app.ui.keyboard.at == "parameters/joints.slide.spring.stiffness");
     CHECK(has_keyboard(app.ui, app.ui.keyboard.at));
   }
+  SECTION("a slider of a group that was closed, whichever it is") {
+    const auto [group, words, address] = GENERATE(table<const char*, const char*, const char*>(
+        {{"parameters/drives", "speed of spin", spin_speed},
+         {"parameters/springs", "spring stiffness of slide", "joints.slide.spring.stiffness"}}));
+    robot.click(group);
+    robot.frames(2);
+    const std::string slider = std::string("parameters/") + address;
+    REQUIRE_FALSE(app.ui.widgets.contains(slider));
+    robot.find(words);
+    REQUIRE(robot.entry().address == address);
+    robot.key(key_enter);
+    robot.frames(6);
+    CHECK(app.ui.widgets.contains(slider));
+    CHECK(app.ui.keyboard.at == slider);
+  }
   SECTION("a field of a part that was not selected, in a section that was closed") {
     robot.find("mass of ball1");
     CHECK(robot.entry().right == "1 kg");

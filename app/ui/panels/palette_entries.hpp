@@ -26,6 +26,8 @@ struct PaletteEntry {
   std::vector<std::size_t> marks; // bytes of the title that were typed
 };
 
+struct Session;
+
 // Parts and numbers of the mechanism, until it changes, and what was found last.
 struct PaletteIndex {
   std::uint64_t revision = 0;
