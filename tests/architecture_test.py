@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Includes go one way: a folder sees itself and what this table names, and nothing else.
+"""Includes go one way: a folder sees itself and what this table names, and nothing else. Views do not name the App.
 
     architecture_test.py SOURCE_DIR
 """
@@ -31,6 +31,11 @@ WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/
 # What only some systems have is in these.
 OF_A_SYSTEM = ("app/platform/linux/", "engine/mechanism/posix/")
 SYSTEM = re.compile(r"^(sys/|(unistd|fcntl|poll|spawn|dlfcn|pthread|termios|dirent|pwd|glob|windows)\.h$)")
+# All of the window at once is for what assembles its frame and what carries out commands.
+OF_THE_FRAME = re.compile(r"^app/ui/(app|build_gui|commands|command_table|file_commands|palette_actions|report_export|snapshot|stage)"
+                          r"\.[ch]pp$")
+THE_APP = re.compile(r"\bApp\b")
+COMMENT = re.compile(r"//.*")
 DRAWING = re.compile(r"^(imgui|GL/|glad/|GLFW/|EGL/)")
 
 
@@ -45,7 +50,10 @@ def violations(source):
         for file in sorted((source / top).rglob("*.[ch]pp")):
             path = file.relative_to(source).as_posix()
             mine = folder_of(path)
-            for name in INCLUDE.findall(file.read_text()):
+            text = file.read_text()
+            if mine == "app/ui" and not OF_THE_FRAME.match(path) and THE_APP.search(COMMENT.sub("", text)):
+                found.append(f"{path}: takes the App rather than the parts that it touches")
+            for name in INCLUDE.findall(text):
                 if DRAWING.match(name) and (top == "engine" or mine in WITHOUT_DRAWING):
                     found.append(f"{path}: {name}: nothing is drawn here")
                 if SYSTEM.match(name) and not path.startswith(OF_A_SYSTEM):
@@ -74,10 +82,11 @@ def self_test():
         source = pathlib.Path(folder)
         for path, text in {"app/session/a.cpp": '#include "app/ui/app.hpp"\n#include <imgui.h>\n',
                            "engine/linear/b.cpp": '#include "engine/study/sweep.hpp"\n',
-                           "app/ui/studies/c.cpp": '#include "app/session/session.hpp"\n'}.items():
+                           "app/ui/app.hpp": "struct App;\n",
+                           "app/ui/studies/c.cpp": '#include "app/session/session.hpp"\nvoid c(App& app);\n'}.items():
             (source / path).parent.mkdir(parents=True, exist_ok=True)
             (source / path).write_text(text)
-        return len(violations(source)) == 3
+        return len(violations(source)) == 4
 
 
 def main():

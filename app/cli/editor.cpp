@@ -12,8 +12,10 @@
 #include "app/platform/system_colors.hpp"
 #include "app/render/imgui_compat.hpp"
 #include "app/render/window.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/file_commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/file.hpp"
@@ -109,13 +111,14 @@ void stir(GLFWwindow* window, Arguments...) {
 
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
   stir(window);
-  if (const auto press = pressed_key(key, scancode, action, modifiers)) app_of(window).keys.push_back(*press);
-  if (const auto tap = desk_of(window).alt.see(key, action)) app_of(window).keys.push_back(*tap);
+  if (const auto press = pressed_key(key, scancode, action, modifiers))
+    app_of(window).ui.keys.push_back(*press);
+  if (const auto tap = desk_of(window).alt.see(key, action)) app_of(window).ui.keys.push_back(*tap);
 }
 
 void type_character(GLFWwindow* window, unsigned character) {
   stir(window);
-  if (const auto press = typed_sign(character)) app_of(window).keys.push_back(*press);
+  if (const auto press = typed_sign(character)) app_of(window).ui.keys.push_back(*press);
 }
 
 void press_button(GLFWwindow* window, int, int, int) {
@@ -163,16 +166,16 @@ Theme theme_of(DesktopColors colors) {
 }
 
 std::string title_of(const App& app) {
-  return (has_unsaved_work(app) ? "● " : "") + document_name(app) + " - Flyball";
+  return (has_unsaved_work(app.session) ? "● " : "") + document_name(app.session) + " - Flyball";
 }
 
 void open_first(App& app, const std::filesystem::path& scene) {
   if (scene.empty())
-    open_scene(app,
+    open_scene(app.session,
                data_folder() / "scenes" / "governor.json"); // not of the person's choice: not noted as recent
   else
     open_file(app, scene);
-  begin_files(app, app.dialog, !scene.empty());
+  begin_files(app.session, app.dialog, !scene.empty());
 }
 
 // What the window shows, for tests outside the program.
@@ -203,25 +206,26 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
   while (!app.quit && !ends()) {
     // A film is drawn all the same.
     const bool hidden = !app.movie.progress && !window.visible();
-    const bool waits = hidden || (settling == 0 && !in_motion(app));
-    const double longest = waits ? std::min({idle, next_file_update(app),
-                                             next_notice_change(app, app.notice_age), app.tooltip.due})
-                                 : 0;
+    const bool waits = hidden || (settling == 0 && !in_motion(app.session, app.view));
+    const double longest =
+        waits ? std::min({idle, next_file_update(app.session),
+                          next_notice_change(app.session, app.notice_age), app.ui.tooltip.due})
+              : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
     last = now;
-    const bool help = app.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
-    const bool fades = next_notice_change(app, app.notice_age) <= elapsed;
-    if (const auto found = colors.take()) take_system_theme(app, theme_of(*found));
-    const bool news = update_files(app, elapsed) || help || fades;
-    age_notice(app, app.notice_age, elapsed);
+    const bool help = app.ui.tooltip.due <= elapsed; // is due, and takes a frame more to find its size
+    const bool fades = next_notice_change(app.session, app.notice_age) <= elapsed;
+    if (const auto found = colors.take()) take_system_theme(app.ui, theme_of(*found));
+    const bool news = update_files(app.session, elapsed) || help || fades;
+    age_notice(app.session, app.notice_age, elapsed);
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
     // Otherwise it was only time to look at the disk.
     settling = something ? settling_frames : std::max(settling - 1, 0);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
-    app.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not
+    app.ui.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not
     if (window.should_close()) {
       window.set_should_close(false);
       quit(app);
@@ -235,20 +239,20 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
       shown.tell(app);
       continue;
     }
-    if (app.scale != scale()) stage.set_scale(app, scale());
-    input.read(window, app.keys);
+    if (app.ui.scale != scale()) stage.set_scale(app.ui, scale());
+    input.read(window, app.ui.keys);
     // What comes while the last thing settles has to settle, too.
     if (input.changed()) settling = settling_frames;
     stage.frame(app, size, seconds);
-    if (!app.quit) note_unsaved_work(app);
-    stage.render(app, size);
+    if (!app.quit) note_unsaved_work(app.session);
+    stage.render(app.ui, size);
     window.swap();
     if (app.export_request) {
       export_picture(app, size);
       settling = settling_frames;
     }
-    if (ImGui::IsAnyItemActive() || app.file_dialogs.gallery.drawing || app.movie.progress ||
-        stage.resting() || app.slider_press.place)
+    if (ImGui::IsAnyItemActive() || app.panels->gallery.drawing || app.movie.progress || stage.resting() ||
+        app.ui.slider_press.place)
       settling = std::max(settling, 1);
     if (title_of(app) != title) window.set_title(title = title_of(app));
     shown.tell(app);
@@ -295,8 +299,8 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
            .animated = true,
            .state = state_folder(),
            .theme_choice = options.theme});
-  app.files.changes = ChangeWatch(glfwPostEmptyEvent);
-  Stage stage(app, options.scale.value_or(std::max(window.content_scale(), 1.f)));
+  app.session.files.changes = ChangeWatch(glfwPostEmptyEvent);
+  Stage stage(app.ui, options.scale.value_or(std::max(window.content_scale(), 1.f)));
   stage.draft_while_moving(true);
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
   SystemColors colors([stirred] {
@@ -307,16 +311,16 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
   Desk desk{.app = &app, .stirred = stirred.get(), .colors = &colors};
   set_callbacks(window.handle(), desk);
   open_first(app, scene);
-  const std::shared_ptr<AutosaveSlot> slot = app.files.autosave.slot();
+  const std::shared_ptr<AutosaveSlot> slot = app.session.files.autosave.slot();
   lost_display.emplace(slot);
   signals.emplace(glfwPostEmptyEvent, [slot] { tell_kept(slot->write(), *slot); });
   try {
     run_loop(window, app, stage, options, colors, *stirred, [&] { return signals->came() != 0; });
   } catch (...) {
-    tell_kept(keep_unsaved_work(app), *slot);
+    tell_kept(keep_unsaved_work(app.session), *slot);
     throw;
   }
-  if (!app.quit) tell_kept(keep_unsaved_work(app), *slot);
+  if (!app.quit) tell_kept(keep_unsaved_work(app.session), *slot);
   return {};
 }
 

@@ -37,8 +37,8 @@ namespace {
 
 // At both ends of its swing.
 void show_mode(App& app, const PictureOptions& options) {
-  open_study(app, StudyKind::modes);
-  ModesState& modes = app.study.modes;
+  open_study(app.session, StudyKind::modes);
+  ModesState& modes = app.session.study.modes;
   const ViewSize size{static_cast<double>(options.width), static_cast<double>(options.height)};
   // One round solves and asks for the modes, the next takes them.
   for (int round = 0; round < 2; ++round)
@@ -51,7 +51,7 @@ void show_mode(App& app, const PictureOptions& options) {
     throw SceneError("--mode", fmt::format("expected 1 to {}", count));
   modes.amplitude = options.amplitude;
   modes.both_ends = true;
-  choose_mode(app, static_cast<std::size_t>(options.mode) - 1);
+  choose_mode(app.session, static_cast<std::size_t>(options.mode) - 1);
   modes.playing = false;
 }
 
@@ -64,16 +64,16 @@ Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, co
            .theme = options.theme,
            .numbers = {}});
   app.view.samples = options.antialiased ? 4 : 1;
-  app.scale = options.scale;
+  app.ui.scale = options.scale;
   app.view.loads = options.loads || !options.free_body.empty();
-  open_document(app, Document(std::move(mechanism), scene));
+  open_document(app.session, Document(std::move(mechanism), scene));
   if (!options.free_body.empty()) {
-    if (body_index(app.mechanism(), options.free_body) < 0)
+    if (body_index(app.session.mechanism(), options.free_body) < 0)
       throw SceneError("--free-body", "no body is called \"" + options.free_body + "\"");
-    select(app, {{Part{PartKind::body, options.free_body}}});
+    select(app.session, {{Part{PartKind::body, options.free_body}}});
   }
   if (options.drawn_pose) {
-    app.mode = Mode::build;
+    app.session.mode = Mode::build;
     app.view.ghost = false;
   }
   if (options.mode > 0) show_mode(app, options);
@@ -83,7 +83,7 @@ Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, co
   picture.image = options.interface ? interface_picture(app, size, options.scale)
                                     : view_picture(app, size, options.scale);
   picture.drawn_by = context.description();
-  picture.answer = app.answer;
+  picture.answer = app.session.answer;
   return picture;
 }
 

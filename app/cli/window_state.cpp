@@ -11,33 +11,33 @@ namespace flyball::cli {
 std::string window_state(const App& app) {
   nlohmann::ordered_json state = {
       {"frame", ImGui::GetFrameCount()},
-      {"file", app.document.file().string()},
-      {"name", app.mechanism().name},
-      {"unsaved", app.document.unsaved()},
-      {"explored", app.document.explored().size()},
-      {"autosave", app.files.autosave.path().string()},
-      {"leftovers", app.files.leftovers.size()},
-      {"problem", app.problem},
-      {"notice", app.notice},
+      {"file", app.session.document.file().string()},
+      {"name", app.session.mechanism().name},
+      {"unsaved", app.session.document.unsaved()},
+      {"explored", app.session.document.explored().size()},
+      {"autosave", app.session.files.autosave.path().string()},
+      {"leftovers", app.session.files.leftovers.size()},
+      {"problem", app.session.problem},
+      {"notice", app.session.notice},
       {"dialog", app.dialog.showing},
       {"tool", static_cast<int>(app.tool.tool)},
-      {"typing", app.fields.typing.name},
-      {"selected", app.selection().parts.empty() ? "" : app.selection().parts.back().name},
-      {"mode", app.mode == Mode::build ? "build" : "explore"},
-      {"playing", app.playback.playing},
-      {"answer", app.answer.ticket},
-      {"status", std::string(word(app.answer.solution.status))}};
-  if (const MotionRun* motion = app.motion.on ? shown_motion(app) : nullptr)
+      {"typing", app.ui.fields.typing.name},
+      {"selected", app.session.selection().parts.empty() ? "" : app.session.selection().parts.back().name},
+      {"mode", app.session.mode == Mode::build ? "build" : "explore"},
+      {"playing", app.session.playback.playing},
+      {"answer", app.session.answer.ticket},
+      {"status", std::string(word(app.session.answer.solution.status))}};
+  if (const MotionRun* motion = app.session.motion.on ? shown_motion(app.session) : nullptr)
     state["motion"] = {{"computed", motion->run->time.back()},
                        {"finished", motion->finished},
-                       {"time", app.playback.time},
-                       {"settled", app.motion.settled ? app.motion.settled->message : ""}};
-  for (const ParameterControl& control : app.parameters)
-    state["parameters"][control.address] = get_parameter(app.mechanism(), control.address);
-  for (const CoordinateSolution& c : app.answer.solution.coordinates)
+                       {"time", app.session.playback.time},
+                       {"settled", app.session.motion.settled ? app.session.motion.settled->message : ""}};
+  for (const ParameterControl& control : app.session.parameters)
+    state["parameters"][control.address] = get_parameter(app.session.mechanism(), control.address);
+  for (const CoordinateSolution& c : app.session.answer.solution.coordinates)
     state["coordinates"][coordinate_label(c)] = c.value;
   // Where points of the plane z = 0 are, while looked at from the front.
-  if (const auto view = app.widgets.find("view"); view != app.widgets.end()) {
+  if (const auto view = app.ui.widgets.find("view"); view != app.ui.widgets.end()) {
     const WidgetRect& rect = view->second;
     const ViewSize size{static_cast<double>(rect.to.x - rect.from.x),
                         static_cast<double>(rect.to.y - rect.from.y)};
@@ -49,7 +49,7 @@ std::string window_state(const App& app) {
     state["screen"] = {
         {"origin", place(Vec3::Zero())}, {"x", place(Vec3::UnitX())}, {"y", place(Vec3::UnitY())}};
   }
-  for (const auto& [name, rect] : app.widgets)
+  for (const auto& [name, rect] : app.ui.widgets)
     state["widgets"][name] = {rect.from.x, rect.from.y, rect.to.x, rect.to.y};
   return state.dump(1) + "\n";
 }

@@ -1,11 +1,13 @@
 #include "app/report/contents.hpp"
 
 #include "app/plot/branch_plot.hpp"
+#include "app/plot/resonance_plot.hpp"
 #include "app/session/response_quantity.hpp"
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/study/resonance_curve.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +18,8 @@ namespace {
 
 constexpr std::size_t most_curves = 12; // sliders that are followed
 constexpr int most_modes = 20;
+constexpr int motions_in_order = 25, most_motions = 65; // points of a curve of periodic motions
+constexpr long most_evaluations = 2'500'000;            // of the equations of motion, for such a curve
 
 // Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice.
 std::vector<Slider> curve_parameters(const Mechanism& m) {
@@ -89,7 +93,78 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   return out;
 }
 
+// What is named, else the first angle and the first length, else the first that there is.
+std::vector<ResonanceOutput> plotted_outputs(const ResonancePoint& point,
+                                             const std::vector<std::string>& names) {
+  std::vector<ResonanceOutput> out;
+  for (const std::string& name : names)
+    for (const OutputKind kind : {OutputKind::coordinate, OutputKind::measure})
+      if (const auto found = std::ranges::find_if(
+              point.outputs, [&](const ResonanceOutput& each) { return each.is(kind, name); });
+          found != point.outputs.end())
+        out.push_back(*found);
+  if (!names.empty()) return out;
+  for (const char* unit : {"rad", "m"})
+    if (const auto found = std::ranges::find_if(point.outputs,
+                                                [&](const ResonanceOutput& each) {
+                                                  return each.kind == OutputKind::coordinate &&
+                                                         each.unit == unit;
+                                                });
+        found != point.outputs.end())
+      out.push_back(*found);
+  if (out.empty()) out.push_back(point.outputs.front());
+  return out;
+}
+
+// "33 motions, each found on its own. None from 20 to 22 rad/s: ..."
+std::string resonance_message(const ResonanceCurve& curve, const std::string& unit) {
+  std::string out = std::to_string(curve.points.size()) + " motions, each found on its own.";
+  const std::string after = unit.empty() ? "" : " " + unit;
+  for (const ResonanceGap& gap : resonance_gaps(curve))
+    out +=
+        (gap.from == gap.to ? " None at " + rounded_text(gap.from, 5)
+                            : " None from " + rounded_text(gap.from, 5) + " to " + rounded_text(gap.to, 5)) +
+        after + ": " + gap.why;
+  return out;
+}
+
+// Of a mechanism that moves periodically.
+ReportCurve follow_motions(const ReportContents& contents, const Slider& over, const ReportOptions& options) {
+  const Mechanism& m = *contents.mechanism;
+  ReportCurve out;
+  out.over = over;
+  out.present = get_parameter(m, over.parameter);
+  ResonanceOptions follow;
+  follow.logarithmic = over.scale == SliderScale::log;
+  follow.coarse = motions_in_order;
+  follow.most = most_motions;
+  follow.most_evaluations = most_evaluations;
+  follow.cancel = options.cancel;
+  follow.progress = options.progress;
+  const ResonanceCurve curve = resonance_curve(m, over.parameter, over.from, over.to, follow);
+  const std::string unit = parameter_unit(m, over.parameter);
+  out.message = resonance_message(curve, unit);
+  const ResonancePoint now = resonance_point(*contents.periodic, out.present);
+  if (std::ranges::none_of(curve.points, [](const auto& point) { return point->found(); })) return out;
+  for (const ResonanceOutput& shown : plotted_outputs(now, options.plotted)) {
+    Plot plot;
+    plot.x = {.label = over.parameter, .unit = unit, .logarithmic = follow.logarithmic};
+    plot.y.label = shown.name;
+    plot.y.unit = shown.unit;
+    add_resonance(plot, curve, shown.kind, shown.name);
+    const double low = std::min(over.from, over.to), high = std::max(over.from, over.to);
+    if (low <= out.present && out.present <= high && std::isfinite(shown.range.mean))
+      plot.marker = PlotMarker{out.present, shown.range.mean, ""};
+    out.plots.push_back(std::move(plot));
+  }
+  return out;
+}
+
 } // namespace
+
+bool moves(const ReportContents& contents) {
+  return contents.periodic && contents.periodic->status == PeriodicStatus::found;
+}
 
 ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const ReportOptions& options) {
   ReportContents out;
@@ -121,7 +196,8 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
     out.periodic = find_periodic_state(*out.mechanism, periodic);
   }
   for (const Slider& over : curve_parameters(*out.mechanism))
-    if (!cancelled()) out.curves.push_back(follow(out, over, options));
+    if (!cancelled())
+      out.curves.push_back(moves(out) ? follow_motions(out, over, options) : follow(out, over, options));
   out.cut_short = cancelled();
   return out;
 }

@@ -18,7 +18,7 @@ struct ReportCurve {
   Slider over;
   double present = 0;      // the parameter's value in the report
   std::vector<Plot> plots; // one a coordinate; none where nothing could be followed
-  std::string message;     // a sentence: what was followed, or why nothing
+  std::string message;     // sentences: what was followed, or why nothing
 };
 
 // The mechanism in its steady state, as PNG files on light and on dark ground.
@@ -44,6 +44,9 @@ struct ReportContents {
   std::vector<ReportCurve> curves;
   bool cut_short = false; // by ReportOptions::cancel: curves may be missing
 };
+
+// Whether a periodic motion takes the steady state's place; curves are of such motions then.
+bool moves(const ReportContents& contents);
 
 struct ReportOptions {
   // See SolveOptions.

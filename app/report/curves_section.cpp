@@ -31,9 +31,14 @@ Html figure(const Plot& plot, const std::string& name, const Html& caption) {
 OptionalSection curves_section(const ReportContents& contents) {
   if (contents.curves.empty()) return std::nullopt;
   const Mechanism& m = *contents.mechanism;
-  Html body =
-      paragraph_of("Steady states as one number moves, followed through folds and crossings. Solid where "
-                   "they are stable, dashed elsewhere; the dot is the state of this report.");
+  Html body = paragraph_of(
+      moves(contents)
+          ? "Periodic motions as one number moves: the line is the mean over a period, the band reaches from "
+            "the least to the most. Solid where the motion is stable, dashed where it is not; the dot is "
+            "that "
+            "of this report."
+          : "Steady states as one number moves, followed through folds and crossings. Solid where they are "
+            "stable, dashed elsewhere; the dot is the state of this report.");
   for (std::size_t i = 0; i < contents.curves.size(); ++i) {
     const ReportCurve& curve = contents.curves[i];
     const std::string unit = parameter_unit(m, curve.over.parameter);

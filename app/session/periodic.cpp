@@ -2,7 +2,9 @@
 
 #include "app/session/session.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace flyball {
 namespace {
@@ -18,6 +20,49 @@ std::optional<PeriodicRequest> periodic_request(const Session& session) {
   if (!answer.mechanism || answer.error || answer.solution.status != Status::no_steady_state)
     return std::nullopt;
   return PeriodicRequest{{answer.mechanism}};
+}
+
+// What a person asks for may take longer.
+constexpr double cycle_patience = 10; // see PeriodicOptions
+
+// Whether anything in it moves beside what goes on: a search may come back to the steady state.
+bool swings(const PeriodicState& state) {
+  constexpr double least = 1e-6; // rad, m, rad/s, m/s
+  return std::ranges::any_of(state.coordinates, [](const PeriodicCoordinate& c) {
+    return c.range.most - c.range.least > least || c.rate.most - c.rate.least > least;
+  });
+}
+
+PeriodicState find_limit_cycle(const PeriodicRequest& request, const TaskContext<PeriodicState>& context) {
+  PeriodicOptions options;
+  options.patience = cycle_patience;
+  options.cancel = &context.cancel;
+  PeriodicState state = find_periodic_state(*request.mechanism, options);
+  if (state.status == PeriodicStatus::found && !swings(state)) {
+    state.status = PeriodicStatus::not_found;
+    state.message = "No limit cycle was found: the search led back to the steady state.";
+  }
+  return state;
+}
+
+std::optional<PeriodicRequest> cycle_request(const Session& session) {
+  if (!session.study.periodic.cycle_wanted || !hunts(session)) return std::nullopt;
+  return PeriodicRequest{{session.answer.mechanism}};
+}
+
+void update_cycle(Session& session) {
+  auto& cycle = session.study.periodic.cycle;
+  const auto wanted = cycle_request(session);
+  if (!wanted) {
+    // While another state is solved for it stays as it is.
+    if (cycle.asked && !(session.study.periodic.cycle_wanted && solving(session))) cycle = {};
+    return;
+  }
+  cycle.take();
+  if (cycle.asked == *wanted) return;
+  cycle.ask(session.options, *wanted, find_limit_cycle,
+            cycle.quick() ? BackgroundWorker::Running::finished : BackgroundWorker::Running::cancelled);
+  cycle.take();
 }
 
 // Where the motion is now; session.poses are of no steady state.
@@ -39,10 +84,13 @@ void pose_motion(Session& session) {
 } // namespace
 
 void update_periodic(Session& session) {
+  update_cycle(session);
   auto& search = session.study.periodic.search;
   const auto wanted = periodic_request(session);
   if (!wanted) {
-    if (search.asked) session.study.periodic = {}; // the poses are the steady state's again
+    if (!search.asked) return;
+    search = {};
+    session.study.periodic.posed = {}; // the poses are the steady state's again
     return;
   }
   search.take();
@@ -66,15 +114,37 @@ const PeriodicState* periodic_motion(const Session& session) {
   return state && state->status == PeriodicStatus::found ? state : nullptr;
 }
 
-void show_periodic_motion(Session& session) {
-  const PeriodicState* state = periodic_motion(session);
-  if (!state) return;
-  session.motion.saved = state->start;
+void show_periodic_motion(Session& session, const PeriodicState& state) {
+  session.motion.saved = state.start;
   session.motion.start = Start::state;
   if (session.study.open == StudyKind::motion && session.motion.on)
     restart_motion(session);
   else
     open_study(session, StudyKind::motion);
+}
+
+bool hunts(const Session& session) {
+  if (!converged(session) || !session.answer.mechanism) return false;
+  const Solution& solution = session.answer.solution;
+  if (solution.stable != false) return false;
+  const auto swinging = [](const std::complex<double>& z) { return std::abs(z.imag()) > 1e-6 * std::abs(z); };
+  if (solution.floquet && !solution.floquet->multipliers.empty())
+    return swinging(solution.floquet->multipliers.front());
+  if (!solution.eigenvalues || solution.eigenvalues->empty()) return false;
+  return swinging(*std::ranges::max_element(*solution.eigenvalues, {},
+                                            [](const std::complex<double>& z) { return z.real(); }));
+}
+
+void find_cycle(Session& session, bool wanted) {
+  session.study.periodic.cycle_wanted = wanted;
+  if (!wanted) session.study.periodic.cycle = {};
+}
+
+const PeriodicState* limit_cycle(const Session& session) {
+  const auto& cycle = session.study.periodic.cycle;
+  const auto wanted = cycle_request(session);
+  if (!wanted || !cycle.found || (!cycle.running() && !cycle.is_of(*wanted))) return nullptr;
+  return &cycle.found->result;
 }
 
 } // namespace flyball

@@ -1,5 +1,6 @@
-// The motion that takes the steady state's place where a drive makes the balance turn. Nothing of it is
-// computed where there is a steady state.
+// Periodic motions: the one that takes the steady state's place where a drive makes the balance turn, and,
+// where a person asks for it, the limit cycle beside a steady state that swings more and more. Nothing else
+// is computed where there is a steady state.
 #pragma once
 
 #include "app/session/shared_mechanism.hpp"
@@ -23,6 +24,8 @@ struct PeriodicStudy {
     double time = 0; // s
     bool operator==(const Posed&) const = default;
   } posed;
+  bool cycle_wanted = false;
+  Study<PeriodicRequest, PeriodicState> cycle;
 };
 
 void update_periodic(Session& session);
@@ -31,6 +34,13 @@ const PeriodicState* periodic_state(const Session& session);
 // The same where one was found.
 const PeriodicState* periodic_motion(const Session& session);
 // The motion's run begins in it, so that the plots have it.
-void show_periodic_motion(Session& session);
+void show_periodic_motion(Session& session, const PeriodicState& state);
+
+// Whether the steady state that is shown is left by swings that grow: then a limit cycle can be asked for.
+bool hunts(const Session& session);
+void find_cycle(Session& session, bool wanted);
+// Of the state that is shown, or of the one before while that is looked for; null: not asked. One that is not
+// found says why.
+const PeriodicState* limit_cycle(const Session& session);
 
 } // namespace flyball

@@ -1,5 +1,6 @@
 #include "app/session/response.hpp"
 
+#include "app/session/resonance.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 
@@ -142,7 +143,8 @@ void choose_first_quantity(Session& session) {
     return;
   }
   // Without an answer not everything is offered that may be so again.
-  if (all.empty() || (!state.choice.quantity.empty() && !converged(session))) return;
+  if (all.empty() || (!state.choice.quantity.empty() && !converged(session) && !periodic_motion(session)))
+    return;
   const auto length = std::ranges::find_if(
       all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
   state.shown = length == all.end() ? all.front() : *length;
@@ -229,14 +231,35 @@ std::optional<ResponsePoint> present_point(const Session& session, const std::st
   }
 }
 
+namespace {
+
+// Another kind of state takes the place of the one before only where an answer says so.
+void choose_kind(Session& session) {
+  ResponseState& state = session.study.response;
+  if (!session.answer.ticket || session.answer.error) return;
+  const Status status = session.answer.solution.status;
+  if (status == Status::converged) state.resonates = false;
+  if (status == Status::no_steady_state) state.resonates = true;
+}
+
+} // namespace
+
 void update_response(Session& session) {
   ResponseState& state = session.study.response;
   take_curve(state.curve);
   take_design(session);
   if (session.study.open != StudyKind::response || session.mode != Mode::explore) return;
+  choose_kind(session);
   choose_first(session);
   choose_first_quantity(session);
-  const std::optional<ResponseRequest> wanted = wanted_now(session);
+  std::optional<ResponseRequest> wanted = wanted_now(session);
+  if (state.resonates) {
+    if (wanted) wanted->all = wanted->reactions = false; // there is nothing of these
+    state.curve = {};
+    state.design.answer = {};
+    return update_resonance(session, wanted);
+  }
+  if (state.resonance.asked) state.resonance = {};
   if (!wanted) {
     state.curve = {};
     return;
@@ -259,7 +282,7 @@ void close_response(Session& session) {
 
 bool computing_response(const Session& session) {
   const ResponseState& state = session.study.response;
-  return state.curve.running() || state.design.answer.running();
+  return state.curve.running() || state.resonance.running() || state.design.answer.running();
 }
 
 const ParameterControl* response_control(const Session& session) {
@@ -288,11 +311,7 @@ void choose_response_end(Session& session, double ResponseChoice::*end, double v
 }
 
 std::string response_refusal(const Session& session) {
-  if (!session.study.response.curve.problem.empty()) return session.study.response.curve.problem;
-  // Where the balance turns with the drives, what is followed from their standing still is no steady state.
-  const Solution& solution = session.answer.solution;
-  const bool told = session.answer.ticket && !session.answer.error && session.mistakes.empty();
-  return told && solution.status == Status::no_steady_state ? solution.message : "";
+  return is_resonance(session) ? resonance_refusal(session) : session.study.response.curve.problem;
 }
 
 void choose_quantity(Session& session, const ResponseQuantity& quantity) {
@@ -302,6 +321,7 @@ void choose_quantity(Session& session, const ResponseQuantity& quantity) {
 }
 
 std::vector<ResponseQuantity> offered_quantities(const Session& session) {
+  if (is_resonance(session)) return resonance_quantities(session);
   if (converged(session)) return response_quantities(response_point(session.answer.solution, 0));
   const auto& found = session.study.response.curve.found;
   if (found && !found->result.lines.empty() && !found->result.lines.front().points.empty())

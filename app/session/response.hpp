@@ -6,6 +6,7 @@
 #include "app/session/study.hpp"
 #include "app/session/varied_mechanism.hpp"
 #include "engine/study/design.hpp"
+#include "engine/study/resonance_curve.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,7 @@ struct ResponseResult {
   std::vector<ResponseLine> lines;
 };
 using ResponseCurve = Study<ResponseRequest, ResponseResult>;
+using ResonanceStudy = Study<ResponseRequest, ResonanceCurve>;
 
 struct DesignRequest {
   ResponseRequest of;
@@ -68,6 +70,9 @@ struct ResponseState {
   ResponseQuantity shown; // the quantity, as last offered
 
   ResponseCurve curve;
+  // Where the balance turns with the drives, in the place of `curve`: see resonance.hpp.
+  bool resonates = false;
+  ResonanceStudy resonance;
   VariedMechanism varied;
   std::uint64_t through = 0; // ticket of the answer whose state the curve was to go through
   ResponseDesign design;

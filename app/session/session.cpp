@@ -115,11 +115,12 @@ void open_document(Session& session, Document document) {
   session.poses.clear();
   if (!same_file) {
     session.points.clear();
+    find_cycle(session, false);
     session.playback = {.factor = session.playback.factor};
     session.mode = session.mechanism().bodies.empty() ? Mode::build : Mode::explore;
   }
   session.document.put_explored_aside(session.mode == Mode::build);
-  session.document_opened(same_file);
+  if (session.on_document_opened) session.on_document_opened(same_file);
   session.opened = session.asked + 1;
   take_document(session, true, false);
 }
@@ -332,7 +333,7 @@ void set_mode(Session& session, Mode mode) {
     play(session, false);
     rewind(session);
   }
-  session.mode_chosen();
+  if (session.on_mode_chosen) session.on_mode_chosen();
 }
 
 void play(Session& session, bool playing) {

@@ -42,7 +42,6 @@ struct Session {
   explicit Session(SessionOptions options);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
-  virtual ~Session() = default;
 
   SessionOptions options;
   Document document;
@@ -77,14 +76,10 @@ struct Session {
   const Mechanism& mechanism() const { return document.mechanism(); }
   const Selection& selection() const { return document.selection(); }
 
- protected:
-  // For whoever shows the session. After another document has taken the place of what was open.
-  virtual void document_opened(bool /*same_file*/) {}
+  // For whoever shows the session; may be empty. After another document has taken the place of what was open.
+  std::function<void(bool same_file)> on_document_opened;
   // After set_mode().
-  virtual void mode_chosen() {}
-
-  friend void open_document(Session& session, Document document);
-  friend void set_mode(Session& session, Mode mode);
+  std::function<void()> on_mode_chosen;
 };
 
 // Takes a document's place; what was open is gone (leave_document() of a window asks first).

@@ -38,7 +38,7 @@ bool studying(const Session& session) {
          study.states.running() || finding_modes(session) || computing_map(session) ||
          study.spread.samples.running() || study.transfer.found.running() || study.band.computed.running() ||
          study.friction.report.running() || study.friction.ribbon.running() ||
-         study.periodic.search.running();
+         study.periodic.search.running() || study.periodic.cycle.running();
 }
 
 } // namespace flyball

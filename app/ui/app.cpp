@@ -3,7 +3,9 @@
 #include "app/session/settings.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
-#include "app/ui/load_view.hpp"
+#include "app/ui/panel_list.hpp"
+#include "app/ui/shown_scene.hpp"
+#include "app/ui/view_frame.hpp"
 
 #include <algorithm>
 
@@ -18,10 +20,10 @@ bool is_within(const ViewCamera& camera, ViewSize size, const Vec3& point) {
 
 // Arrows that have come and leave a view that held everything are to be taken into it: then true. When they
 // have gone the camera goes back, if nobody has moved it since.
-bool fit_loads(App& app, ViewSize size) {
-  ViewState& view = app.view;
+bool fit_loads(const ViewContext& context, ViewSize size) {
+  ViewState& view = context.view;
   if (!view.fit_loads) return false;
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(context);
   if (view.loads && scene.arrows.arrows.empty()) return false; // not yet
   view.fit_loads = false;
   const ViewCamera camera = settled_camera(view);
@@ -37,166 +39,90 @@ bool fit_loads(App& app, ViewSize size) {
     return is_within(camera, size, arrow.from) && is_within(camera, size, arrow.to);
   });
   if (!all_seen || arrows_seen) return false;
-  fit_all(app);
+  fit_all(view);
   view.loads_fit = {camera, camera};
   return true;
 }
 
-void fit_view(App& app, ViewSize size) {
-  const bool for_loads = fit_loads(app, size);
-  if (!app.view.fit) return;
-  const ViewScene& scene = *shown_scene(app);
+void fit_view(const ViewContext& context, ViewSize size) {
+  const bool for_loads = fit_loads(context, size);
+  if (!context.view.fit) return;
+  const ViewScene& scene = *shown_scene(context);
   Bounds bounds = scene.solid.bounds;
   for (const Instance& instance : scene.ghost)
     bounds.add(instance_bounds(instance));
-  if (app.view.keep_direction) {
-    (app.view.glide ? app.view.glide->to : app.view.camera).fit(bounds, size);
+  if (context.view.keep_direction) {
+    (context.view.glide ? context.view.glide->to : context.view.camera).fit(bounds, size);
   } else {
-    app.view.glide.reset();
-    app.view.camera = initial_camera(*shown_mechanism(app, app.tool), bounds, size);
+    context.view.glide.reset();
+    context.view.camera = initial_camera(*shown_mechanism(context.session, context.tool), bounds, size);
   }
-  if (for_loads) (*app.view.loads_fit)[1] = settled_camera(app.view);
+  if (for_loads) (*context.view.loads_fit)[1] = settled_camera(context.view);
   // Until the first answer is there nobody knows what will have to be in view.
-  if (!solving(app)) app.view.fit = false;
+  if (!solving(context.session)) context.view.fit = false;
 }
 
-} // namespace
-
-App::App(AppOptions chosen)
-    : Session({.mode = chosen.mode,
-               .on_news = std::move(chosen.on_news),
-               .scenes = std::move(chosen.scenes),
-               .numbers = chosen.numbers,
-               .state = std::move(chosen.state)}),
-      system_theme(chosen.theme) {
-  const Settings settings = read_settings(options.state);
-  panels.legend = settings.legend;
-  navigation = settings.navigation;
-  view.animated = chosen.animated;
-  theme_choice = chosen.theme_choice.value_or(settings.theme);
-  theme = theme_of(theme_choice, chosen.theme);
-  document_opened(false);
-}
-
-void App::document_opened(bool same_file) {
-  InspectorState fresh;
-  fresh.history = inspector.history;
-  inspector = std::move(fresh);
-  fields = {};
-  sections = {};
-  tool = {.snap = tool.snap};
+// Another document is looked at afresh.
+void show_document(App& app, bool same_file) {
+  app.panels->outline = {};
+  app.panels->inspector = {};
+  app.panels->history.forget();
+  app.ui.fields = {};
+  app.ui.sections = {};
+  app.tool = {.snap = app.tool.snap};
   if (!same_file) {
-    view.fit = true;
-    view.keep_direction = false;
-    view.hidden.clear();
-  }
-  if (!same_file) { // the view has the keys
+    app.view.fit = true;
+    app.view.keep_direction = false;
+    app.view.hidden.clear();
+    KeyboardState& keyboard = app.ui.keyboard; // the view has the keys
     keyboard.at.clear();
     keyboard.ring = false;
     for (auto& behind : keyboard.behind)
       behind = {};
     keyboard.focus = {};
   }
-  plots = {};
-  view.hovered = {};
-  view.scene = view.scene_beside = {}; // revisions begin anew
+  app.panels->studies.forget();
+  app.view.hovered = {};
+  app.view.scene = app.view.scene_beside = {}; // revisions begin anew
 }
 
-void App::mode_chosen() {
-  if (mode == Mode::explore && tool.tool != Tool::pull) tool.tool = Tool::select;
+} // namespace
+
+App::App(AppOptions chosen)
+    : session({.mode = chosen.mode,
+               .on_news = std::move(chosen.on_news),
+               .scenes = std::move(chosen.scenes),
+               .numbers = chosen.numbers,
+               .state = std::move(chosen.state)}),
+      panels(std::make_unique<Panels>()) {
+  const Settings settings = read_settings(session.options.state);
+  view.legend = settings.legend;
+  view.navigation = settings.navigation;
+  view.animated = chosen.animated;
+  ui.system_theme = chosen.theme;
+  ui.theme_choice = chosen.theme_choice.value_or(settings.theme);
+  ui.theme = theme_of(ui.theme_choice, chosen.theme);
+  session.on_document_opened = [this](bool same_file) { show_document(*this, same_file); };
+  session.on_mode_chosen = [this] {
+    if (session.mode == Mode::explore && tool.tool != Tool::pull) tool.tool = Tool::select;
+  };
+  show_document(*this, false);
 }
 
-void set_tool(App& app, Tool tool) {
-  app.keyboard.at.clear();                 // the tool works in the view
-  for (auto& behind : app.keyboard.behind) // also if it was chosen in the menu of a field
-    behind = {};
-  if (tool != Tool::select && tool != Tool::box && tool != Tool::pull) set_mode(app, Mode::build);
-  app.tool.tool = tool;
-}
-
-void look_from(ViewState& view, double azimuth, double elevation) {
-  ViewCamera& camera = glide_goal(view);
-  camera.azimuth = azimuth;
-  camera.elevation = elevation;
-  view.fit = view.keep_direction = true;
-}
+App::~App() = default;
 
 void update(App& app, double seconds, ViewSize view) {
-  update(app, seconds);
-  update_report(app, app.report);
-  // What is closed is looked at afresh when it is opened again.
-  if (app.study.open != StudyKind::response) app.plots.response = {};
-  if (app.study.open != StudyKind::map) app.plots.map = {};
-  if (app.study.open != StudyKind::spread) app.plots.spread = {};
-  if (app.study.open != StudyKind::transfer) {
-    const bool hertz = app.plots.transfer.hertz;
-    app.plots.transfer = {};
-    app.plots.transfer.hertz = hertz;
-  }
-  if (app.study.open != StudyKind::modes) {
-    const bool hertz = app.plots.campbell.hertz;
-    app.plots.campbell = {};
-    app.plots.campbell.hertz = hertz;
-  }
+  update(app.session, seconds);
+  update_report(app.session, app.report);
+  app.panels->studies.forget_closed(app.session);
   app.view.size = view;
-  fit_view(app, view);
+  fit_view(app.context(), view);
   advance_glide(app.view, seconds);
 }
 
-const std::shared_ptr<const Mechanism>& shown_mechanism(const Session& session, const ToolState& tool) {
-  if (session.mode == Mode::build) return session.document.shared();
-  if (tool.pull) return tool.pull->mechanism; // the tool draws the hand's spring
-  return session.answer.ticket ? session.answer.mechanism : session.document.shared();
-}
-
-ViewFrame view_frame(const App& app) {
-  ViewFrame frame;
-  frame.mechanism = shown_mechanism(app, app.tool).get();
-  const bool solved = converged(app) || (periodic_motion(app) && !app.poses.empty());
-  if (app.mode == Mode::build) {
-    // The answer may still be that to an earlier edit.
-    if (app.tool.assembly) {
-      frame.ghost = app.tool.assembly->start;
-    } else if (solved && app.view.ghost && app.poses.size() == app.mechanism().bodies.size()) {
-      frame.ghost = app.poses;
-      frame.ghost_pose = GhostPose::steady;
-    }
-  } else {
-    const bool moves = app.motion.poses.size() == frame.mechanism->bodies.size();
-    if (solved) {
-      frame.poses = app.poses;
-      if (app.view.ghost && app.drawn.size() == app.poses.size()) frame.ghost = app.drawn;
-      if (moves && !app.motion.beside) frame.motion = app.motion.poses;
-      if (const std::vector<Pose>& mode = app.study.modes.poses;
-          moving_mode(app) && !mode.empty() && mode.size() % frame.mechanism->bodies.size() == 0) {
-        frame.motion = mode;
-        frame.ghost = {}; // three of them would be too much to look at
-      }
-    } else if (moves) { // what has no steady state moves all the same
-      frame.poses = app.motion.poses;
-    }
-  }
-  frame.camera = app.view.camera;
-  frame.theme = app.theme;
-  frame.options.grid = app.view.grid;
-  frame.options.shadow = app.view.shadow;
-  frame.options.scale = app.scale;
-  frame.selected = find_parts(*frame.mechanism, app.selection());
-  frame.hovered = app.view.hovered;
-  frame.hidden = find_parts(*frame.mechanism, {app.view.hidden});
-  show_loads(app, app.tool, app.view, frame);
-  frame.cut_joints = app.answer.summary.cut_joints;
-  frame.colouring = app.document.colouring();
-  return frame;
-}
-
-ViewFrame motion_frame(const Session& session, ViewFrame frame) {
-  frame.poses = session.motion.poses;
-  frame.ghost = {};
-  frame.motion = {};
-  frame.loads = nullptr;
-  frame.hovered = {};
-  return frame;
+Layout layout_of(const App& app, float width, float height) {
+  if (app.view.alone) return view_alone_layout(width, height);
+  return layout_of(app.session, app.ui, app.sizes, width, height);
 }
 
 } // namespace flyball

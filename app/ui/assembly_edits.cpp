@@ -1,8 +1,9 @@
 #include "app/ui/assembly_edits.hpp"
 
 #include "app/document/redraw.hpp"
+#include "app/session/session.hpp"
 #include "app/session/settled_pose.hpp"
-#include "app/ui/app.hpp"
+#include "app/ui/tool_state.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/solve/assembly_drag.hpp"
 
@@ -45,9 +46,9 @@ void move_coordinate(Session& session, const std::string& joint, int index, doub
   }
 }
 
-bool can_draw_settled(const App& app) {
-  return converged(app) && !solving(app) && !app.tool.pull &&
-         app.answer.solution.poses.size() == app.document.stored().bodies.size();
+bool can_draw_settled(const Session& session, const ToolState& tool) {
+  return converged(session) && !solving(session) && !tool.pull &&
+         session.answer.solution.poses.size() == session.document.stored().bodies.size();
 }
 
 void draw_settled(Session& session) {

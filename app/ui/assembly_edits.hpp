@@ -6,8 +6,8 @@
 
 namespace flyball {
 
-struct App;
 struct Session;
+struct ToolState;
 
 // The state of the history `before` in this pose, as a step of that name and gesture. Tells of springs that
 // could not come along.
@@ -16,7 +16,7 @@ void redraw(Session& session, const std::string& step, const Mechanism& before, 
 // The coordinate (rad or m) brought to a value, as far as joints and stops allow; says where they do not.
 void move_coordinate(Session& session, const std::string& joint, int index, double value);
 // The drawn pose becomes that of the steady state.
-bool can_draw_settled(const App& app);
+bool can_draw_settled(const Session& session, const ToolState& tool);
 void draw_settled(Session& session);
 
 } // namespace flyball

@@ -1,6 +1,8 @@
 #include "app/ui/camera_glide.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/ui/shown_scene.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,23 +46,31 @@ void stop_glide(ViewState& view) {
   view.fit = false;
 }
 
-bool in_motion(const App& app) {
-  return app.view.glide || in_motion(static_cast<const Session&>(app));
+bool in_motion(const Session& session, const ViewState& view) {
+  return view.glide || in_motion(session);
 }
 
-void fit_all(App& app) {
-  glide_goal(app.view);
-  app.view.fit = app.view.keep_direction = true;
+void look_from(ViewState& view, double azimuth, double elevation) {
+  ViewCamera& camera = glide_goal(view);
+  camera.azimuth = azimuth;
+  camera.elevation = elevation;
+  view.fit = view.keep_direction = true;
 }
 
-void fit_selected(App& app) {
-  const std::vector<PartId> parts = find_parts(*shown_mechanism(app, app.tool), app.selection());
+void fit_all(ViewState& view) {
+  glide_goal(view);
+  view.fit = view.keep_direction = true;
+}
+
+void fit_selected(const ViewContext& context) {
+  const std::vector<PartId> parts =
+      find_parts(*shown_mechanism(context.session, context.tool), context.session.selection());
   Bounds bounds;
-  for (const Instance& instance : shown_scene(app)->solid.instances)
+  for (const Instance& instance : shown_scene(context)->solid.instances)
     if (std::ranges::find(parts, instance.part) != parts.end()) bounds.add(instance_bounds(instance));
-  if (bounds.empty) return fit_all(app);
-  glide_goal(app.view).fit(bounds, app.view.size, 1.6);
-  app.view.fit = false;
+  if (bounds.empty) return fit_all(context.view);
+  glide_goal(context.view).fit(bounds, context.view.size, 1.6);
+  context.view.fit = false;
 }
 
 } // namespace flyball

@@ -5,7 +5,8 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
+struct ViewContext;
 struct ViewState;
 
 struct CameraGlide {
@@ -28,11 +29,13 @@ void advance_glide(ViewState& view, double seconds);
 void stop_glide(ViewState& view);
 
 // Whether the session or the camera moves by itself.
-bool in_motion(const App& app);
+bool in_motion(const Session& session, const ViewState& view);
 
+// The direction the view looks in, from azimuth and elevation (rad), with all in view.
+void look_from(ViewState& view, double azimuth, double elevation);
 // All in view from where the camera stands.
-void fit_all(App& app);
+void fit_all(ViewState& view);
 // What is selected in view; all of it where nothing is.
-void fit_selected(App& app);
+void fit_selected(const ViewContext& context);
 
 } // namespace flyball

@@ -1,36 +1,35 @@
 #include "app/ui/choices.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/ui.hpp"
+#include "app/ui/view_state.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
 namespace flyball {
 
 namespace {
 
-Settings settings_of(const App& app) {
-  return {.units = app.units,
-          .legend = app.panels.legend,
-          .navigation = app.navigation,
-          .theme = app.theme_choice};
+Settings settings_of(const Session& session, const Ui& ui, const ViewState& view) {
+  return {
+      .units = session.units, .legend = view.legend, .navigation = view.navigation, .theme = ui.theme_choice};
+}
+
+void keep_choices(const Session& session, const Ui& ui, const ViewState& view) {
+  keep_settings(session.options.state, settings_of(session, ui, view));
 }
 
 } // namespace
 
-void choose_units(App& app, const DisplayUnits& units) {
-  if (app.units == units) return;
-  app.units = units;
-  keep_settings(app.options.state, settings_of(app));
-  // How a person has looked at the plots was in other units.
-  fit_plot(app.plots.response.view);
-  fit_plot(app.plots.map.view);
-  fit_plot(app.plots.campbell.view);
-  for (MotionPlot& plot : app.plots.motion)
-    fit_plot(plot.view);
+bool choose_units(Session& session, const Ui& ui, const ViewState& view, const DisplayUnits& units) {
+  if (session.units == units) return false;
+  session.units = units;
+  keep_choices(session, ui, view);
+  return true;
 }
 
-void choose_navigation(App& app, Navigation navigation) {
-  app.navigation = navigation;
-  keep_settings(app.options.state, settings_of(app));
+void choose_navigation(const Session& session, const Ui& ui, ViewState& view, Navigation navigation) {
+  view.navigation = navigation;
+  keep_choices(session, ui, view);
 }
 
 namespace {
@@ -53,20 +52,20 @@ Theme theme_of(ThemeChoice choice, Theme system) {
   return Theme::high_contrast;
 }
 
-void choose_theme(App& app, ThemeChoice choice) {
-  app.theme_choice = choice;
-  keep_settings(app.options.state, settings_of(app));
-  show_theme(app, theme_of(choice, app.system_theme));
+void choose_theme(const Session& session, Ui& ui, const ViewState& view, ThemeChoice choice) {
+  ui.theme_choice = choice;
+  keep_choices(session, ui, view);
+  show_theme(ui, theme_of(choice, ui.system_theme));
 }
 
-void take_system_theme(App& app, Theme theme) {
-  app.system_theme = theme;
-  if (app.theme_choice == ThemeChoice::system) show_theme(app, theme);
+void take_system_theme(Ui& ui, Theme theme) {
+  ui.system_theme = theme;
+  if (ui.theme_choice == ThemeChoice::system) show_theme(ui, theme);
 }
 
-void open_legend(App& app, bool open) {
-  app.panels.legend = open;
-  keep_settings(app.options.state, settings_of(app));
+void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open) {
+  view.legend = open;
+  keep_choices(session, ui, view);
 }
 
 } // namespace flyball

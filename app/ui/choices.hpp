@@ -8,20 +8,21 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
+struct Ui;
+struct ViewState;
 
-// Fields, results and plots show their numbers in other units from now on; kept.
-void choose_units(App& app, const DisplayUnits& units);
+// Fields, results and plots show their numbers in other units from now on; kept. Whether they are others.
+bool choose_units(Session& session, const Ui& ui, const ViewState& view, const DisplayUnits& units);
 // The colours of a choice, where the desktop has these.
 Theme theme_of(ThemeChoice choice, Theme system);
 // The window in these colours from now on; kept.
-void choose_theme(App& app, ThemeChoice choice);
+void choose_theme(const Session& session, Ui& ui, const ViewState& view, ThemeChoice choice);
 // What the desktop has, in case it is followed.
-void take_system_theme(App& app, Theme theme);
+void take_system_theme(Ui& ui, Theme theme);
 // Opens or folds the legend of the view; kept.
-void open_legend(App& app, bool open);
-
+void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open);
 // How the mouse moves the camera from now on; kept.
-void choose_navigation(App& app, Navigation navigation);
+void choose_navigation(const Session& session, const Ui& ui, ViewState& view, Navigation navigation);
 
 } // namespace flyball

@@ -4,7 +4,10 @@
 
 #include "app/ui/ui.hpp"
 
+#include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace flyball {
 
@@ -25,9 +28,22 @@ struct Command {
 
 std::span<const Command> commands();
 const Command& command(std::string_view id); // throws std::out_of_range
-void run_command(App& app, std::string_view id);
-bool is_enabled(const App& app, const Command& command);
-std::string label_of(const App& app, const Command& command);
+
+// The commands as menus and buttons see them, which need to know nothing of what they act on.
+class CommandRunner {
+ public:
+  explicit CommandRunner(App& app) : app_(&app) {}
+  bool enabled(const Command& command) const;
+  bool checked(const Command& command) const;
+  std::string label(const Command& command) const;
+  void run(const Command& command) const;             // whether or not it is enabled
+  void run(std::string_view id) const;                // where it is enabled
+  void open(const std::filesystem::path& file) const; // asks first
+
+ private:
+  App* app_;
+};
+
 // "Ctrl+Shift+Z", "F2", "Delete"; empty without one.
 std::string key_text(const KeyPress& key);
 
@@ -35,9 +51,6 @@ std::string key_text(const KeyPress& key);
 void handle_shortcuts(App& app);
 
 std::span<const char* const> menu_titles(); // of the bar, from left to right
-void menu_bar(App& app);
-void command_palette(App& app);
-void shortcut_sheet(App& app);
 
 // GLFW's codes of keys without a character.
 namespace keys {

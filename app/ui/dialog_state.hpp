@@ -1,7 +1,5 @@
-// Which dialog is open, and what is chosen in it.
+// Which dialog is open: one at a time.
 #pragma once
-
-#include <memory>
 
 namespace flyball {
 
@@ -21,14 +19,9 @@ enum class Dialog {
   circular
 };
 
-struct PlotSave; // see plot_save.hpp
-
 struct DialogState {
   Dialog wanted = Dialog::none; // to be opened by the next frame
   bool showing = false;
-  int width = 1920, height = 1080; // pixels
-  bool panels = false, loads = false;
-  std::shared_ptr<PlotSave> plot; // while one is being saved
 };
 
 } // namespace flyball

@@ -8,8 +8,9 @@
 #include "app/document/gear_kinds.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/tools/named_points.hpp"
+#include "app/ui/view_state.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <imgui.h>
@@ -63,10 +64,10 @@ void remove_selected(Session& session, const std::string& step, const std::strin
 
 } // namespace
 
-void delete_selected(App& app) {
-  if (!app.selection().empty()) return remove_selected(app, "Delete", "Deleted");
-  if (const NamedPoint* point = selected_point(app, app.tool))
-    edit(app, "Remove " + point->name,
+void delete_selected(Session& session, const ToolState& tool) {
+  if (!session.selection().empty()) return remove_selected(session, "Delete", "Deleted");
+  if (const NamedPoint* point = selected_point(session, tool))
+    edit(session, "Remove " + point->name,
          [name = point->name](Mechanism& mechanism, Selection&) { remove_point(mechanism, name); });
 }
 
@@ -94,12 +95,13 @@ bool lies_on_another(const Mechanism& mechanism, const Selection& selection) {
 
 } // namespace
 
-void duplicate_selected(App& app) {
-  if (app.selection().empty()) return;
-  const double step = copy_step(app.view);
-  edit(app, "Duplicate " + words_for(app.selection()), [&](Mechanism& mechanism, Selection& selection) {
-    selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
-  });
+void duplicate_selected(Session& session, const ViewState& view) {
+  if (session.selection().empty()) return;
+  const double step = copy_step(view);
+  edit(session, "Duplicate " + words_for(session.selection()),
+       [&](Mechanism& mechanism, Selection& selection) {
+         selection = duplicate_parts(mechanism, selection, step * Vec3(1, 0, 0));
+       });
 }
 
 void copy_selected(Session& session) {
@@ -117,13 +119,13 @@ void cut_selected(Session& session) {
   if (!session.selection().empty()) remove_selected(session, "Cut", "Cut");
 }
 
-void paste_parts(App& app) {
+void paste_parts(Session& session, const ViewState& view) {
   const char* text = ImGui::GetClipboardText();
   if (!text || !*text) {
-    app.notice = "Nothing has been copied.";
+    session.notice = "Nothing has been copied.";
     return;
   }
-  edit(app, "Paste", [&](Mechanism& mechanism, Selection& selection) {
+  edit(session, "Paste", [&](Mechanism& mechanism, Selection& selection) {
     try {
       selection = paste_text(mechanism, text);
     } catch (const SceneError&) {
@@ -131,7 +133,7 @@ void paste_parts(App& app) {
     }
     constexpr int most = 20; // copies side by side
     for (int i = 0; i < most && lies_on_another(mechanism, selection); ++i)
-      move_parts(mechanism, selection, copy_step(app.view) * Vec3(1, 0, 0));
+      move_parts(mechanism, selection, copy_step(view) * Vec3(1, 0, 0));
   });
 }
 

@@ -1,6 +1,7 @@
 #include "app/ui/hidden_parts.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/view_state.hpp"
 
 #include <algorithm>
 
@@ -20,18 +21,18 @@ bool joins_selected(const Selection& selection, const std::array<std::string, 2>
 
 } // namespace
 
-void hide_selected(App& app) {
-  for (const Part& part : app.selection().parts)
-    hide_part(app.view, part);
-  select(app, {});
+void hide_selected(Session& session, ViewState& view) {
+  for (const Part& part : session.selection().parts)
+    hide_part(view, part);
+  select(session, {});
 }
 
-void isolate_selected(App& app) {
-  const Selection& selection = app.selection();
-  const Mechanism& mechanism = app.mechanism();
-  app.view.hidden.clear();
+void isolate_selected(const Session& session, ViewState& view) {
+  const Selection& selection = session.selection();
+  const Mechanism& mechanism = session.mechanism();
+  view.hidden.clear();
   const auto consider = [&](PartKind kind, const std::string& name, bool belongs) {
-    if (Part part{kind, name}; !belongs && !selection.has(part)) hide_part(app.view, std::move(part));
+    if (Part part{kind, name}; !belongs && !selection.has(part)) hide_part(view, std::move(part));
   };
   for (const Body& body : mechanism.bodies)
     consider(PartKind::body, body.name, false);
@@ -43,8 +44,8 @@ void isolate_selected(App& app) {
                                       : selection.has(Part{PartKind::body, force.body}));
 }
 
-void show_hidden(App& app) {
-  app.view.hidden.clear();
+void show_hidden(ViewState& view) {
+  view.hidden.clear();
 }
 
 } // namespace flyball

@@ -3,10 +3,12 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
+struct ViewState;
 
-void hide_selected(App& app);    // more of them
-void isolate_selected(App& app); // all but those selected, and what joins selected bodies
-void show_hidden(App& app);
+void hide_selected(Session& session, ViewState& view); // more of them
+// All but those selected, and what joins selected bodies.
+void isolate_selected(const Session& session, ViewState& view);
+void show_hidden(ViewState& view);
 
 } // namespace flyball

@@ -1,7 +1,6 @@
 #include "app/ui/key_focus.hpp"
 
 #include "app/session/session.hpp"
-#include "app/ui/command_state.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/dialog_state.hpp"
 
@@ -96,18 +95,17 @@ bool may_command(Session& session, Ui& ui, const KeyPress& key) {
   return !typed;
 }
 
-void give_keys_to_popups(Ui& ui, CommandState& commands, const DialogState& dialog) {
+void give_keys_to_popups(Ui& ui, const DialogState& dialog, bool& shortcuts, bool palette) {
   const auto pressed = [&](int code) {
     return std::ranges::any_of(ui.keys, [&](const KeyPress& key) { return !key.ctrl && key.key == code; });
   };
-  if (commands.shortcuts) {
-    if (pressed(keys::escape) || pressed(keys::enter) || pressed('?') || pressed(keys::f1))
-      commands.shortcuts = false;
+  if (shortcuts) {
+    if (pressed(keys::escape) || pressed(keys::enter) || pressed('?') || pressed(keys::f1)) shortcuts = false;
     ui.keys.clear();
     return;
   }
   // Dialogs and the palette see to their keys themselves.
-  if (dialog.showing || commands.palette_showing) return;
+  if (dialog.showing || palette) return;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
   if (open == 0) return;
   // In a field Escape gives back what stood there before.

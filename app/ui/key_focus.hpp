@@ -9,7 +9,6 @@
 
 namespace flyball {
 
-struct CommandState;
 struct DialogState;
 struct KeyPress;
 struct Session;
@@ -23,6 +22,7 @@ bool may_command(Session& session, Ui& ui, const KeyPress& key);
 
 // Menus, lists and the sheet of keys: while one is open no key reaches what lies behind it, and Escape closes
 // it. Takes the keys that are theirs out of ui.keys.
-void give_keys_to_popups(Ui& ui, CommandState& commands, const DialogState& dialog);
+// `shortcuts`: the sheet is open; `palette`: the palette is, and sees to its keys itself.
+void give_keys_to_popups(Ui& ui, const DialogState& dialog, bool& shortcuts, bool palette);
 
 } // namespace flyball

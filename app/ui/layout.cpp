@@ -1,7 +1,8 @@
 #include "app/ui/layout.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
 #include <algorithm>
@@ -20,15 +21,15 @@ float panel_width(float wanted, float room) {
 }
 
 // Of the height of two panels, for the upper one.
-float upper_share(const Session& session, const Ui& ui, const PanelState& panels, const Layout& layout,
+float upper_share(const Session& session, const Ui& ui, const PanelSizes& sizes, const Layout& layout,
                   float height) {
 
   if (layout.stacked && session.mode == Mode::explore) {
-    if (panels.stacked_share > 0) return panels.stacked_share;
-    if (panels.parameters_height == 0) return 0.4f;
-    return std::clamp(panels.parameters_height * ui.scale / height, 0.15f, 0.5f);
+    if (sizes.stacked_share > 0) return sizes.stacked_share;
+    if (sizes.parameters_height == 0) return 0.4f;
+    return std::clamp(sizes.parameters_height * ui.scale / height, 0.15f, 0.5f);
   }
-  return panels.inspector_share;
+  return sizes.inspector_share;
 }
 
 // Two panels one above the other.
@@ -49,7 +50,7 @@ void share_view(const Session& session, Layout& layout) {
 }
 
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
-// panels.
+// sizes.
 float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright) {
   const float grip = 4 * ui.scale, thick = std::max(1.f, std::round(ui.scale));
   const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
@@ -81,59 +82,59 @@ float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright) {
 
 } // namespace
 
-Layout layout_of(const App& app, float width, float height) {
-  const float s = app.scale;
-  const bool building = app.mode == Mode::build;
+Layout view_alone_layout(float width, float height) {
   Layout layout;
-  if (app.view.alone) {
-    layout.view = {0, 0, width, height};
-    return layout;
-  }
+  layout.view = {0, 0, width, height};
+  return layout;
+}
+
+Layout layout_of(const Session& session, const Ui& ui, const PanelSizes& sizes, float width, float height) {
+  const float s = ui.scale;
+  const bool building = session.mode == Mode::build;
+  Layout layout;
   const float top = std::round(toolbar_height * s);
   float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
-  if (!building && app.study.open != StudyKind::none) {
-    const float study = std::round(below * app.panels.study_share);
+  if (!building && session.study.open != StudyKind::none) {
+    const float study = std::round(below * sizes.study_share);
     below -= study;
     layout.study = {0, top + below, width, study};
   }
   layout.stacked = width < narrow_width * s;
   if (layout.stacked) {
-    const float panel = std::round(s * panel_width(app.panels.stacked_width, width / s - least_view));
+    const float panel = std::round(s * panel_width(sizes.stacked_width, width / s - least_view));
     layout.view = {0, top, std::max(width - panel, 1.f), below};
-    share_view(app, layout);
+    share_view(session, layout);
     layout.side = {layout.view.width, top, panel, below};
-    const float share = upper_share(app, app, app.panels, layout, below);
+    const float share = upper_share(session, ui, sizes, layout, below);
     if (building)
       divide(layout.side, share, layout.outline, layout.inspector);
     else
       divide(layout.side, share, layout.parameters, layout.results);
     return layout;
   }
-  const float right =
-      std::round(s * panel_width(app.panels.results_width, width / s - least_view - least_panel));
-  const float left =
-      std::round(s * panel_width(app.panels.parameters_width, (width - right) / s - least_view));
+  const float right = std::round(s * panel_width(sizes.results_width, width / s - least_view - least_panel));
+  const float left = std::round(s * panel_width(sizes.parameters_width, (width - right) / s - least_view));
   (building ? layout.outline : layout.parameters) = {0, top, left, below};
   layout.side = {width - right, top, right, below};
-  if (building || !app.selection().empty())
-    divide(layout.side, upper_share(app, app, app.panels, layout, below), layout.inspector, layout.results);
+  if (building || !session.selection().empty())
+    divide(layout.side, upper_share(session, ui, sizes, layout, below), layout.inspector, layout.results);
   else
     layout.results = layout.side;
   layout.view = {left, top, std::max(width - left - right, 1.f), below};
-  share_view(app, layout);
+  share_view(session, layout);
   return layout;
 }
 
-void drag_splitters(Session& session, Ui& ui, PanelState& panels, const Layout& layout) {
+void drag_splitters(Session& session, Ui& ui, PanelSizes& sizes, const Layout& layout) {
   const float s = ui.scale;
 
   const auto clamped = [](float points) { return std::clamp(points, least_panel, most_panel); };
   const PanelRect& side = layout.side;
-  float& side_width = layout.stacked ? panels.stacked_width : panels.results_width;
+  float& side_width = layout.stacked ? sizes.stacked_width : sizes.results_width;
   if (!layout.stacked) {
     const float by = splitter(ui, "splitter/left", {layout.view.x, layout.view.y, 1, side.height}, true);
-    panels.parameters_width = clamped(panels.parameters_width + by / s);
+    sizes.parameters_width = clamped(sizes.parameters_width + by / s);
   }
   side_width =
       clamped(side_width - splitter(ui, "splitter/right", {side.x, side.y, 1, side.height}, true) / s);
@@ -141,15 +142,15 @@ void drag_splitters(Session& session, Ui& ui, PanelState& panels, const Layout& 
     const PanelRect& study = layout.study;
     const float moved = splitter(ui, "splitter/study", {study.x, study.y, study.width, 1}, false);
     const float whole = study.height + side.height;
-    panels.study_share = std::clamp(panels.study_share - moved / whole, 0.2f, 0.75f);
+    sizes.study_share = std::clamp(sizes.study_share - moved / whole, 0.2f, 0.75f);
   }
   const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
   if (lower.height == side.height) return;
   const float by = splitter(ui, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
   if (by == 0) return;
   const float share =
-      std::clamp(upper_share(session, ui, panels, layout, side.height) + by / side.height, 0.15f, 0.85f);
-  (layout.stacked && session.mode == Mode::explore ? panels.stacked_share : panels.inspector_share) = share;
+      std::clamp(upper_share(session, ui, sizes, layout, side.height) + by / side.height, 0.15f, 0.85f);
+  (layout.stacked && session.mode == Mode::explore ? sizes.stacked_share : sizes.inspector_share) = share;
 }
 
 void begin_panel(const char* name, const PanelRect& rect, int more_flags) {

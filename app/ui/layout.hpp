@@ -5,8 +5,6 @@
 
 namespace flyball {
 
-struct App;
-struct PanelState;
 struct Session;
 struct Ui;
 
@@ -22,10 +20,23 @@ struct Layout {
   bool stacked = false;
 };
 
-Layout layout_of(const App& app, float width, float height);
+// How the panels stand, in points, so that it means the same on every display.
+struct PanelSizes {
+  float parameters_width = 290, results_width = 345, stacked_width = 330;
+  // Of the height, for the parameters above the results; 0 until the person chooses: as much as they need.
+  float stacked_share = 0;
+  float parameters_height = 0; // what they needed in the last frame
+  float inspector_share =
+      0.55f;                 // of the height, for the inspector above the results, or the outline above it
+  float study_share = 0.42f; // of the height, for the studies below the view
+};
+
+Layout layout_of(const Session& session, const Ui& ui, const PanelSizes& sizes, float width, float height);
+// The view without anything round it.
+Layout view_alone_layout(float width, float height);
 
 // Draws the lines between panels and moves them; before the panels.
-void drag_splitters(Session& session, Ui& ui, PanelState& panels, const Layout& layout);
+void drag_splitters(Session& session, Ui& ui, PanelSizes& sizes, const Layout& layout);
 // Begins the window of a panel without frame or title; ImGui::End ends it.
 void begin_panel(const char* name, const PanelRect& rect, int more_flags = 0);
 

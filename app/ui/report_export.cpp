@@ -17,19 +17,19 @@ struct Pictures {
 
 Pictures both_pictures(App& app, PixelSize size) {
   Pictures out;
-  const Theme theme = app.theme;
-  const Mode mode = app.mode;
+  const Theme theme = app.ui.theme;
+  const Mode mode = app.session.mode;
   try {
-    app.mode = Mode::explore; // the steady state
-    app.theme = Theme::light;
+    app.session.mode = Mode::explore; // the steady state
+    app.ui.theme = Theme::light;
     out.light = view_picture(app, size);
-    app.theme = Theme::dark;
+    app.ui.theme = Theme::dark;
     out.dark = view_picture(app, size);
   } catch (const std::exception& error) {
     out.problem = error.what();
   }
-  app.theme = theme;
-  app.mode = mode;
+  app.ui.theme = theme;
+  app.session.mode = mode;
   return out;
 }
 
@@ -39,16 +39,18 @@ void begin_report(App& app, const ExportRequest& request) {
   using Task = Background<std::filesystem::path>;
   const PixelSize size{request.width, request.height};
   const auto pictures = std::make_shared<const Pictures>(both_pictures(app, size));
-  if (!app.report.task) app.report.task = std::make_unique<Task>(app.options.mode, app.options.on_news);
+  if (!app.report.task)
+    app.report.task = std::make_unique<Task>(app.session.options.mode, app.session.options.on_news);
   ReportOptions options;
   // The state that a hand has chosen, if one has.
-  if (app.on_branch && converged(app)) {
-    options.start = start_values(app.answer.solution.coordinates);
+  if (app.session.on_branch && converged(app.session)) {
+    options.start = start_values(app.session.answer.solution.coordinates);
     options.nearest = true;
   }
-  app.notice = "Writing the report…";
-  app.report.task->start([options, size, pictures, file = request.file, mechanism = app.document.shared(),
-                          scene = app.document.file().filename().string()](
+  app.session.notice = "Writing the report…";
+  app.report.task->start([options, size, pictures, file = request.file,
+                          mechanism = app.session.document.shared(),
+                          scene = app.session.document.file().filename().string()](
                              const TaskContext<std::filesystem::path>& context) mutable {
     options.cancel = &context.cancel;
     options.progress = context.progress;

@@ -1,6 +1,6 @@
 #include "app/ui/scene_pictures.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 
 #include "engine/report/analysis.hpp"
 
@@ -48,21 +48,20 @@ const ScenePictures::Picture* ScenePictures::find(const Ui& ui, const SceneCard&
   return nullptr;
 }
 
-void ScenePictures::update(App& app, ViewRenderer& renderer) {
-  GalleryState& gallery = app.file_dialogs.gallery;
+void ScenePictures::update(const Session& session, const Ui& ui, const ViewState& view,
+                           GalleryDialog& gallery, bool wanted, ViewRenderer& renderer) {
   gallery.drawing = false;
-  if (!gallery.showing && app.dialog.wanted != Dialog::gallery) return;
+  if (!gallery.showing() && !wanted) return;
   // Those of other colours and sizes are not wanted any more.
   std::erase_if(pictures_,
-                [&](const Picture& one) { return one.theme != app.theme || one.scale != app.scale; });
+                [&](const Picture& one) { return one.theme != ui.theme || one.scale != ui.scale; });
   bool may_draw = true;
-  for (SceneCard& card : gallery.cards) {
-    const Picture* picture = find(app, card);
+  for (SceneCard& card : gallery.cards()) {
+    const Picture* picture = find(ui, card);
     if (!picture && may_draw) {
-      pictures_.push_back(
-          {card.mechanism, app.theme, app.scale, draw(app, app.view, card.mechanism, renderer)});
+      pictures_.push_back({card.mechanism, ui.theme, ui.scale, draw(ui, view, card.mechanism, renderer)});
       picture = &pictures_.back();
-      may_draw = app.options.mode == LiveSolver::Mode::immediate;
+      may_draw = session.options.mode == LiveSolver::Mode::immediate;
     }
     card.picture = picture ? picture->drawn.texture() : 0;
     gallery.drawing = gallery.drawing || !picture;

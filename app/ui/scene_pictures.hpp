@@ -3,7 +3,12 @@
 #pragma once
 
 #include "app/render/framebuffer.hpp"
-#include "app/ui/app.hpp"
+#include "app/ui/dialogs/gallery_dialog.hpp"
+#include "app/ui/ui.hpp"
+#include "app/ui/view_state.hpp"
+#include "app/viewport/view_renderer.hpp"
+
+#include <vector>
 
 namespace flyball {
 
@@ -12,8 +17,9 @@ inline constexpr float scene_picture_width = 240, scene_picture_height = 150; //
 class ScenePictures {
  public:
   // Draws the next one that the gallery misses (where the app solves at once: all of them) and tells the
-  // cards which pictures are theirs.
-  void update(App& app, ViewRenderer& renderer);
+  // cards which pictures are theirs. `wanted`: it is about to open.
+  void update(const Session& session, const Ui& ui, const ViewState& view, GalleryDialog& gallery,
+              bool wanted, ViewRenderer& renderer);
 
  private:
   struct Picture {

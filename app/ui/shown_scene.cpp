@@ -1,6 +1,7 @@
 #include "app/ui/shown_scene.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 
 #include <algorithm>
 
@@ -52,8 +53,10 @@ const ShownScene& show_motion_scene(const Session& session, const ToolState& too
   return keep(session, tool, view.scene_beside, frame);
 }
 
-const std::shared_ptr<const ViewScene>& shown_scene(App& app) {
-  return show_scene(app, app.tool, app.view, view_frame(app)).scene;
+const std::shared_ptr<const ViewScene>& shown_scene(const ViewContext& context) {
+  return show_scene(context.session, context.tool, context.view,
+                    view_frame(context.session, context.ui, context.tool, context.view))
+      .scene;
 }
 
 } // namespace flyball

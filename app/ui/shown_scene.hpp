@@ -10,7 +10,7 @@
 
 namespace flyball {
 
-struct App;
+struct ViewContext;
 struct Session;
 struct ToolState;
 struct ViewState;
@@ -38,7 +38,7 @@ const ShownScene& show_scene(const Session& session, const ToolState& tool, View
                              const ViewFrame& frame);
 const ShownScene& show_motion_scene(const Session& session, const ToolState& tool, ViewState& view,
                                     const ViewFrame& frame);
-// As the app is now, which commands may have changed since the frame began.
-const std::shared_ptr<const ViewScene>& shown_scene(App& app);
+// As all of it is now, which commands may have changed since the frame began.
+const std::shared_ptr<const ViewScene>& shown_scene(const ViewContext& context);
 
 } // namespace flyball

@@ -2,6 +2,8 @@
 
 #include "app/ui/app.hpp"
 #include "app/ui/plots/plot_picture.hpp"
+#include "app/ui/plots/plot_save.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/mechanism/file.hpp"
 
 #include <algorithm>
@@ -15,7 +17,7 @@ Image view_picture(App& app, PixelSize size) {
   update(app, 0, {static_cast<double>(size.width), static_cast<double>(size.height)});
   ViewRenderer renderer;
   Framebuffer target(size.width, size.height, app.view.samples);
-  ViewFrame frame = view_frame(app);
+  ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   frame.hovered = {};
   renderer.draw(frame, target);
   return target.read();
@@ -45,26 +47,26 @@ Image view_picture(App& app, PixelSize size, float scale) {
 }
 
 Image interface_picture(App& app, PixelSize size, float scale) {
-  const float former_scale = app.scale;
-  const UiFonts former_fonts = app.fonts;
-  const WidgetMap former_widgets = std::exchange(app.widgets, {});
-  const KeyboardState former_keyboard = std::exchange(app.keyboard, {});
+  const float former_scale = app.ui.scale;
+  const UiFonts former_fonts = app.ui.fonts;
+  const WidgetMap former_widgets = std::exchange(app.ui.widgets, {});
+  const KeyboardState former_keyboard = std::exchange(app.ui.keyboard, {});
   const unsigned former_texture = app.view.texture;
   app.view.hovered = {};
   Image image;
   {
-    Stage stage(app, scale);
+    Stage stage(app.ui, scale);
     // Sizes that ImGui learns from one frame settle in the next; the shade behind a dialog takes ten.
     for (int i = 0; i < 11; ++i)
       stage.frame(app, size, 0);
     Framebuffer target(size.width, size.height, 1);
-    stage.render(app, target);
+    stage.render(app.ui, target);
     image = target.read();
   }
-  app.scale = former_scale;
-  app.fonts = former_fonts;
-  app.widgets = former_widgets;
-  app.keyboard = former_keyboard;
+  app.ui.scale = former_scale;
+  app.ui.fonts = former_fonts;
+  app.ui.widgets = former_widgets;
+  app.ui.keyboard = former_keyboard;
   app.view.texture = former_texture;
   return image;
 }
@@ -73,21 +75,21 @@ void export_picture(App& app, PixelSize window) {
   if (!app.export_request) return;
   const ExportRequest request = *std::exchange(app.export_request, std::nullopt);
   const PixelSize size{request.width, request.height};
-  app.notice.clear();
+  app.session.notice.clear();
   if (request.report) return begin_report(app, request);
   try {
     // A larger picture of the panels has larger letters, not more room.
     const float grown = std::min(static_cast<float>(size.width) / static_cast<float>(window.width),
                                  static_cast<float>(size.height) / static_cast<float>(window.height));
-    const float scale = std::max(1.f, std::round(4 * app.scale * grown) / 4);
+    const float scale = std::max(1.f, std::round(4 * app.ui.scale * grown) / 4);
     const Switched loads(app.view.loads, request.loads);
     const Image image = request.plot     ? plot_picture(*request.plot, size)
                         : request.panels ? interface_picture(app, size, scale)
                                          : view_picture(app, size, scale);
     replace_file(request.file, encode_png(image));
-    app.notice = "Saved " + request.file.string();
+    app.session.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {
-    show_error(app, std::string("Not saved: ") + error.what());
+    show_error(app.session, std::string("Not saved: ") + error.what());
   }
 }
 

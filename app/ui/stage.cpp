@@ -1,7 +1,8 @@
 #include "app/ui/stage.hpp"
 
 #include "app/ui/app.hpp"
-#include "app/ui/layout.hpp"
+#include "app/ui/panel_list.hpp"
+#include "app/ui/view_frame.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
 #include <algorithm>
@@ -81,29 +82,32 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const Layout layout = layout_of(app, width, height);
   const PanelRect& view = layout.view;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
-  ViewFrame shown = view_frame(app);
-  shown.options.triad = !has_view_cube(app, app.view, view); // the cube shows the axes
-  app.view.texture = prepare(app, view_, shown, show_scene(app, app.tool, app.view, shown), pixels_of(view));
+  ViewFrame shown = view_frame(app.session, app.ui, app.tool, app.view);
+  shown.options.triad = !has_view_cube(app.ui, app.view, view); // the cube shows the axes
+  app.view.texture =
+      prepare(app.view, view_, shown, show_scene(app.session, app.tool, app.view, shown), pixels_of(view));
   if (layout.beside.width > 0) {
-    ViewFrame motion = motion_frame(app, shown);
+    ViewFrame motion = motion_frame(app.session, shown);
     motion.options.triad = true; // there is no cube
-    app.view.texture_beside = prepare(
-        app, beside_, motion, show_motion_scene(app, app.tool, app.view, motion), pixels_of(layout.beside));
+    app.view.texture_beside =
+        prepare(app.view, beside_, motion, show_motion_scene(app.session, app.tool, app.view, motion),
+                pixels_of(layout.beside));
   } else {
     beside_ = {};
   }
   if (const bool coarse = view_.is_coarse() || beside_.is_coarse(); coarse != told_coarse_) {
     told_coarse_ = coarse;
-    if (coarse) app.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
+    if (coarse) app.session.notice = "The view is too large for OpenGL here and is drawn more coarsely.";
   }
-  scene_pictures_.update(app, view_renderer_);
-  movie_.update(app, view_renderer_);
+  scene_pictures_.update(app.session, app.ui, app.view, app.panels->gallery,
+                         app.dialog.wanted == Dialog::gallery, view_renderer_);
+  movie_.update(app.context(), app.movie, view_renderer_);
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = {width, height};
   io.DisplayFramebufferScale = {1, 1};
-  io.UserData = &app.tooltip;
-  app.tooltip.clock += seconds;
-  app.tooltip.due = std::numeric_limits<double>::infinity();
+  io.UserData = &app.ui.tooltip;
+  app.ui.tooltip.clock += seconds;
+  app.ui.tooltip.due = std::numeric_limits<double>::infinity();
   io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
   ImGui::NewFrame();
   build_gui(app);
@@ -133,9 +137,9 @@ void Stage::draw_interface(const Ui& ui, PixelSize size) {
   renderer_.draw(*ImGui::GetDrawData());
 }
 
-unsigned Stage::prepare(const App& app, View& view, const ViewFrame& shown, const ShownScene& scene,
+unsigned Stage::prepare(const ViewState& state, View& view, const ViewFrame& shown, const ShownScene& scene,
                         PixelSize size) {
-  ViewKey key = key_of(app.view, shown, scene.scene, size);
+  ViewKey key = key_of(state, shown, scene.scene, size);
   const auto now = std::chrono::steady_clock::now();
   if (key.samples != view.key.samples) {
     view.target.reset();

@@ -4,14 +4,16 @@
 
 #include "app/render/fonts.hpp"
 #include "app/render/imgui_renderer.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/scene_pictures.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
 
 #include <chrono>
 #include <memory>
 
 namespace flyball {
+
+struct App;
 
 struct PixelSize {
   int width = 0, height = 0;
@@ -78,7 +80,7 @@ class Stage {
     }
   };
   // The texture in which it will be once it is drawn.
-  unsigned prepare(const App& app, View& view, const ViewFrame& frame, const ShownScene& scene,
+  unsigned prepare(const ViewState& state, View& view, const ViewFrame& frame, const ShownScene& scene,
                    PixelSize size);
   void draw_due(View& view);
   void draw_interface(const Ui& ui, PixelSize size);

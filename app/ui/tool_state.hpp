@@ -98,7 +98,7 @@ struct ToolCaches {
   ViewCamera aim_camera;
   bool aim_snaps = false;
   Aim aim;
-  std::shared_ptr<const ViewScene> hover_scene; // for which App::view.hovered was found
+  std::shared_ptr<const ViewScene> hover_scene; // for which ViewState::hovered was found
   ViewCamera hover_camera;                      // likewise
 };
 
@@ -106,6 +106,7 @@ struct ToolState {
   Tool tool = Tool::select;
   bool snap = true;                           // to points, the grid and round angles
   JointType joint_type = JointType::revolute; // of the next joint
+  bool leave_joints = false;                  // a body that is moved leaves its joints where they are
   std::optional<Vec3> last_point{};           // m, that was used: the next one is on a plane through it
   std::string point{};                        // a named one that is selected, while no part is
   std::string standing{};                     // the vector that shall stand at one, "joints.arm.at"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/render/fonts.hpp"
+#include "app/session/settings.hpp"
 #include "app/ui/keyboard/keyboard_state.hpp"
 #include "app/ui/widgets/field_state.hpp"
 #include "app/ui/widgets/section_state.hpp"
@@ -11,9 +12,12 @@
 #include "app/ui/widgets/widget_map.hpp"
 #include "app/viewport/theme.hpp"
 
+#include <memory>
 #include <vector>
 
 namespace flyball {
+
+struct PlotToSave; // see plot_save.hpp
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
 // begins, and misses one that was tapped while a slow frame was drawn.
@@ -25,7 +29,9 @@ struct KeyPress {
 
 struct Ui {
   Theme theme = Theme::light; // that is shown
-  float scale = 1;            // pixels a point has
+  ThemeChoice theme_choice = ThemeChoice::system;
+  Theme system_theme = Theme::light; // that the desktop has
+  float scale = 1;                   // pixels a point has
   UiFonts fonts;
   WidgetMap widgets;
   KeyboardState keyboard;
@@ -34,6 +40,7 @@ struct Ui {
   FieldState fields;
   SectionState sections;
   SliderPress slider_press;
+  std::shared_ptr<PlotToSave> plot_to_save; // asked for in a plot's menu, until the dialog takes it
 };
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/document/part.hpp"
+#include "app/session/navigation.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/panels/view_cube.hpp"
 #include "app/ui/shown_scene.hpp"
@@ -19,11 +20,10 @@ struct ViewState {
   std::optional<CameraGlide> glide; // while the camera is on its way
   bool animated = false;            // commands make it glide
   ViewCubeState cube;
-  std::vector<Part> hidden;    // not drawn, nor to be pointed at
-  int menu_in = 0;             // frames until the context menu opens, as panels settle first; 0: it does not
-  std::optional<Vec2> menu_at; // where, in pixels of the window; none: where its part is
-  bool menu_of_part = false;   // it is that of the selected parts
+  std::vector<Part> hidden; // not drawn, nor to be pointed at
+  Navigation navigation = Navigation::own;
   bool ghost = true, grid = true, shadow = true;
+  bool legend = true;     // is open
   bool loads = false;     // arrows of what acts; see load_view.hpp
   bool alone = false;     // no panels round it, for pictures
   int samples = 4;        // 1: no anti-aliasing

@@ -98,8 +98,8 @@ class Builder {
         layout_of(robot_.app, static_cast<float>(robot_.size.width), static_cast<float>(robot_.size.height))
             .inspector;
     const auto seen = [&] {
-      const auto found = robot_.app.widgets.find(name); // what of it can be seen
-      return found != robot_.app.widgets.end() && found->second.to.y - found->second.from.y >= 16;
+      const auto found = robot_.app.ui.widgets.find(name); // what of it can be seen
+      return found != robot_.app.ui.widgets.end() && found->second.to.y - found->second.from.y >= 16;
     };
     for (const float notches : {20.f, -1.f})
       for (int i = 0; i < 40 && !seen(); ++i) {

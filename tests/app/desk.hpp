@@ -12,11 +12,11 @@ namespace flyball::test {
 
 struct Desk : Robot {
   explicit Desk(const std::string& scene = "governor", PixelSize window = {1200, 900}) : Robot(window) {
-    open_document(app, Document(shipped(scene), shipped_file(scene)));
+    open_document(app.session, Document(shipped(scene), shipped_file(scene)));
     frames(3);
   }
   void pick(PartKind kind, const std::string& name) {
-    select(app, {{{kind, name}}});
+    select(app.session, {{{kind, name}}});
     frames(2);
   }
   void build() {
@@ -30,7 +30,7 @@ struct Desk : Robot {
     key(key_enter);
     frames(2);
   }
-  const Mechanism& m() const { return app.mechanism(); }
+  const Mechanism& m() const { return app.session.mechanism(); }
 };
 
 } // namespace flyball::test

@@ -27,25 +27,25 @@ class FileRobot : public Robot {
   explicit FileRobot(const TemporaryFolder& folder, const char* owner = nullptr) {
     imgui_compat::map_key(ImGuiKey_DownArrow, key_down);
     imgui_compat::map_key(ImGuiKey_RightArrow, key_right);
-    app.options.state = folder / "state";
-    if (owner) app.files.owner = owner;
-    begin_files(app, app.dialog);
+    app.session.options.state = folder / "state";
+    if (owner) app.session.files.owner = owner;
+    begin_files(app.session, app.dialog);
     frames(3);
   }
   void pass(double seconds) {
     for (double t = 0; t < seconds; t += 0.25) {
-      update_files(app, 0.25);
-      app.files.autosave.wait();
+      update_files(app.session, 0.25);
+      app.session.files.autosave.wait();
     }
     frames(3);
   }
   void set_speed(double value) {
-    ++app.gesture;
-    edit_parameter(app, speed, value);
+    ++app.session.gesture;
+    edit_parameter(app.session, speed, value);
     frames(1);
   }
-  double speed_now() const { return get_parameter(app.mechanism(), speed); }
-  bool shows(const std::string& widget) const { return app.widgets.contains(widget); }
+  double speed_now() const { return get_parameter(app.session.mechanism(), speed); }
+  bool shows(const std::string& widget) const { return app.ui.widgets.contains(widget); }
   void open(const fs::path& file) {
     open_file(app, file);
     frames(3);

@@ -24,16 +24,17 @@ inline void answer_as_drawn(App& app) {
   static std::uint64_t tickets = 0;
   LiveAnswer answer;
   answer.ticket = ++tickets;
-  answer.mechanism = app.document.shared();
-  answer.poses = drawn_poses(app.mechanism());
+  answer.mechanism = app.session.document.shared();
+  answer.poses = drawn_poses(app.session.mechanism());
   Solution& solution = answer.solution;
   solution.status = Status::converged;
   solution.message = "Converged.";
   solution.stable = true;
   solution.poses = answer.poses;
   solution.sensitivities.resize(1);
-  solution.sensitivities[0].address = "joints." + app.mechanism().joints.front().name + ".drive.speed";
-  for (const Joint& joint : app.mechanism().joints) {
+  solution.sensitivities[0].address =
+      "joints." + app.session.mechanism().joints.front().name + ".drive.speed";
+  for (const Joint& joint : app.session.mechanism().joints) {
     Reaction reaction;
     reaction.joint = joint.name;
     reaction.force = Vec3(1, 2, 3);
@@ -49,9 +50,9 @@ inline void answer_as_drawn(App& app) {
       if (!c.driven) solution.sensitivities[0].rates.push_back({c.joint, c.index, c.count, 0.01});
     }
   }
-  app.mistakes.clear();
-  app.poses = answer.poses;
-  app.answer = std::move(answer);
+  app.session.mistakes.clear();
+  app.session.poses = answer.poses;
+  app.session.answer = std::move(answer);
 }
 
 } // namespace flyball::test

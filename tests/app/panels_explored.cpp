@@ -29,19 +29,20 @@ TEST_CASE("a slider that is moved leaves nothing to be saved") {
   App& app = robot.app;
   const fs::path file = governor_in(folder);
   robot.open(file);
-  const Solution before = app.answer.solution;
+  const Solution before = app.session.answer.solution;
   drag_speed(robot);
   const double tried = robot.speed_now();
   REQUIRE(tried > 15);
-  CHECK(app.answer.solution.coordinates.back().value != before.coordinates.back().value);
-  CHECK(app.answer.mechanism == app.document.shared()); // the same object, not only an equal one
-  CHECK_FALSE(app.document.unsaved());
-  CHECK_FALSE(has_unsaved_work(app));
+  CHECK(app.session.answer.solution.coordinates.back().value != before.coordinates.back().value);
+  CHECK(app.session.answer.mechanism ==
+        app.session.document.shared()); // the same object, not only an equal one
+  CHECK_FALSE(app.session.document.unsaved());
+  CHECK_FALSE(has_unsaved_work(app.session));
   CHECK(robot.shows("explored/keep"));
 
   SECTION("closing asks nothing, and the file is as it was") {
     robot.pass(6);
-    CHECK(app.files.autosave.path().empty());
+    CHECK(app.session.files.autosave.path().empty());
     quit(app);
     CHECK(app.quit);
     CHECK_FALSE(app.dialog.showing);
@@ -51,13 +52,13 @@ TEST_CASE("a slider that is moved leaves nothing to be saved") {
     const std::string text = read_bytes(file);
     robot.key('S', true);
     CHECK(in_file(file) == 11.0174);
-    CHECK_THAT(app.notice, ContainsSubstring("without the explored value"));
+    CHECK_THAT(app.session.notice, ContainsSubstring("without the explored value"));
     CHECK(robot.speed_now() == tried);
     CHECK(robot.shows("explored/keep"));
   }
   SECTION("kept, it is an edit") {
     robot.click("explored/keep");
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.unsaved());
     CHECK(robot.speed_now() == tried);
     CHECK_FALSE(robot.shows("explored/keep"));
     robot.key('S', true);
@@ -66,38 +67,38 @@ TEST_CASE("a slider that is moved leaves nothing to be saved") {
   SECTION("and back, it is gone") {
     robot.click("explored/back");
     CHECK(robot.speed_now() == 11.0174);
-    CHECK(app.document.explored().empty());
+    CHECK(app.session.document.explored().empty());
     robot.key('Z', true);
     CHECK(robot.speed_now() == tried);
     robot.key('Z', true);
     CHECK(robot.speed_now() == 11.0174);
   }
   SECTION("building shows the stored value, and edits it") {
-    set_mode(app, Mode::build);
+    set_mode(app.session, Mode::build);
     robot.frames(3);
     CHECK(robot.speed_now() == 11.0174);
     CHECK(robot.shows("explored/keep"));
-    edit_parameter(app, "bodies.collar.mass", 2);
-    CHECK(app.document.unsaved());
+    edit_parameter(app.session, "bodies.collar.mass", 2);
+    CHECK(app.session.document.unsaved());
     CHECK(robot.speed_now() == 11.0174);
     // Undoing takes back what is seen.
-    undo(app);
-    CHECK_FALSE(app.document.unsaved());
-    redo(app);
-    set_mode(app, Mode::explore);
+    undo(app.session);
+    CHECK_FALSE(app.session.document.unsaved());
+    redo(app.session);
+    set_mode(app.session, Mode::explore);
     robot.frames(3);
     CHECK(robot.speed_now() == tried);
-    CHECK(get_parameter(app.mechanism(), "bodies.collar.mass") == 2);
+    CHECK(get_parameter(app.session.mechanism(), "bodies.collar.mass") == 2);
   }
   SECTION("what another program writes is read at once, beside it") {
     Mechanism theirs = load_scene(file);
     set_parameter(theirs, "bodies.collar.mass", 4);
     write_bytes(file, write_scene(theirs));
     robot.pass(3);
-    CHECK_FALSE(app.files.conflict);
-    CHECK(get_parameter(app.mechanism(), "bodies.collar.mass") == 4);
+    CHECK_FALSE(app.session.files.conflict);
+    CHECK(get_parameter(app.session.mechanism(), "bodies.collar.mass") == 4);
     CHECK(robot.speed_now() == tried);
-    CHECK_FALSE(app.document.unsaved());
+    CHECK_FALSE(app.session.document.unsaved());
   }
 }
 
@@ -105,14 +106,14 @@ TEST_CASE("what is typed in the inspector is an edit while exploring, too") {
   Robot robot({1280, 900});
   App& app = robot.app;
   drag_speed(robot);
-  select(app, {{{PartKind::joint, "spin"}}});
+  select(app.session, {{{PartKind::joint, "spin"}}});
   robot.frames(3);
   robot.click("inspector/drive/speed");
   robot.type("12 rad/s");
   robot.key(key_enter);
-  CHECK(get_parameter(app.document.stored(), speed) == 12);
-  CHECK(get_parameter(app.mechanism(), speed) == 12);
-  CHECK(app.document.explored().empty());
+  CHECK(get_parameter(app.session.document.stored(), speed) == 12);
+  CHECK(get_parameter(app.session.mechanism(), speed) == 12);
+  CHECK(app.session.document.explored().empty());
 }
 
 TEST_CASE("after a crash unsaved edits come back, and explored values are as stored") {
@@ -121,12 +122,12 @@ TEST_CASE("after a crash unsaved edits come back, and explored values are as sto
   {
     FileRobot robot(folder);
     robot.open(file);
-    edit_parameter(robot.app, "bodies.collar.mass", 3);
-    change_parameter(robot.app, speed, 20);
+    edit_parameter(robot.app.session, "bodies.collar.mass", 3);
+    change_parameter(robot.app.session, speed, 20);
     robot.pass(6);
-    REQUIRE_FALSE(robot.app.files.autosave.path().empty());
-    robot.app.files.autosave.wait();
-    const Autosave kept = parse_autosave(read_bytes(robot.app.files.autosave.path()));
+    REQUIRE_FALSE(robot.app.session.files.autosave.path().empty());
+    robot.app.session.files.autosave.wait();
+    const Autosave kept = parse_autosave(read_bytes(robot.app.session.files.autosave.path()));
     const Mechanism recovered = parse_scene(kept.scene);
     CHECK(get_parameter(recovered, "bodies.collar.mass") == 3);
     CHECK(get_parameter(recovered, speed) == 11.0174);
@@ -138,7 +139,7 @@ TEST_CASE("an explored value is told with the digits of its field") {
   FileRobot robot(folder);
   App& app = robot.app;
   robot.open(governor_in(folder));
-  change_parameter(app, speed, 14.2857142857);
-  CHECK_THAT(explored_words(app).front(), ContainsSubstring(" 14.2857143 rad/s"));
-  CHECK_THAT(explored_words(app).front(), ContainsSubstring("stored is 11.0174 rad/s"));
+  change_parameter(app.session, speed, 14.2857142857);
+  CHECK_THAT(explored_words(app.session).front(), ContainsSubstring(" 14.2857143 rad/s"));
+  CHECK_THAT(explored_words(app.session).front(), ContainsSubstring("stored is 11.0174 rad/s"));
 }

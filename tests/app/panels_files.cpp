@@ -1,4 +1,5 @@
 // New, save, and questions before work is lost.
+#include "app/ui/panel_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/parts.hpp"
@@ -13,10 +14,10 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   App& app = robot.app;
   robot.key('N', true);
   CHECK_FALSE(app.dialog.showing); // nothing would be lost
-  CHECK(app.mechanism() == Document::empty_mechanism());
-  CHECK(document_name(app) == "Untitled");
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
-  CHECK(app.document.unsaved());
+  CHECK(app.session.mechanism() == Document::empty_mechanism());
+  CHECK(document_name(app.session) == "Untitled");
+  edit(app.session, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
+  CHECK(app.session.document.unsaved());
 
   robot.key('S', true);
   REQUIRE(app.dialog.showing);
@@ -25,33 +26,33 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   REQUIRE_FALSE(app.dialog.showing);
   const fs::path file = folder / "new_arm.json";
   REQUIRE(fs::exists(file));
-  CHECK(app.document.file() == file);
-  CHECK_FALSE(app.document.unsaved());
-  CHECK(app.notice == "Saved new_arm.json");
-  CHECK(app.mechanism().name == "New arm");
-  CHECK(document_name(app) == "new_arm.json");
+  CHECK(app.session.document.file() == file);
+  CHECK_FALSE(app.session.document.unsaved());
+  CHECK(app.session.notice == "Saved new_arm.json");
+  CHECK(app.session.mechanism().name == "New arm");
+  CHECK(document_name(app.session) == "new_arm.json");
   // Unfinished as it is: the ball hangs on nothing.
-  CHECK(parse_scene(read_bytes(file)) == app.mechanism());
-  CHECK_FALSE(app.mistakes.empty());
-  CHECK(app.files.recent.front() == file);
+  CHECK(parse_scene(read_bytes(file)) == app.session.mechanism());
+  CHECK_FALSE(app.session.mistakes.empty());
+  CHECK(app.session.files.recent.front() == file);
 
-  edit(app, "Mass", [](Mechanism& m, Selection&) { m.bodies[0].mass = 2; });
+  edit(app.session, "Mass", [](Mechanism& m, Selection&) { m.bodies[0].mass = 2; });
   robot.key('S', true);
   CHECK_FALSE(app.dialog.showing);
   CHECK(parse_scene(read_bytes(file)).bodies[0].mass == 2);
   robot.key('Z', true);
-  CHECK(app.document.unsaved()); // the file holds the edit
+  CHECK(app.session.document.unsaved()); // the file holds the edit
   CHECK(parse_scene(read_bytes(file)).bodies[0].mass == 2);
   robot.key('S', true);
   CHECK(parse_scene(read_bytes(file)).bodies[0].mass == 1);
-  CHECK_FALSE(app.document.unsaved());
+  CHECK_FALSE(app.session.document.unsaved());
 
   SECTION("and opens again, unfinished as it is") {
     robot.key('N', true);
     robot.open(file);
-    CHECK(app.problem.empty());
-    CHECK(app.mechanism().bodies.size() == 1);
-    CHECK_FALSE(app.mistakes.empty());
+    CHECK(app.session.problem.empty());
+    CHECK(app.session.mechanism().bodies.size() == 1);
+    CHECK_FALSE(app.session.mistakes.empty());
   }
 }
 
@@ -59,7 +60,7 @@ TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as
   robot.key('E', true);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(fs::path(app.file_dialogs.path).parent_path() == file.parent_path());
+  CHECK(fs::path(app.panels->picture.query().path).parent_path() == file.parent_path());
 }
 
 TEST_CASE("saving over another file is asked about, and a failure loses nothing") {
@@ -73,7 +74,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
   show_save_dialog(app);
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  CHECK(app.file_dialogs.path == "governor.json");
+  CHECK(app.panels->save.query().path == "governor.json");
 
   SECTION("asked twice, then replaced") {
     robot.click("save/other.json"); // from the list
@@ -83,7 +84,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.click("save/save");
     CHECK_FALSE(app.dialog.showing);
     CHECK(speed_in(other) == 5);
-    CHECK(app.document.file() == other);
+    CHECK(app.session.document.file() == other);
     CHECK(speed_in(file) == 11.0174);
   }
   SECTION("given up") {
@@ -93,16 +94,16 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.key(key_escape);
     CHECK_FALSE(app.dialog.showing);
     CHECK(read_bytes(other) == "something else");
-    CHECK(app.document.file() == file);
+    CHECK(app.session.document.file() == file);
   }
   SECTION("to where nothing can be written") {
     robot.type((folder / "no such folder/x").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("x.json was not saved"));
-    CHECK(app.document.file() == file);
+    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("x.json was not saved"));
+    CHECK(app.session.document.file() == file);
     CHECK(robot.speed_now() == 5);
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.unsaved());
     // Another name, and it goes on.
     robot.click("save/path");
     robot.key('A', true);
@@ -129,8 +130,8 @@ TEST_CASE("a file that cannot be written any more asks for another place") {
   fs::remove_all(folder / "gone");
   robot.key('S', true);
   REQUIRE(robot.app.dialog.showing);
-  CHECK_THAT(robot.app.file_dialogs.message, ContainsSubstring("governor.json was not saved"));
-  CHECK(robot.app.document.unsaved());
+  CHECK_THAT(robot.app.panels->save.query().message, ContainsSubstring("governor.json was not saved"));
+  CHECK(robot.app.session.document.unsaved());
 }
 
 TEST_CASE("leaving unsaved work is asked about") {
@@ -144,8 +145,8 @@ TEST_CASE("leaving unsaved work is asked about") {
   const Way way = GENERATE(Way::fresh, Way::open, Way::quit);
   const auto left = [&] {
     switch (way) {
-    case Way::fresh: return app.document.file().empty();
-    case Way::open: return app.document.file() == other;
+    case Way::fresh: return app.session.document.file().empty();
+    case Way::open: return app.session.document.file() == other;
     default: return app.quit;
     }
   };
@@ -168,7 +169,7 @@ TEST_CASE("leaving unsaved work is asked about") {
     }
     CHECK_FALSE(left());
     CHECK(robot.speed_now() == 5);
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.unsaved());
     // Saving later does not go on with what was given up.
     robot.key('S', true);
     CHECK_FALSE(left());
@@ -202,7 +203,7 @@ TEST_CASE("an untitled document can be saved on the way out, or not after all") 
   FileRobot robot(folder);
   App& app = robot.app;
   robot.key('N', true);
-  edit(app, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
+  edit(app.session, "Add", [](Mechanism& m, Selection&) { m.bodies.push_back(test::body("ball")); });
   robot.key('Q', true);
   robot.click("unsaved/save");
   robot.frames(2);
@@ -217,7 +218,7 @@ TEST_CASE("an untitled document can be saved on the way out, or not after all") 
   SECTION("not after all") {
     robot.click("save/cancel");
     CHECK_FALSE(app.quit);
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.unsaved());
     show_save_dialog(app);
     robot.frames(2);
     robot.type((folder / "later.json").string());
@@ -232,11 +233,11 @@ TEST_CASE("without a state folder the program writes nothing that was not asked 
   const fs::path file = governor_in(folder);
   Robot robot;
   open_file(robot.app, file);
-  ++robot.app.gesture;
-  change_parameter(robot.app, speed, 5);
+  ++robot.app.session.gesture;
+  change_parameter(robot.app.session, speed, 5);
   for (int i = 0; i < 40; ++i)
-    update_files(robot.app, 0.25);
-  robot.app.files.autosave.wait();
+    update_files(robot.app.session, 0.25);
+  robot.app.session.files.autosave.wait();
   CHECK(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 
@@ -247,7 +248,7 @@ TEST_CASE("an example is never overwritten by saving") {
   const fs::path copy = folder / "scenes";
   fs::create_directory(copy);
   fs::copy_file(shipped_file("governor"), copy / "governor.json");
-  app.options.scenes = copy;
+  app.session.options.scenes = copy;
   robot.open(copy / "governor.json");
   robot.set_speed(5);
   const std::string before = read_bytes(copy / "governor.json");
@@ -256,5 +257,5 @@ TEST_CASE("an example is never overwritten by saving") {
   CHECK(app.dialog.showing);
   CHECK(robot.shows("save/save"));
   CHECK(read_bytes(copy / "governor.json") == before);
-  CHECK(app.document.unsaved());
+  CHECK(app.session.document.unsaved());
 }

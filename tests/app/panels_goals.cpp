@@ -1,6 +1,7 @@
 // Sliders in reverse by mouse and keys: read-outs and bodies dragged to where they should be.
 #include "robot.hpp"
 
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -16,15 +17,15 @@ namespace {
 
 struct GoalRobot : Robot {
   GoalRobot() : Robot({1280, 900}) {
-    open_scene(app, shipped_file("governor_parametric"));
-    set_mode(app, ::flyball::Mode::explore);
+    open_scene(app.session, shipped_file("governor_parametric"));
+    set_mode(app.session, ::flyball::Mode::explore);
     look_from(app.view, 0, 0);
     frames(4);
   }
-  double number(const std::string& address) const { return get_parameter(app.mechanism(), address); }
-  double settled(const char* joint) const { return value(app.answer.solution, joint); }
+  double number(const std::string& address) const { return get_parameter(app.session.mechanism(), address); }
+  double settled(const char* joint) const { return value(app.session.answer.solution, joint); }
   Vec3 shown(const char* name) const {
-    return app.poses.at(static_cast<std::size_t>(body_index(app.mechanism(), name))).position;
+    return app.session.poses.at(static_cast<std::size_t>(body_index(app.session.mechanism(), name))).position;
   }
 };
 
@@ -42,11 +43,11 @@ TEST_CASE("a read-out is dragged, and the pinned sliders follow") {
   robot.frames(3);
   CHECK(robot.settled("slide") < before);
   CHECK(robot.number("parameters.w") > w);
-  const GoalAnswer* answer = sought(robot.app);
+  const GoalAnswer* answer = sought(robot.app.session);
   REQUIRE(answer);
   CHECK(robot.settled("slide") == Approx(answer->goals[0].goal).epsilon(1e-9));
-  CHECK(robot.app.document.steps().size() == 2);
-  undo(robot.app);
+  CHECK(robot.app.session.document.steps().size() == 2);
+  undo(robot.app.session);
   robot.frames(2);
   CHECK(robot.number("parameters.w") == w);
   CHECK(robot.settled("slide") == Approx(before).epsilon(1e-9));
@@ -68,7 +69,7 @@ TEST_CASE("a number that is held stays while others go to the goal") {
   const double L = robot.number("parameters.L");
   robot.click("parameters/parameters.L/hold");
   robot.frames(1);
-  CHECK(is_held(robot.app, "parameters.L"));
+  CHECK(is_held(robot.app.session, "parameters.L"));
   robot.double_click("results/slide");
   robot.frames(2);
   robot.key('A', true);
@@ -78,7 +79,7 @@ TEST_CASE("a number that is held stays while others go to the goal") {
   CHECK(robot.number("parameters.L") == L);
   CHECK(robot.settled("slide") == Approx(0.14).epsilon(1e-9));
   robot.click("parameters/parameters.L/hold");
-  CHECK_FALSE(is_held(robot.app, "parameters.L"));
+  CHECK_FALSE(is_held(robot.app.session, "parameters.L"));
 }
 
 TEST_CASE("a body is dragged to where it should settle, and Escape takes it back") {
@@ -86,8 +87,8 @@ TEST_CASE("a body is dragged to where it should settle, and Escape takes it back
   const double w = robot.number("parameters.w"), collar = robot.shown("collar").y();
   const bool turned = GENERATE(false, true);
   if (turned) { // the drives a third of a turn on: the hand turns along
-    robot.app.playback.time = 0.2;
-    robot.app.moved_time = true;
+    robot.app.session.playback.time = 0.2;
+    robot.app.session.moved_time = true;
     robot.frames(3);
   }
   const Vec3 from = robot.shown("collar"), to = from + Vec3(0, 0.012, 0);
@@ -110,14 +111,14 @@ TEST_CASE("a body is dragged to where it should settle, and Escape takes it back
   robot.hold(false, false, false);
   robot.frames(3);
   CHECK_FALSE(robot.app.tool.reach);
-  CHECK(robot.app.document.can_undo() == !back);
+  CHECK(robot.app.session.document.can_undo() == !back);
   CHECK((robot.number("parameters.w") == w) == back);
 }
 
 TEST_CASE("a measure's read-out takes a goal, too") {
   GoalRobot robot;
   const auto height = [&] {
-    const auto& all = robot.app.answer.solution.measures;
+    const auto& all = robot.app.session.answer.solution.measures;
     return std::ranges::find(all, "height", &MeasureSolution::name)->value.value();
   };
   const double before = height();

@@ -1,6 +1,7 @@
 // What a person does at the window, done by a robot off-screen.
 #include "robot.hpp"
 
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -15,7 +16,7 @@ using namespace flyball::test;
 namespace {
 
 double parameter(const App& app, const char* address) {
-  return get_parameter(app.mechanism(), address);
+  return get_parameter(app.session.mechanism(), address);
 }
 
 constexpr const char* speed = "joints.spin.drive.speed";
@@ -25,21 +26,21 @@ constexpr const char* stiffness = "joints.slide.spring.stiffness";
 
 TEST_CASE("a dragged slider solves at every move") {
   Robot robot;
-  const double before = value(robot.app.answer.solution, "slide");
-  const std::uint64_t answers = robot.app.answer.ticket;
+  const double before = value(robot.app.session.answer.solution, "slide");
+  const std::uint64_t answers = robot.app.session.answer.ticket;
   robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.8f, 0.5f});
   CHECK(parameter(robot.app, speed) > 20);
-  CHECK(value(robot.app.answer.solution, "slide") != before);
-  CHECK(robot.app.answer.ticket >= answers + 4);
+  CHECK(value(robot.app.session.answer.solution, "slide") != before);
+  CHECK(robot.app.session.answer.ticket >= answers + 4);
 
   SECTION("and can be put back") {
     robot.click(std::string("parameters/") + speed + "/reset");
     CHECK(parameter(robot.app, speed) == 11.0174);
-    CHECK(value(robot.app.answer.solution, "slide") == Approx(before).epsilon(1e-9));
+    CHECK(value(robot.app.session.answer.solution, "slide") == Approx(before).epsilon(1e-9));
   }
   SECTION("and back all at once") {
     robot.click("parameters/reset");
-    CHECK(robot.app.mechanism() == robot.app.document.saved());
+    CHECK(robot.app.session.mechanism() == robot.app.session.document.saved());
   }
 }
 
@@ -52,12 +53,12 @@ TEST_CASE("a stiffness slider is logarithmic") {
 TEST_CASE("a value can be typed, with a unit") {
   Robot robot;
   robot.double_click(std::string("parameters/") + speed + "/value");
-  CHECK(robot.app.fields.typing.name == std::string("parameters/") + speed + "/value");
+  CHECK(robot.app.ui.fields.typing.name == std::string("parameters/") + speed + "/value");
   robot.key('A', true);
   robot.type("120 rpm");
   robot.key(key_enter);
   CHECK(parameter(robot.app, speed) == Approx(4 * 3.141592653589793));
-  CHECK(robot.app.fields.typing.name.empty());
+  CHECK(robot.app.ui.fields.typing.name.empty());
 }
 
 TEST_CASE("the view is steered with the mouse") {
@@ -92,27 +93,27 @@ TEST_CASE("play turns the mechanism at the drives' speed, and nothing is drawn w
   robot.frames(5);
   CHECK(robot.stage.views_changed() == drawn);
   robot.key(' ');
-  CHECK(robot.app.playback.playing);
-  const double from = robot.app.playback.time;
+  CHECK(robot.app.session.playback.playing);
+  const double from = robot.app.session.playback.time;
   robot.frames(10, 0.02);
-  CHECK(robot.app.playback.time - from == Approx(0.2));
+  CHECK(robot.app.session.playback.time - from == Approx(0.2));
   CHECK(robot.stage.views_changed() >= drawn + 10);
   robot.key(' ');
-  const double stopped = robot.app.playback.time;
+  const double stopped = robot.app.session.playback.time;
   robot.frames(3, 0.02);
-  CHECK(robot.app.playback.time == stopped);
+  CHECK(robot.app.session.playback.time == stopped);
   robot.click("toolbar/rewind");
-  CHECK(robot.app.playback.time == 0);
+  CHECK(robot.app.session.playback.time == 0);
 }
 
 TEST_CASE("a part under the cursor is named") {
   Robot robot;
-  const int ball = body_index(robot.app.mechanism(), "ball1");
+  const int ball = body_index(robot.app.session.mechanism(), "ball1");
   const WidgetRect view = robot.widget("view");
   const ViewSize size{static_cast<double>(view.to.x - view.from.x),
                       static_cast<double>(view.to.y - view.from.y)};
   const auto at =
-      robot.app.view.camera.project(robot.app.poses[static_cast<std::size_t>(ball)].position, size);
+      robot.app.view.camera.project(robot.app.session.poses[static_cast<std::size_t>(ball)].position, size);
   REQUIRE(at);
   robot.point({view.from.x + static_cast<float>(at->x()), view.from.y + static_cast<float>(at->y())});
   robot.frames(1);
@@ -123,12 +124,12 @@ TEST_CASE("a scene that cannot be read says so and leaves the open one") {
   Robot robot;
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_mistaken_scene.json";
   std::ofstream(file) << R"({"flyball": 1, "name": "x", "bodies": [], "joints": [], "colour": 1})";
-  open_scene(robot.app, file);
+  open_scene(robot.app.session, file);
   robot.frames(3);
-  CHECK_THAT(robot.app.problem, ContainsSubstring("colour"));
-  CHECK(robot.app.mechanism().name == "Governor");
+  CHECK_THAT(robot.app.session.problem, ContainsSubstring("colour"));
+  CHECK(robot.app.session.mechanism().name == "Governor");
   robot.click("problem/close");
-  CHECK(robot.app.problem.empty());
+  CHECK(robot.app.session.problem.empty());
   std::filesystem::remove(file);
 }
 
@@ -142,8 +143,8 @@ TEST_CASE("the open dialog lists scenes and opens one") {
   robot.click("open/pendulum.json");
   robot.frames(2);
   CHECK_FALSE(robot.app.dialog.showing);
-  CHECK(robot.app.document.file().filename() == "pendulum.json");
-  CHECK(robot.app.answer.solution.status == Status::converged);
+  CHECK(robot.app.session.document.file().filename() == "pendulum.json");
+  CHECK(robot.app.session.answer.solution.status == Status::converged);
 }
 
 TEST_CASE("a picture is exported with and without the panels") {
@@ -154,7 +155,7 @@ TEST_CASE("a picture is exported with and without the panels") {
   robot.frames(2);
   REQUIRE(robot.app.dialog.showing);
   robot.click("export/720p"); // leaves the field of the path
-  robot.app.file_dialogs.path = file.string();
+  robot.app.panels->picture.query().path = file.string();
   const bool panels = GENERATE(false, true);
   if (panels) robot.click("export/panels");
   robot.click("export/save");
@@ -163,13 +164,13 @@ TEST_CASE("a picture is exported with and without the panels") {
   robot.app.export_request->width = 320;
   robot.app.export_request->height = 200;
   export_picture(robot.app, robot.size);
-  CHECK_THAT(robot.app.notice, ContainsSubstring("Saved"));
+  CHECK_THAT(robot.app.session.notice, ContainsSubstring("Saved"));
   const Image image = read_png(file);
   CHECK(image.width == 320);
   CHECK(image.height == 200);
   // The window goes on as before.
   robot.frames(1);
-  CHECK(robot.app.scale == 1);
+  CHECK(robot.app.ui.scale == 1);
   CHECK(robot.widget("view").to.x > 320);
   std::filesystem::remove(file);
 }

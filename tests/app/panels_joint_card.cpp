@@ -1,4 +1,5 @@
 // The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
+#include "app/ui/tools/tools.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "tests/catch.hpp"
@@ -16,7 +17,7 @@ using Pair = std::array<std::string, 2>;
 struct SliderCrank : Robot {
   SliderCrank() : Robot({1440, 900}) {
     begin_empty(1);
-    edit(app, "Build", [](Mechanism& next, Selection&) { add_slider_crank(next); });
+    edit(app.session, "Build", [](Mechanism& next, Selection&) { add_slider_crank(next); });
     frames(2);
     key('J');
   }
@@ -42,7 +43,7 @@ TEST_CASE("two bodies that are joined already are not offered again") {
 
 TEST_CASE("a bearing may lie where a joint is") {
   SliderCrank d;
-  set_tool(d.app, Tool::bearing);
+  set_tool(d.app.session, d.app.ui, d.app.tool, Tool::bearing);
   d.frames(1);
   d.begin(slider_crank_pin);
   CHECK(d.app.tool.joint->bodies == Pair{"rod2", "block1"});
@@ -58,7 +59,7 @@ TEST_CASE("the button of the card stays where it is when fewer axes are offered"
   CHECK(d.widget("tools/join").from.x == join.from.x);
   CHECK(d.widget("tools/join").from.y == join.from.y);
   d.click(join.center());
-  CHECK(d.app.mechanism().joints.size() == 4);
+  CHECK(d.app.session.mechanism().joints.size() == 4);
 }
 
 TEST_CASE("what was chosen in the card stays when its point is moved") {
@@ -78,10 +79,10 @@ TEST_CASE("the keys stay in the view for whoever joins with the mouse and Enter"
   SliderCrank d;
   d.begin(slider_crank_pin);
   d.key(key_enter);
-  REQUIRE(d.app.mechanism().joints.size() == 4);
+  REQUIRE(d.app.session.mechanism().joints.size() == 4);
   d.frames(2);
-  CHECK(d.app.keyboard.at.empty());
-  CHECK_FALSE(d.app.keyboard.ring);
+  CHECK(d.app.ui.keyboard.at.empty());
+  CHECK_FALSE(d.app.ui.keyboard.ring);
 }
 
 TEST_CASE("no button of the card is cut, and it covers nothing that is written below it") {
@@ -90,7 +91,7 @@ TEST_CASE("no button of the card is cut, and it covers nothing that is written b
   d.app.view.camera.elevation = 0.4;
   d.frames(1);
   d.begin({0.3, -0.4, 0});
-  REQUIRE(d.app.widgets.contains("tools/axis/view"));
+  REQUIRE(d.app.ui.widgets.contains("tools/axis/view"));
   const WidgetRect points = d.widget("tools/axis/points");
   CHECK(points.to.x - points.from.x >= ImGui::CalcTextSize("Two points…").x + 2);
   const ImGuiWindow* card = ImGui::FindWindowByName("joint");

@@ -26,15 +26,15 @@ void check_in_sight(Robot& robot, const std::string& name) {
 TEST_CASE("drive, spring, damper, stop and friction of a joint are in sight without scrolling") {
   Robot robot(window);
   App& app = robot.app;
-  set_mode(app, GENERATE(Mode::build, Mode::explore));
+  set_mode(app.session, GENERATE(Mode::build, Mode::explore));
   const char* joint = GENERATE("arm1", "slide"); // a revolute and a prismatic one
-  select(app, {{{PartKind::joint, joint}}});
+  select(app.session, {{{PartKind::joint, joint}}});
   robot.frames(3);
   for (const char* tick : {"drive", "spring", "damper", "stop", "friction"})
     check_in_sight(robot, tick);
   // With all on that can be, their numbers, too, and no tick has moved.
   const WidgetRect stop = robot.widget("inspector/stop");
-  edit(app, "Add", [&](Mechanism& mechanism, Selection&) {
+  edit(app.session, "Add", [&](Mechanism& mechanism, Selection&) {
     Coordinate& c = mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, joint))].coordinates[0];
     c.spring.emplace().stiffness = 10;
     c.damping = 1;
@@ -54,8 +54,8 @@ TEST_CASE("drive, spring, damper, stop and friction of a joint are in sight with
 TEST_CASE("a drive that is ticked moves no row above its numbers") {
   Robot robot(window);
   App& app = robot.app;
-  set_mode(app, Mode::build);
-  select(app, {{{PartKind::joint, "arm1"}}});
+  set_mode(app.session, Mode::build);
+  select(app.session, {{{PartKind::joint, "arm1"}}});
   robot.frames(3);
   const WidgetRect drawn = robot.widget("inspector/coordinate"), drive = robot.widget("inspector/drive");
   robot.click("inspector/drive");

@@ -5,6 +5,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/address.hpp"
@@ -26,13 +27,13 @@ struct Typist : Robot {
   explicit Typist(PixelSize wanted = {1280, 900}) : Robot(wanted) {}
   ~Typist() { CHECK_FALSE(ImGui::IsMousePosValid()); } // no mouse was ever there
 
-  const std::string& at() const { return app.keyboard.at; }
+  const std::string& at() const { return app.ui.keyboard.at; }
   // F6 until the keyboard is in the region.
   void go_to(const std::string& region) {
-    for (int i = 0; i < 12 && app.keyboard.region != region; ++i)
+    for (int i = 0; i < 12 && app.ui.keyboard.region != region; ++i)
       key(keys::f6);
-    INFO("region " << region << ", but in " << app.keyboard.region);
-    REQUIRE(app.keyboard.region == region);
+    INFO("region " << region << ", but in " << app.ui.keyboard.region);
+    REQUIRE(app.ui.keyboard.region == region);
   }
   // Tab until it is at the widget.
   void tab_to(const std::string& name, bool back = false) {
@@ -71,9 +72,9 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
   REQUIRE(app.tool.first);
   hand.strike("0.5");
   hand.key(keys::enter);
-  REQUIRE(app.mechanism().bodies.size() == 1);
+  REQUIRE(app.session.mechanism().bodies.size() == 1);
   CHECK(hand.at() == "inspector/name");
-  const std::string rod = app.mechanism().bodies[0].name;
+  const std::string rod = app.session.mechanism().bodies[0].name;
 
   hand.key('B', false, true);
   hand.cursor_to(Vec3(0.5, 0, 0));
@@ -81,8 +82,8 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
     hand.key(keys::down);
   hand.strike("0.03");
   hand.key(keys::enter);
-  REQUIRE(app.mechanism().bodies.size() == 2);
-  const Body& ball = app.mechanism().bodies[1];
+  REQUIRE(app.session.mechanism().bodies.size() == 2);
+  const Body& ball = app.session.mechanism().bodies[1];
   CHECK(ball.position.x() == Approx(0.5).margin(0.02));
   CHECK(ball.position.y() < -0.05);
 
@@ -93,7 +94,7 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
   REQUIRE(app.tool.joint);
   CHECK(hand.at() == "tools/join");
   hand.key(keys::enter);
-  REQUIRE(app.mechanism().joints.size() == 1);
+  REQUIRE(app.session.mechanism().joints.size() == 1);
 
   hand.key('J');
   hand.cursor_to(Vec3::Zero());
@@ -104,39 +105,39 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
   hand.key(' ');
   hand.tab_to("tools/join");
   hand.key(keys::enter);
-  REQUIRE(app.mechanism().joints.size() == 2);
-  const Joint& hub = app.mechanism().joints[1];
+  REQUIRE(app.session.mechanism().joints.size() == 2);
+  const Joint& hub = app.session.mechanism().joints[1];
   CHECK(hub.axis.normalized().isApprox(Vec3::UnitY()));
   const std::string speed = "joints." + hub.name + ".drive.speed";
   CHECK(hand.at() == "inspector/name");
   hand.tab_to("inspector/drive");
   hand.key(' ');
-  REQUIRE_NOTHROW(get_parameter(app.mechanism(), speed));
-  for (const SceneError& mistake : app.mistakes)
+  REQUIRE_NOTHROW(get_parameter(app.session.mechanism(), speed));
+  for (const SceneError& mistake : app.session.mistakes)
     FAIL_CHECK(mistake.what());
-  REQUIRE(app.mistakes.empty());
+  REQUIRE(app.session.mistakes.empty());
 
   hand.key(keys::escape);
   CHECK(hand.at().empty());
   hand.key(keys::tab);
-  REQUIRE(app.mode == Mode::explore);
+  REQUIRE(app.session.mode == Mode::explore);
   hand.frames(2);
-  REQUIRE(converged(app));
-  const double drawn_speed = get_parameter(app.mechanism(), speed);
-  const std::uint64_t answer = app.answer.ticket;
+  REQUIRE(converged(app.session));
+  const double drawn_speed = get_parameter(app.session.mechanism(), speed);
+  const std::uint64_t answer = app.session.answer.ticket;
   hand.go_to("parameters");
   hand.tab_to("parameters/" + speed);
   hand.key(keys::right);
   hand.key(keys::right, true);
-  CHECK(get_parameter(app.mechanism(), speed) > drawn_speed);
+  CHECK(get_parameter(app.session.mechanism(), speed) > drawn_speed);
   hand.frames(2);
-  CHECK(app.answer.ticket > answer);
-  CHECK(converged(app));
+  CHECK(app.session.answer.ticket > answer);
+  CHECK(converged(app.session));
 
   hand.key('C');
   hand.frames(3);
-  REQUIRE(app.study.open == StudyKind::response);
-  CHECK(app.study.response.curve.found);
+  REQUIRE(app.session.study.open == StudyKind::response);
+  CHECK(app.session.study.response.curve.found);
 
   hand.key('E', true);
   hand.frames(2);
@@ -152,11 +153,11 @@ TEST_CASE("Tab reaches every field and button of the inspector, in reading order
   Typist hand({1280, 700});
   App& app = hand.app;
   const Part part = GENERATE(Part{PartKind::body, "ball1"}, Part{PartKind::joint, "slide"});
-  set_mode(app, Mode::build);
-  select(app, {{part}});
+  set_mode(app.session, Mode::build);
+  select(app.session, {{part}});
   hand.frames(3);
   std::vector<std::string> wanted;
-  for (const KeyStop& stop : app.widgets.stops)
+  for (const KeyStop& stop : app.ui.widgets.stops)
     if (region_of(stop) == "inspector" && stop.use != KeyUse::aside) wanted.push_back(stop.name);
   REQUIRE(wanted.size() > 8);
   hand.go_to("inspector");
@@ -166,11 +167,11 @@ TEST_CASE("Tab reaches every field and button of the inspector, in reading order
   std::rotate(wanted.begin(), first, wanted.end());
   for (const std::string& name : wanted) {
     CHECK(hand.at() == name);
-    const auto seen = app.widgets.find(name);
+    const auto seen = app.ui.widgets.find(name);
     INFO(name);
-    REQUIRE(seen != app.widgets.end());
+    REQUIRE(seen != app.ui.widgets.end());
     CHECK(seen->second.to.y - seen->second.from.y > 8);
-    const KeyStop* stop = stop_named(app.widgets.stops, name);
+    const KeyStop* stop = stop_named(app.ui.widgets.stops, name);
     REQUIRE(stop);
     CHECK(ImGui::GetIO().WantTextInput == (stop->use == KeyUse::type));
     hand.key(keys::tab);
@@ -183,30 +184,30 @@ TEST_CASE("Tab reaches every field and button of the inspector, in reading order
 TEST_CASE("what is typed goes into the field that Tab reaches, from the first character on") {
   Typist hand;
   App& app = hand.app;
-  set_mode(app, Mode::build);
-  select(app, {{{PartKind::body, "ball1"}}});
+  set_mode(app.session, Mode::build);
+  select(app.session, {{{PartKind::body, "ball1"}}});
   hand.frames(3);
   hand.go_to("inspector");
   hand.tab_to("inspector/mass");
   hand.strike("2");
   hand.key(keys::tab);
   hand.frames(2);
-  CHECK(app.mechanism().bodies[1].mass == 2);
+  CHECK(app.session.mechanism().bodies[1].mass == 2);
   CHECK(hand.at() != "inspector/mass");
   // With Enter the field keeps the keys, and digits begin to type in it again.
   hand.tab_to("inspector/mass", true);
   hand.strike("3");
   hand.key(keys::enter);
   hand.frames(2);
-  CHECK(app.mechanism().bodies[1].mass == 3);
+  CHECK(app.session.mechanism().bodies[1].mass == 3);
   CHECK(hand.at() == "inspector/mass");
   hand.strike("45");
   hand.key(keys::enter);
   hand.frames(2);
-  CHECK(app.mechanism().bodies[1].mass == 45);
+  CHECK(app.session.mechanism().bodies[1].mass == 45);
   hand.key('L', true);
   hand.frames(2);
-  CHECK(std::ranges::any_of(app.mechanism().sliders,
+  CHECK(std::ranges::any_of(app.session.mechanism().sliders,
                             [](const Slider& slider) { return slider.parameter == "bodies.ball1.mass"; }));
 }
 
@@ -217,21 +218,21 @@ TEST_CASE("Alt opens the menus, arrows go through them, and Escape gives the key
   const std::string before = hand.at();
   REQUIRE_FALSE(before.empty());
   hand.alt();
-  REQUIRE(app.widgets.contains("menu/file.new"));
+  REQUIRE(app.ui.widgets.contains("menu/file.new"));
   CHECK(hand.at() == "menu/file.new");
   hand.key(keys::down);
   CHECK(hand.at() == "menu/file.open");
   hand.key(keys::right);
   hand.frames(2);
-  REQUIRE(app.widgets.contains("menu/edit.all"));
-  CHECK_FALSE(app.widgets.contains("menu/file.new"));
+  REQUIRE(app.ui.widgets.contains("menu/edit.all"));
+  CHECK_FALSE(app.ui.widgets.contains("menu/file.new"));
   hand.key(keys::left);
   hand.key(keys::left);
   hand.frames(2);
-  REQUIRE(app.widgets.contains("menu/help.palette"));
+  REQUIRE(app.ui.widgets.contains("menu/help.palette"));
   hand.key(keys::escape);
   hand.frames(2);
-  CHECK_FALSE(app.widgets.contains("menu/help.palette"));
+  CHECK_FALSE(app.ui.widgets.contains("menu/help.palette"));
   CHECK(hand.at() == before);
 
   hand.alt('S');
@@ -240,13 +241,13 @@ TEST_CASE("Alt opens the menus, arrows go through them, and Escape gives the key
     hand.key(keys::down);
   hand.key(keys::enter);
   hand.frames(3);
-  CHECK(app.study.open == StudyKind::response);
-  CHECK_FALSE(app.widgets.contains("menu/study.response"));
+  CHECK(app.session.study.open == StudyKind::response);
+  CHECK_FALSE(app.ui.widgets.contains("menu/study.response"));
   hand.alt();
-  REQUIRE(app.widgets.contains("menu/file.new"));
+  REQUIRE(app.ui.widgets.contains("menu/file.new"));
   hand.alt();
   hand.frames(2);
-  CHECK_FALSE(app.widgets.contains("menu/file.new"));
+  CHECK_FALSE(app.ui.widgets.contains("menu/file.new"));
 }
 
 TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number") {
@@ -254,7 +255,7 @@ TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number")
   App& app = hand.app;
   hand.go_to("parameters");
   hand.tab_to(std::string("parameters/") + spin_speed);
-  const auto value = [&] { return get_parameter(app.mechanism(), spin_speed); };
+  const auto value = [&] { return get_parameter(app.session.mechanism(), spin_speed); };
   const double stored = value();
   hand.key(keys::right);
   const double one = value();
@@ -267,18 +268,18 @@ TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number")
   CHECK(value() - before > 5 * (one - stored));
   hand.key(keys::left);
   CHECK(value() < before + 11 * (one - stored));
-  CHECK(app.document.position() == 1); // all of it was one movement
+  CHECK(app.session.document.position() == 1); // all of it was one movement
   hand.key(keys::home);
   CHECK(value() == 0);
   hand.key(keys::end);
   CHECK(value() == 30);
   hand.strike("15");
   hand.frames(2);
-  REQUIRE(app.fields.typing.name == std::string("parameters/") + spin_speed + "/value");
+  REQUIRE(app.ui.fields.typing.name == std::string("parameters/") + spin_speed + "/value");
   hand.key(keys::enter);
   hand.frames(2);
   CHECK(value() == 15);
-  CHECK(app.mode == Mode::explore);
+  CHECK(app.session.mode == Mode::explore);
 }
 
 TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it") {
@@ -286,42 +287,43 @@ TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it"
   App& app = hand.app;
   hand.key('C');
   hand.frames(4);
-  REQUIRE(app.study.response.curve.found);
+  REQUIRE(app.session.study.response.curve.found);
   hand.go_to("study");
   hand.tab_to("plot/response/area");
-  const double before = get_parameter(app.mechanism(), spin_speed);
+  const double before = get_parameter(app.session.mechanism(), spin_speed);
   hand.key(keys::right);
   hand.key(keys::right);
   hand.frames(2);
-  CHECK(get_parameter(app.mechanism(), spin_speed) > before);
-  CHECK(converged(app));
+  CHECK(get_parameter(app.session.mechanism(), spin_speed) > before);
+  CHECK(converged(app.session));
   hand.key('=');
-  CHECK(app.plots.response.view.look.range[0]);
+  CHECK(app.panels->studies.shown().response.view.look.range[0]);
   hand.key(keys::home);
-  CHECK_FALSE(app.plots.response.view.look.range[0]);
+  CHECK_FALSE(app.panels->studies.shown().response.view.look.range[0]);
   // The context menu, and back.
   hand.key(keys::f10, false, true);
   hand.frames(2);
-  REQUIRE(app.widgets.contains("plot/response/menu/csv"));
+  REQUIRE(app.ui.widgets.contains("plot/response/menu/csv"));
   hand.key(keys::escape);
   hand.frames(2);
-  CHECK_FALSE(app.widgets.contains("plot/response/menu/csv"));
+  CHECK_FALSE(app.ui.widgets.contains("plot/response/menu/csv"));
   CHECK(hand.at() == "plot/response/area");
 }
 
 TEST_CASE("the outline is gone through by arrows, which choose the parts") {
   Typist hand;
   App& app = hand.app;
-  set_mode(app, Mode::build);
+  set_mode(app.session, Mode::build);
   hand.frames(3);
   hand.go_to("outline");
   hand.tab_to("outline/bodies/spindle");
   hand.key(keys::down);
   hand.frames(2);
-  CHECK(app.selection().parts == std::vector{Part{PartKind::body, app.mechanism().bodies[1].name}});
+  CHECK(app.session.selection().parts ==
+        std::vector{Part{PartKind::body, app.session.mechanism().bodies[1].name}});
   hand.key(keys::f2); // rename, a command of the part
   hand.frames(2);
-  CHECK_FALSE(app.fields.typing.name.empty());
+  CHECK_FALSE(app.ui.fields.typing.name.empty());
 }
 
 TEST_CASE("F6 goes round all regions, and Tab in the view goes on switching Build and Explore") {
@@ -330,15 +332,15 @@ TEST_CASE("F6 goes round all regions, and Tab in the view goes on switching Buil
   std::set<std::string> seen;
   for (int i = 0; i < 12; ++i) {
     hand.key(keys::f6);
-    seen.insert(app.keyboard.region);
+    seen.insert(app.ui.keyboard.region);
   }
   for (const char* region : {"toolbar", "parameters", "view", "results"})
     CHECK(seen.contains(region));
   hand.go_to("view");
   hand.key(keys::tab);
-  CHECK(app.mode == Mode::build);
+  CHECK(app.session.mode == Mode::build);
   hand.key(keys::tab);
-  CHECK(app.mode == Mode::explore);
+  CHECK(app.session.mode == Mode::explore);
   const double azimuth = app.view.camera.azimuth, distance = app.view.camera.distance;
   hand.key(keys::right);
   CHECK(app.view.camera.azimuth != azimuth);
@@ -376,12 +378,12 @@ TEST_CASE("a dialog keeps the keys to itself and gives them back") {
 TEST_CASE("the ring is seen in every theme, and a click takes it away") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  app.theme = GENERATE(Theme::light, Theme::dark, Theme::high_contrast);
-  apply_style(app.theme, app.scale);
-  focus_widget(app, "parameters/restart");
+  app.ui.theme = GENERATE(Theme::light, Theme::dark, Theme::high_contrast);
+  apply_style(app.ui.theme, app.ui.scale);
+  focus_widget(app.ui, "parameters/restart");
   robot.frames(3);
   const auto count = [&] {
-    const ImVec4 wanted = ui_colors(app.theme).focus;
+    const ImVec4 wanted = ui_colors(app.ui.theme).focus;
     const Image image = robot.picture();
     int pixels = 0;
     const auto near = [](std::uint8_t byte, float part) {

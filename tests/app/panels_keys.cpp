@@ -6,6 +6,7 @@
 #include "app/session/number_text.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -32,31 +33,31 @@ struct Look {
 };
 
 Look look(const App& app) {
-  return {app.mode,
+  return {app.session.mode,
           app.tool.tool,
-          app.study.open,
+          app.session.study.open,
           app.view.camera.azimuth,
           app.view.camera.elevation,
-          app.playback.playing,
+          app.session.playback.playing,
           app.view.ghost,
           app.tool.snap,
-          app.document.position(),
-          app.selection().parts};
+          app.session.document.position(),
+          app.session.selection().parts};
 }
 
 struct Hand : Robot {
   Hand() : Robot({1280, 1100}) {
     imgui_compat::map_key(ImGuiKey_Tab, keys::tab);
-    set_mode(app, Mode::build);
-    app.panels.inspector_share = 0.9f;
-    select(app, {{{PartKind::joint, "spin"}}});
+    set_mode(app.session, Mode::build);
+    app.sizes.inspector_share = 0.9f;
+    select(app.session, {{{PartKind::joint, "spin"}}});
     frames(2);
   }
   // Beside everything in the inspector.
   void miss_in_inspector() {
     const WidgetRect name = widget("inspector/name");
     click(ImVec2{name.to.x + 3, name.to.y + 1});
-    REQUIRE(app.fields.typing.name.empty());
+    REQUIRE(app.ui.fields.typing.name.empty());
   }
 };
 
@@ -73,7 +74,7 @@ TEST_CASE("what is typed after a click that missed a field changes nothing") {
   hand.key('A', true);
   hand.key('X', true);
   CHECK(look(hand.app) == before);
-  CHECK_THAT(hand.app.notice, ContainsSubstring("No field is being typed in"));
+  CHECK_THAT(hand.app.session.notice, ContainsSubstring("No field is being typed in"));
 
   SECTION("wherever the pointer goes then") {
     hand.point(hand.widget("view").center());
@@ -95,9 +96,9 @@ TEST_CASE("what is typed after a click that missed a field changes nothing") {
   }
   SECTION("but undo and the like go on working") {
     hand.click("inspector/drive");
-    CHECK(hand.app.document.position() == 1);
+    CHECK(hand.app.session.document.position() == 1);
     hand.key('Z', true);
-    CHECK(hand.app.document.position() == 0);
+    CHECK(hand.app.session.document.position() == 0);
   }
 }
 
@@ -116,13 +117,13 @@ TEST_CASE("letters are commands while the pointer works in the view, digits only
 
 TEST_CASE("among plots letters are commands, but not those of a number's unit") {
   Hand hand;
-  open_study(hand.app, StudyKind::response);
+  open_study(hand.app.session, StudyKind::response);
   hand.frames(3);
   const WidgetRect close = hand.widget("study/close");
   hand.click(ImVec2{close.from.x - 30, close.center().y});
   SECTION("a letter") {
     hand.key('M');
-    CHECK(hand.app.study.open == StudyKind::motion);
+    CHECK(hand.app.session.study.open == StudyKind::motion);
   }
   SECTION("a number") {
     const Look before = look(hand.app);
@@ -142,34 +143,34 @@ TEST_CASE("right after the start keys are commands wherever the pointer is") {
 TEST_CASE("in the list of parts Delete means the part, letters mean nothing") {
   Hand hand;
   hand.click("outline/bodies/ball1");
-  REQUIRE(hand.app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  REQUIRE(hand.app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
   hand.key('J');
   CHECK(hand.app.tool.tool == Tool::select);
   hand.key(keys::del);
-  CHECK(body_index(hand.app.mechanism(), "ball1") < 0);
+  CHECK(body_index(hand.app.session.mechanism(), "ball1") < 0);
 }
 
 TEST_CASE("a tick moves neither itself nor what was above it") {
   Hand hand;
   for (const char* joint : {"spin", "slide"}) {
-    select(hand.app, {{{PartKind::joint, joint}}});
+    select(hand.app.session, {{{PartKind::joint, joint}}});
     hand.frames(3);
     for (const char* name : {"inspector/drive", "inspector/spring", "inspector/damper", "inspector/stop"}) {
-      const std::map<std::string, WidgetRect, std::less<>> before(hand.app.widgets.begin(),
-                                                                  hand.app.widgets.end());
+      const std::map<std::string, WidgetRect, std::less<>> before(hand.app.ui.widgets.begin(),
+                                                                  hand.app.ui.widgets.end());
       const float at = hand.widget(name).from.y;
       hand.click(name);
       hand.frames(3);
       INFO(joint << " " << name);
       CHECK(hand.widget(name).from.y == at);
-      for (const auto& [other, rect] : hand.app.widgets) {
+      for (const auto& [other, rect] : hand.app.ui.widgets) {
         if (!other.starts_with("inspector/") || rect.from.y >= at) continue;
         INFO(other);
         const auto was = before.find(other);
         REQUIRE(was != before.end());
         CHECK(was->second.from.y == rect.from.y);
       }
-      CHECK(hand.app.widgets.contains("inspector/settles"));
+      CHECK(hand.app.ui.widgets.contains("inspector/settles"));
     }
   }
 }
@@ -178,41 +179,41 @@ TEST_CASE("the sheet of keys has the keys, and goes with Escape") {
   Hand hand;
   hand.key('?');
   hand.frames(2);
-  REQUIRE(hand.app.commands.shortcuts);
+  REQUIRE(hand.app.panels->shortcuts.open);
   const Look before = look(hand.app);
   hand.key('P', true);
   hand.strike("mrj1 ");
   hand.key(keys::del);
   hand.key(keys::tab);
   CHECK(look(hand.app) == before);
-  CHECK_FALSE(hand.app.commands.palette_showing);
-  REQUIRE(hand.app.commands.shortcuts);
+  CHECK_FALSE(hand.app.panels->palette.showing());
+  REQUIRE(hand.app.panels->shortcuts.open);
   const auto way = GENERATE(0, 1, 2, 3);
   if (way == 0) hand.key(key_escape);
   if (way == 1) hand.key('?');
   if (way == 2) hand.click("shortcuts/close");
   if (way == 3) hand.click(ImVec2{5, 400}); // beside it: that closes it and selects nothing behind
   hand.frames(2);
-  CHECK_FALSE(hand.app.commands.shortcuts);
+  CHECK_FALSE(hand.app.panels->shortcuts.open);
   CHECK(look(hand.app) == before);
   hand.key('?'); // and comes again
   hand.frames(2);
-  CHECK(hand.app.commands.shortcuts);
+  CHECK(hand.app.panels->shortcuts.open);
 }
 
 TEST_CASE("a menu has the keys, and goes with Escape") {
   Hand hand;
   hand.click("menu/Edit");
   hand.frames(2);
-  REQUIRE(hand.app.widgets.contains("menu/edit.delete"));
+  REQUIRE(hand.app.ui.widgets.contains("menu/edit.delete"));
   const Look before = look(hand.app);
   hand.strike("j1m");
   hand.key(keys::del);
   CHECK(look(hand.app) == before);
-  REQUIRE(hand.app.widgets.contains("menu/edit.delete"));
+  REQUIRE(hand.app.ui.widgets.contains("menu/edit.delete"));
   hand.key(key_escape);
   hand.frames(2);
-  CHECK_FALSE(hand.app.widgets.contains("menu/edit.delete"));
+  CHECK_FALSE(hand.app.ui.widgets.contains("menu/edit.delete"));
   CHECK(look(hand.app) == before); // the selection, too
 }
 
@@ -220,12 +221,12 @@ TEST_CASE("a list of choices goes with Escape and chooses nothing") {
   Hand hand;
   hand.click("inspector/type");
   hand.frames(2);
-  REQUIRE(hand.app.widgets.contains("inspector/type/universal"));
+  REQUIRE(hand.app.ui.widgets.contains("inspector/type/universal"));
   const Look before = look(hand.app);
   hand.key('U');
   hand.key(key_escape);
   hand.frames(2);
-  CHECK_FALSE(hand.app.widgets.contains("inspector/type/universal"));
+  CHECK_FALSE(hand.app.ui.widgets.contains("inspector/type/universal"));
   CHECK(look(hand.app) == before);
 }
 
@@ -238,7 +239,7 @@ TEST_CASE("dialogs and the palette have the keys, and go with Escape") {
   if (what == 2) hand.key('E', true);
   if (what == 3) hand.key('O', true);
   hand.frames(3);
-  const auto open = [&] { return hand.app.commands.palette_showing || hand.app.dialog.showing; };
+  const auto open = [&] { return hand.app.panels->palette.showing() || hand.app.dialog.showing; };
   REQUIRE(open());
   hand.strike("jm1");
   hand.key(keys::del);
@@ -255,27 +256,27 @@ TEST_CASE("dialogs and the palette have the keys, and go with Escape") {
 TEST_CASE("Enter goes ahead in Mirror and Circular copy, and in their fields ends typing") {
   Hand hand;
   App& app = hand.app;
-  select(app, {{{PartKind::body, "ball1"}}});
+  select(app.session, {{{PartKind::body, "ball1"}}});
   hand.frames(2);
   const std::string which = GENERATE("mirror", "circular");
-  run_command(app, "edit." + which);
+  app.commands.run("edit." + which);
   hand.frames(3);
   REQUIRE(app.dialog.showing);
-  const std::size_t bodies = app.mechanism().bodies.size();
+  const std::size_t bodies = app.session.mechanism().bodies.size();
   if (GENERATE(false, true)) {
     hand.click(which + "/point/x");
     hand.key('A', true);
     hand.type("0.1");
     hand.key(key_enter);
     hand.frames(3);
-    CHECK(app.commands.copy.point.x() == 0.1);
+    CHECK(app.panels->copies.choice().point.x() == 0.1);
     REQUIRE(app.dialog.showing);
-    CHECK(app.mechanism().bodies.size() == bodies);
+    CHECK(app.session.mechanism().bodies.size() == bodies);
   }
   hand.key(key_enter);
   hand.frames(3);
   CHECK_FALSE(app.dialog.showing);
-  CHECK(app.mechanism().bodies.size() == bodies + (which == "mirror" ? 1 : 2));
+  CHECK(app.session.mechanism().bodies.size() == bodies + (which == "mirror" ? 1 : 2));
 }
 
 TEST_CASE("a new document gives the keys to the view") {
@@ -287,69 +288,69 @@ TEST_CASE("a new document gives the keys to the view") {
   hand.type("12");
   hand.key(key_enter);
   hand.frames(3);
-  undo(app); // nothing is unsaved
+  undo(app.session); // nothing is unsaved
   hand.frames(2);
-  if (ring) focus_widget(app, "inspector/name");
+  if (ring) focus_widget(app.ui, "inspector/name");
   hand.frames(2);
   hand.key('N', true);
   hand.frames(3);
-  REQUIRE(app.mechanism().bodies.empty());
+  REQUIRE(app.session.mechanism().bodies.empty());
   hand.strike("1");
   ImGui::GetIO().AddInputCharacter('R');
   hand.key('R', false, true);
   CHECK(app.tool.tool == Tool::rod);
   CHECK(app.view.camera.azimuth == 0);
-  CHECK(app.mechanism().name == Document::empty_mechanism().name);
-  CHECK_FALSE(app.keyboard.ring);
+  CHECK(app.session.mechanism().name == Document::empty_mechanism().name);
+  CHECK_FALSE(app.ui.keyboard.ring);
 }
 
 TEST_CASE("keys that come with the one that opens something do not pass it") {
   Hand hand;
   const Look before = look(hand.app);
-  hand.app.keys = {{'P', true, false}, {'J', false, false}, {'M', false, false}};
+  hand.app.ui.keys = {{'P', true, false}, {'J', false, false}, {'M', false, false}};
   hand.frames(3);
-  CHECK(hand.app.commands.palette_showing);
+  CHECK(hand.app.panels->palette.showing());
   CHECK(look(hand.app) == before);
 }
 
 TEST_CASE("a double click on a slider types, and does not move the knob") {
   Robot robot;
   const std::string slider = std::string("parameters/") + speed;
-  const std::uint64_t answers = robot.app.answer.ticket;
+  const std::uint64_t answers = robot.app.session.answer.ticket;
   robot.double_click(slider); // in the middle, away from the knob
   robot.frames(30);           // longer than a second click may take
-  CHECK(get_parameter(robot.app.mechanism(), speed) == 11.0174);
-  CHECK(robot.app.document.position() == 0);
-  CHECK(robot.app.answer.ticket == answers);
-  REQUIRE(robot.app.fields.typing.name == slider + "/value");
+  CHECK(get_parameter(robot.app.session.mechanism(), speed) == 11.0174);
+  CHECK(robot.app.session.document.position() == 0);
+  CHECK(robot.app.session.answer.ticket == answers);
+  REQUIRE(robot.app.ui.fields.typing.name == slider + "/value");
   robot.type("120 rpm");
   robot.key(key_enter);
-  CHECK(get_parameter(robot.app.mechanism(), speed) == Approx(4 * 3.141592653589793));
-  CHECK(robot.app.document.position() == 1);
+  CHECK(get_parameter(robot.app.session.mechanism(), speed) == Approx(4 * 3.141592653589793));
+  CHECK(robot.app.session.document.position() == 1);
 }
 
 TEST_CASE("one click on a slider's track moves the knob there once it cannot become two") {
   Robot robot;
   const std::string slider = std::string("parameters/") + speed;
   robot.click(slider);
-  CHECK(get_parameter(robot.app.mechanism(), speed) == 11.0174);
+  CHECK(get_parameter(robot.app.session.mechanism(), speed) == 11.0174);
   robot.frames(30);
-  CHECK(get_parameter(robot.app.mechanism(), speed) == Approx(15).epsilon(0.02));
-  CHECK(robot.app.document.position() == 1);
+  CHECK(get_parameter(robot.app.session.mechanism(), speed) == Approx(15).epsilon(0.02));
+  CHECK(robot.app.session.document.position() == 1);
   // On the knob a click moves nothing, not by the pixels between it and the middle either.
   const WidgetRect rect = robot.widget(slider);
-  const double value = get_parameter(robot.app.mechanism(), speed);
+  const double value = get_parameter(robot.app.session.mechanism(), speed);
   robot.click(ImVec2{rect.center().x + 3, rect.center().y});
   robot.frames(30);
-  CHECK(get_parameter(robot.app.mechanism(), speed) == value);
+  CHECK(get_parameter(robot.app.session.mechanism(), speed) == value);
 }
 
 TEST_CASE("a double click in a field selects the number and not its unit") {
   Hand hand;
-  select(hand.app, {{{PartKind::body, "ball1"}}});
+  select(hand.app.session, {{{PartKind::body, "ball1"}}});
   hand.frames(2);
   const std::string field = "inspector/position/y";
-  REQUIRE(hand.app.mechanism().bodies[1].position.y() != 0.5);
+  REQUIRE(hand.app.session.mechanism().bodies[1].position.y() != 0.5);
   const WidgetRect rect = hand.widget(field);
   // On the digits, beyond them, where the unit is shown: anywhere in the field.
   const float share = GENERATE(0.03f, 0.1f, 0.2f, 0.5f, 0.97f);
@@ -360,10 +361,10 @@ TEST_CASE("a double click in a field selects the number and not its unit") {
   }
   hand.frames(2);
   hand.type("0.5");
-  CHECK(hand.app.fields.typing.text == "0.5 m");
+  CHECK(hand.app.ui.fields.typing.text == "0.5 m");
   hand.key(key_enter);
-  const int ball = body_index(hand.app.mechanism(), "ball1");
-  CHECK(hand.app.mechanism().bodies[static_cast<std::size_t>(ball)].position.y() == 0.5);
+  const int ball = body_index(hand.app.session.mechanism(), "ball1");
+  CHECK(hand.app.session.mechanism().bodies[static_cast<std::size_t>(ball)].position.y() == 0.5);
 }
 
 TEST_CASE("the number that is meant in a typed quantity") {
@@ -385,9 +386,9 @@ TEST_CASE("the number that is meant in a typed quantity") {
 
 TEST_CASE("a number typed with its unit over the number alone drives the former unit out") {
   Hand hand;
-  select(hand.app, {{{PartKind::body, "ball1"}}});
+  select(hand.app.session, {{{PartKind::body, "ball1"}}});
   hand.frames(2);
-  const auto ball = [&] { return hand.app.mechanism().bodies[1]; };
+  const auto ball = [&] { return hand.app.session.mechanism().bodies[1]; };
   REQUIRE(ball().name == "ball1");
   const auto type_over = [&](const char* field, const char* typed) {
     hand.frames(40); // or it would be a triple click
@@ -400,8 +401,8 @@ TEST_CASE("a number typed with its unit over the number alone drives the former 
     hand.type(typed);
   };
   type_over("inspector/mass", "1 kg");
-  CHECK(hand.app.fields.typing.text == "1 kg kg");
-  CHECK(hand.app.fields.typing.mistake.empty());
+  CHECK(hand.app.ui.fields.typing.text == "1 kg kg");
+  CHECK(hand.app.ui.fields.typing.mistake.empty());
   hand.key(key_enter);
   CHECK(ball().mass == 1);
   type_over("inspector/mass", "1500 g");
@@ -412,7 +413,7 @@ TEST_CASE("a number typed with its unit over the number alone drives the former 
   CHECK(ball().position.y() == Approx(0.21));
   // What makes no sense without it either is still refused.
   type_over("inspector/mass", "2 m");
-  CHECK_THAT(hand.app.fields.typing.mistake, ContainsSubstring("Expected a mass"));
+  CHECK_THAT(hand.app.ui.fields.typing.mistake, ContainsSubstring("Expected a mass"));
   hand.key(key_escape);
   CHECK(ball().mass == 1.5);
 }
@@ -422,22 +423,22 @@ TEST_CASE(
   Robot robot({1280, 900});
   App& app = robot.app;
   robot.key(keys::tab);
-  REQUIRE(app.mode == Mode::build);
+  REQUIRE(app.session.mode == Mode::build);
   robot.click("outline/bodies/ball1");
   // Where the motion's panel will be.
   const WidgetRect view = robot.widget("view");
   robot.point({view.center().x, view.to.y - 60});
   robot.key('M');
-  REQUIRE(app.study.open == StudyKind::motion);
-  REQUIRE(app.playback.playing);
+  REQUIRE(app.session.study.open == StudyKind::motion);
+  REQUIRE(app.session.playback.playing);
   robot.key(' ');
-  CHECK_FALSE(app.playback.playing);
-  CHECK_FALSE(app.notice.starts_with("No field"));
+  CHECK_FALSE(app.session.playback.playing);
+  CHECK_FALSE(app.session.notice.starts_with("No field"));
   // A number that is begun among its fields is none all the same.
   robot.key('1');
   robot.key('M');
-  CHECK(app.study.open == StudyKind::motion);
-  CHECK_THAT(app.notice, ContainsSubstring("No field is being typed in"));
+  CHECK(app.session.study.open == StudyKind::motion);
+  CHECK_THAT(app.session.notice, ContainsSubstring("No field is being typed in"));
 }
 
 TEST_CASE("no line of the sheet of keys is cut") {
@@ -448,7 +449,7 @@ TEST_CASE("no line of the sheet of keys is cut") {
   const auto window = static_cast<float>(width);
   const float right = window / 2 + std::min(1180.f, window - 20) / 2; // the sheet's
   int lines = 0;
-  for (const auto& [name, rect] : robot.app.widgets)
+  for (const auto& [name, rect] : robot.app.ui.widgets)
     if (name.starts_with("shortcuts/") && name != "shortcuts/close") {
       INFO(name);
       CHECK(rect.to.x <= right - 21);       // what is cut ends at the rim

@@ -1,4 +1,5 @@
 // The interface of a mechanism of ten thousand bodies: what a frame costs does not grow with them.
+#include "app/ui/panel_list.hpp"
 #include "large_answer.hpp"
 #include "large_mechanisms.hpp"
 #include "robot.hpp"
@@ -67,16 +68,16 @@ Cost quiet_frame(Robot& robot) {
 }
 
 void open_large(Robot& robot, const Mechanism& mechanism) {
-  open_document(robot.app, Document(unsolved(mechanism)));
-  REQUIRE_FALSE(robot.app.mistakes.empty());
+  open_document(robot.app.session, Document(unsolved(mechanism)));
+  REQUIRE_FALSE(robot.app.session.mistakes.empty());
   answer_as_drawn(robot.app);
-  robot.app.panels.reactions = true;
+  robot.app.panels->results.sections().reactions = true;
   robot.frames(2);
 }
 
 std::size_t widgets(const Robot& robot, std::string_view prefix) {
   return static_cast<std::size_t>(std::ranges::count_if(
-      robot.app.widgets, [&](const auto& widget) { return widget.first.starts_with(prefix); }));
+      robot.app.ui.widgets, [&](const auto& widget) { return widget.first.starts_with(prefix); }));
 }
 
 } // namespace
@@ -88,10 +89,10 @@ TEST_CASE("a quiet frame of ten thousand bodies costs what one of a hundred does
     std::array<Cost, 2> costs;
     for (const int large : {0, 1}) {
       open_large(robot, long_chain(large ? 10000 : 100));
-      set_mode(robot.app, mode);
+      set_mode(robot.app.session, mode);
       costs[static_cast<std::size_t>(large)] = quiet_frame(robot);
       CHECK(widgets(robot, mode == Mode::build ? "outline/bodies/" : "results/hinge") > 5);
-      CHECK(robot.app.widgets.size() < 400);
+      CHECK(robot.app.ui.widgets.size() < 400);
     }
     INFO("allocations " << costs[0].allocations << ", " << costs[1].allocations);
     INFO("bytes " << costs[0].bytes << ", " << costs[1].bytes);
@@ -111,14 +112,14 @@ TEST_CASE("the lists of a view are made once and drawn once while nothing change
   CHECK(robot.stage.views_changed() == drawn);
   // Looking from elsewhere and pointing need no new lists.
   robot.drag("view", {0.4f, 0.4f}, {0.6f, 0.5f});
-  robot.point_at(robot.app.mechanism().bodies[250].position);
+  robot.point_at(robot.app.session.mechanism().bodies[250].position);
   CHECK(robot.stage.views_changed() > drawn);
   CHECK(robot.app.view.scene.made == made);
   // Another pose does.
-  robot.app.poses[3].position.x() += 0.01;
+  robot.app.session.poses[3].position.x() += 0.01;
   robot.frames(1);
   CHECK(robot.app.view.scene.made == made + 1);
-  edit(robot.app, "Mass", [](Mechanism& m, Selection&) { m.bodies[0].mass = 2; });
+  edit(robot.app.session, "Mass", [](Mechanism& m, Selection&) { m.bodies[0].mass = 2; });
   robot.frames(1);
   CHECK(robot.app.view.scene.made > made + 1);
 }
@@ -126,20 +127,20 @@ TEST_CASE("the lists of a view are made once and drawn once while nothing change
 TEST_CASE("a body among thousands is pointed at, chosen in the view and found in the list") {
   Robot robot({1280, 800});
   open_large(robot, cable_net(70));
-  set_mode(robot.app, Mode::build);
+  set_mode(robot.app.session, Mode::build);
   robot.frames(2);
   const std::size_t wanted = 3456;
-  const std::string name = robot.app.mechanism().bodies[wanted].name;
+  const std::string name = robot.app.session.mechanism().bodies[wanted].name;
   robot.app.view.fit = false;
-  robot.app.view.camera.target = robot.app.mechanism().bodies[wanted].position;
+  robot.app.view.camera.target = robot.app.session.mechanism().bodies[wanted].position;
   robot.app.view.camera.distance = 1;
   robot.app.view.camera.elevation = 1;
   robot.frames(2);
-  robot.click_at(robot.app.mechanism().bodies[wanted].position);
-  REQUIRE(robot.app.selection().parts.size() == 1);
-  CHECK(robot.app.selection().parts[0].name == name);
+  robot.click_at(robot.app.session.mechanism().bodies[wanted].position);
+  REQUIRE(robot.app.session.selection().parts.size() == 1);
+  CHECK(robot.app.session.selection().parts[0].name == name);
   robot.frames(3);
-  CHECK(robot.app.widgets.contains("outline/bodies/" + name));
+  CHECK(robot.app.ui.widgets.contains("outline/bodies/" + name));
   CHECK(widgets(robot, "outline/bodies/") < 60);
 }
 
@@ -147,22 +148,22 @@ TEST_CASE("all of thousands are selected, undone and redone") {
   Robot robot;
   open_large(robot, long_chain(5000));
   Selection all;
-  for (const Body& body : robot.app.mechanism().bodies)
+  for (const Body& body : robot.app.session.mechanism().bodies)
     all.parts.push_back({PartKind::body, body.name});
-  select(robot.app, all);
-  CHECK(robot.app.selection() == all);
+  select(robot.app.session, all);
+  CHECK(robot.app.session.selection() == all);
   robot.frames(2);
-  edit(robot.app, "Remove", [](Mechanism& m, Selection&) {
+  edit(robot.app.session, "Remove", [](Mechanism& m, Selection&) {
     m.bodies.pop_back();
     m.joints.pop_back();
   });
-  CHECK(robot.app.selection().parts.size() == 4999);
-  CHECK(robot.app.document.unsaved());
-  undo(robot.app);
-  CHECK(robot.app.mechanism().bodies.size() == 5000);
-  CHECK_FALSE(robot.app.document.unsaved());
-  redo(robot.app);
-  CHECK(robot.app.document.unsaved());
+  CHECK(robot.app.session.selection().parts.size() == 4999);
+  CHECK(robot.app.session.document.unsaved());
+  undo(robot.app.session);
+  CHECK(robot.app.session.mechanism().bodies.size() == 5000);
+  CHECK_FALSE(robot.app.session.document.unsaved());
+  redo(robot.app.session);
+  CHECK(robot.app.session.document.unsaved());
   robot.frames(1);
 }
 

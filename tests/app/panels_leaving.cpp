@@ -30,17 +30,17 @@ class Window {
               .theme = Theme::light,
               .numbers = {},
               .state = {}}),
-        stage_(app_, 1) {
+        stage_(app_.ui, 1) {
     app_.view.samples = 1;
-    open_document(app_, Document(std::move(mechanism)));
-    wait([&] { return converged(app_) && !solving(app_); });
+    open_document(app_.session, Document(std::move(mechanism)));
+    wait([&] { return converged(app_.session) && !solving(app_.session); });
   }
 
   App& app() { return app_; }
   void frame() { stage_.frame(app_, {900, 600}, 0.02); }
   // A key pressed, and the frame that sees it.
   void key(int code) {
-    app_.keys.push_back({code, false, false});
+    app_.ui.keys.push_back({code, false, false});
     frame();
   }
   template <class Until>
@@ -74,19 +74,19 @@ TEST_CASE("a study of a long chain is left in the frame that asks for it, and ke
        {Key{'C', StudyKind::response}, Key{'E', StudyKind::states}, Key{'P', StudyKind::map}}) {
     INFO("key " << static_cast<char>(key.code));
     window.key(key.code);
-    REQUIRE(window.app().study.open == key.study);
-    window.wait([&] { return studying(window.app()); });
+    REQUIRE(window.app().session.study.open == key.study);
+    window.wait([&] { return studying(window.app().session); });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     window.frame();
-    CHECK(studying(window.app())); // it is in the midst of it
+    CHECK(studying(window.app().session)); // it is in the midst of it
     auto begin = Clock::now();
     window.key('M');
     CHECK(seconds_since(begin) < frame_limit);
-    CHECK(window.app().study.open == StudyKind::motion);
+    CHECK(window.app().session.study.open == StudyKind::motion);
     begin = Clock::now();
     window.key('M'); // and away again
-    CHECK(window.app().study.open == StudyKind::none);
-    CHECK_FALSE(studying(window.app()));
+    CHECK(window.app().session.study.open == StudyKind::none);
+    CHECK_FALSE(studying(window.app().session));
     CHECK(seconds_since(begin) < frame_limit);
   }
   // What was left behind ends by itself, soon.

@@ -1,8 +1,11 @@
 // The view tells which pose is drawn how.
 #include "app/session/motion.hpp"
 #include "app/session/periodic.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/tools.hpp"
+#include "app/ui/view_frame.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "tests/catch.hpp"
@@ -16,7 +19,7 @@ namespace {
 
 std::vector<std::string> words(App& app) {
   std::vector<std::string> all;
-  for (const LegendRow& row : legend_rows(app))
+  for (const LegendRow& row : legend_rows(app.context()))
     all.push_back(row.words);
   return all;
 }
@@ -28,31 +31,31 @@ using Words = std::vector<std::string>;
 TEST_CASE("the legend names what is in the view, and no more") {
   Robot robot;
   App& app = robot.app;
-  change_parameter(app, "joints.spin.drive.speed", 18);
+  change_parameter(app.session, "joints.spin.drive.speed", 18);
   robot.frames(2);
   CHECK(words(app) == Words{"Steady state", "Drawn pose"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
   app.view.ghost = false;
   robot.frames(1);
   CHECK(words(app) == Words{"Steady state"});
   app.view.ghost = true;
-  set_mode(app, Mode::build);
+  set_mode(app.session, Mode::build);
   robot.frames(2);
   CHECK(words(app) == Words{"Drawn pose", "Steady state"}); // as the file says
-  keep_explored(app);
+  keep_explored(app.session);
   robot.frames(2);
   CHECK(words(app) == Words{"Drawn pose", "Steady state"});
-  CHECK(legend_rows(app)[0].mark == LegendMark::outlined);
-  CHECK(legend_rows(app)[1].mark == LegendMark::glass);
-  set_mode(app, Mode::explore);
-  app.motion.duration = 0.2;
+  CHECK(legend_rows(app.context())[0].mark == LegendMark::outlined);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::glass);
+  set_mode(app.session, Mode::explore);
+  app.session.motion.duration = 0.2;
   robot.key('M');
   robot.frames(3);
   CHECK(words(app) == Words{"Steady state", "Drawn pose", "Motion, damped"});
-  open_document(app, Document());
+  open_document(app.session, Document());
   robot.frames(2);
   CHECK(words(app).empty());
-  CHECK(app.widgets.count("legend") == 0);
+  CHECK(app.ui.widgets.count("legend") == 0);
 }
 
 TEST_CASE("the legend names the periodic motion and the drawn pose beside it") {
@@ -60,17 +63,17 @@ TEST_CASE("the legend names the periodic motion and the drawn pose beside it") {
   App& app = robot.app;
   Mechanism crank = Document::empty_mechanism();
   add_driven_slider_crank(crank, 10);
-  open_document(app, Document(crank));
+  open_document(app.session, Document(crank));
   robot.frames(3);
-  REQUIRE(periodic_motion(app));
+  REQUIRE(periodic_motion(app.session));
   CHECK(words(app).front() == "Periodic motion");
-  play(app, true);
+  play(app.session, true);
   robot.frames(3, 0.05);
-  play(app, false);
+  play(app.session, false);
   robot.frames(2);
   CHECK(words(app) == Words{"Periodic motion", "Drawn pose"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
-  set_mode(app, Mode::build);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
+  set_mode(app.session, Mode::build);
   robot.frames(2);
   CHECK(words(app) == Words{"Drawn pose"}); // at its phase the crank stands as drawn
 }
@@ -78,13 +81,13 @@ TEST_CASE("the legend names the periodic motion and the drawn pose beside it") {
 TEST_CASE("while a body is pulled along its joints the dashes are the pose before") {
   Robot robot({1280, 800});
   App& app = robot.app;
-  set_mode(app, Mode::build);
+  set_mode(app.session, Mode::build);
   look_from(app.view, 0, 0);
   robot.frames(3);
-  set_tool(app, Tool::pull);
+  set_tool(app.session, app.ui, app.tool, Tool::pull);
   robot.frames(1);
-  const auto ball = static_cast<std::size_t>(body_index(app.mechanism(), "ball1"));
-  const Vec3 at = app.mechanism().bodies[ball].position;
+  const auto ball = static_cast<std::size_t>(body_index(app.session.mechanism(), "ball1"));
+  const Vec3 at = app.session.mechanism().bodies[ball].position;
   const ImVec2 from = robot.pixel(at);
   robot.point(from);
   robot.press();
@@ -93,7 +96,7 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
   robot.frames(2);
   REQUIRE(app.tool.assembly);
   CHECK(words(app) == Words{"Drawn pose", "Before the pull"});
-  CHECK(legend_rows(app)[1].mark == LegendMark::dashed);
+  CHECK(legend_rows(app.context())[1].mark == LegendMark::dashed);
   robot.release();
   robot.frames(3);
   CHECK(words(app).front() == "Drawn pose");
@@ -103,20 +106,20 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
 TEST_CASE("only dampers that act make a motion damped") {
   Robot robot;
   App& app = robot.app;
-  edit_parameter(app, "joints.slide.damping", 0);
-  app.motion.duration = 0.2;
+  edit_parameter(app.session, "joints.slide.damping", 0);
+  app.session.motion.duration = 0.2;
   robot.key('M');
   robot.frames(3);
-  REQUIRE(shown_motion(app));
+  REQUIRE(shown_motion(app.session));
   CHECK(words(app).back() == "Motion");
-  for (const PlotCurve& curve : motion_plot(app, "value slide").curves)
+  for (const PlotCurve& curve : motion_plot(app.session, "value slide").curves)
     CHECK(curve.name == "motion");
-  edit_parameter(app, "joints.slide.damping", 30);
+  edit_parameter(app.session, "joints.slide.damping", 30);
   robot.frames(3);
   CHECK(words(app).back() == "Motion, damped");
-  app.motion.runs[0].wanted = false;
-  app.motion.runs[1].wanted = true;
-  restart_motion(app);
+  app.session.motion.runs[0].wanted = false;
+  app.session.motion.runs[1].wanted = true;
+  restart_motion(app.session);
   robot.frames(3);
   CHECK(words(app).back() == "Motion, without dampers");
 }
@@ -124,15 +127,15 @@ TEST_CASE("only dampers that act make a motion damped") {
 TEST_CASE("the legend's amber is that of the motion, as pale as the glass in the view") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  app.motion.duration = 0.2;
+  app.session.motion.duration = 0.2;
   robot.key('M');
   robot.frames(3);
-  const std::vector<LegendRow> rows = legend_rows(app);
+  const std::vector<LegendRow> rows = legend_rows(app.context());
   REQUIRE(rows.back().mark == LegendMark::motion);
   const WidgetRect row = robot.widget("legend/" + std::to_string(rows.size() - 1));
   const Image picture = robot.picture();
   const std::uint8_t* mark = picture.at(static_cast<int>(row.from.x + 10), static_cast<int>(row.center().y));
-  const Color& amber = palette(app.theme).motion;
+  const Color& amber = palette(app.ui.theme).motion;
   const auto over_white = [&](float part) { return 255 * (1 - amber.a * (1 - part)); };
   CHECK(static_cast<float>(mark[0]) == Approx(over_white(amber.r)).margin(12));
   CHECK(static_cast<float>(mark[1]) == Approx(over_white(amber.g)).margin(12));
@@ -141,11 +144,11 @@ TEST_CASE("the legend's amber is that of the motion, as pale as the glass in the
 
 TEST_CASE("the time after the drawn phase stands on a plate") {
   Robot robot({1280, 900});
-  CHECK_FALSE(robot.app.widgets.contains("view/time"));
+  CHECK_FALSE(robot.app.ui.widgets.contains("view/time"));
   robot.key(' ');
   robot.frames(20, 0.05);
   robot.key(' ');
-  REQUIRE(robot.app.playback.time > 0);
+  REQUIRE(robot.app.session.playback.time > 0);
   const WidgetRect plate = robot.widget("view/time");
   const Image picture = robot.picture();
   // Between its rim and the words there is but one colour.
@@ -158,36 +161,36 @@ TEST_CASE("the time after the drawn phase stands on a plate") {
 
 TEST_CASE("the legend folds") {
   Robot robot;
-  REQUIRE(robot.app.widgets.count("legend/0") == 1);
+  REQUIRE(robot.app.ui.widgets.count("legend/0") == 1);
   robot.click("legend");
-  CHECK_FALSE(robot.app.panels.legend);
-  CHECK(robot.app.widgets.count("legend/0") == 0);
+  CHECK_FALSE(robot.app.view.legend);
+  CHECK(robot.app.ui.widgets.count("legend/0") == 0);
   robot.frames(30); // else it would be a double click
   robot.click("legend");
-  CHECK(robot.app.widgets.count("legend/0") == 1);
+  CHECK(robot.app.ui.widgets.count("legend/0") == 1);
 }
 
 TEST_CASE("drawn pose and steady state are drawn in different ways") {
   Robot robot;
   App& app = robot.app;
-  change_parameter(app, "joints.spin.drive.speed", 18);
-  keep_explored(app);
+  change_parameter(app.session, "joints.spin.drive.speed", 18);
+  keep_explored(app.session);
   robot.frames(2);
-  const ViewScene exploring = view_scene(view_frame(app));
+  const ViewScene exploring = view_scene(view_frame(app.session, app.ui, app.tool, app.view));
   CHECK(exploring.ghost.empty());
   CHECK_FALSE(exploring.drawn.empty());
   CHECK_FALSE(exploring.drawn_is_solid);
   // The spindle stands where it was drawn: there is nothing to outline.
   const auto outlined = [&](const ViewScene& scene, const char* body) {
     return std::ranges::any_of(scene.drawn, [&](const Instance& i) {
-      return i.part == PartId{PartKind::body, body_index(app.mechanism(), body)};
+      return i.part == PartId{PartKind::body, body_index(app.session.mechanism(), body)};
     });
   };
   CHECK_FALSE(outlined(exploring, "spindle"));
   CHECK(outlined(exploring, "collar"));
-  set_mode(app, Mode::build);
+  set_mode(app.session, Mode::build);
   robot.frames(2);
-  const ViewScene building = view_scene(view_frame(app));
+  const ViewScene building = view_scene(view_frame(app.session, app.ui, app.tool, app.view));
   CHECK_FALSE(building.ghost.empty());
   CHECK(building.drawn_is_solid);
   CHECK(outlined(building, "collar"));

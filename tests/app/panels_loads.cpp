@@ -1,6 +1,9 @@
 // Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/load_view.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/panels/legend.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/snapshot.hpp"
 #include "robot.hpp"
 #include "temporary_folder.hpp"
@@ -17,7 +20,7 @@ namespace {
 
 // How many pixels of the view differ.
 int differing(const Robot& robot, const Image& a, const Image& b) {
-  const WidgetRect view = robot.app.widgets.at("view");
+  const WidgetRect view = robot.app.ui.widgets.at("view");
   int count = 0;
   for (int y = static_cast<int>(view.from.y); y < static_cast<int>(view.to.y); ++y)
     for (int x = static_cast<int>(view.from.x); x < static_cast<int>(view.to.x); ++x)
@@ -26,8 +29,9 @@ int differing(const Robot& robot, const Image& a, const Image& b) {
 }
 
 bool has_row(App& app, const std::string& words) {
-  return std::ranges::any_of(
-      legend_rows(app), [&](const LegendRow& row) { return row.words.find(words) != std::string::npos; });
+  return std::ranges::any_of(legend_rows(app.context()), [&](const LegendRow& row) {
+    return row.words.find(words) != std::string::npos;
+  });
 }
 
 } // namespace
@@ -55,22 +59,22 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
   Robot robot({1280, 900});
   App& app = robot.app;
   robot.key('A');
-  select(app, {{Part{PartKind::body, "ball1"}}});
+  select(app.session, {{Part{PartKind::body, "ball1"}}});
   robot.frames(2);
   CHECK(has_row(app, "Free body: ball1"));
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   CHECK(std::ranges::count(scene.loads, LoadKind::weight, &Load::kind) == 1);
   for (const Instance& instance : scene.free_body)
-    CHECK(instance.part == find_part(app.mechanism(), {PartKind::body, "ball1"}));
+    CHECK(instance.part == find_part(app.session.mechanism(), {PartKind::body, "ball1"}));
   CHECK(!scene.free_body.empty());
   CHECK(scene.others.size() > scene.free_body.size());
   CHECK(scene.drawn.empty());
   std::vector<WidgetRect> labels;
-  for (const auto& [name, rect] : app.widgets)
+  for (const auto& [name, rect] : app.ui.widgets)
     if (name.starts_with("load/")) labels.push_back(rect);
   CHECK(labels.size() >= 4); // weight, inertial load, hinge, link
-  CHECK(app.widgets.count("load/weight/force") == 1);
-  CHECK(app.widgets.count("load/arm1/force") == 1);
+  CHECK(app.ui.widgets.count("load/weight/force") == 1);
+  CHECK(app.ui.widgets.count("load/arm1/force") == 1);
   for (std::size_t i = 0; i < labels.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) {
       const bool apart = labels[i].to.x <= labels[k].from.x || labels[k].to.x <= labels[i].from.x ||
@@ -78,7 +82,8 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
       CHECK(apart);
     }
   // A faded body can be picked: its diagram takes the place of the first.
-  robot.click_at(app.poses[static_cast<std::size_t>(body_index(app.mechanism(), "ball2"))].position);
+  robot.click_at(
+      app.session.poses[static_cast<std::size_t>(body_index(app.session.mechanism(), "ball2"))].position);
   CHECK(has_row(app, "Free body: ball2"));
 }
 
@@ -86,14 +91,14 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
   Robot robot;
   App& app = robot.app;
   const auto middle = [&](const char* widget) {
-    const WidgetRect at = app.widgets.at(widget);
+    const WidgetRect at = app.ui.widgets.at(widget);
     return (at.from.y + at.to.y) / 2;
   };
   CHECK(middle("legend") < middle("view"));
   robot.key('A'); // the shaft's bearing is above it
   robot.frames(2);
   CHECK(middle("legend") > middle("view"));
-  const WidgetRect view = app.widgets.at("view");
+  const WidgetRect view = app.ui.widgets.at("view");
   robot.point({view.from.x + 20, view.from.y + 120});
   robot.press();
   look_from(app.view, 0, 1.57);
@@ -112,7 +117,7 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   App& app = robot.app;
   const double drawn_from = app.view.camera.distance;
   const auto all_seen = [&] {
-    return std::ranges::all_of(shown_scene(app)->arrows.arrows, [&](const LoadArrow& arrow) {
+    return std::ranges::all_of(shown_scene(app.context())->arrows.arrows, [&](const LoadArrow& arrow) {
       const auto at = app.view.camera.project(arrow.to, app.view.size);
       return at && at->x() > 0 && at->y() > 0 && at->x() < app.view.size.width &&
              at->y() < app.view.size.height;
@@ -120,7 +125,7 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   };
   robot.key('A');
   robot.frames(30, 0.04);
-  REQUIRE(shown_scene(app)->arrows.arrows.size() > 4);
+  REQUIRE(shown_scene(app.context())->arrows.arrows.size() > 4);
   CHECK(all_seen());
   CHECK(app.view.camera.distance > drawn_from);
   robot.key('A');
@@ -137,31 +142,31 @@ TEST_CASE("an arrow that is pointed at tells what it is") {
   Robot robot({1280, 900});
   App& app = robot.app;
   robot.key('A');
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   const auto arrow = std::ranges::find_if(scene.arrows.arrows, [&](const LoadArrow& each) {
     return scene.loads[each.load].kind == LoadKind::inertia && !scene.loads[each.load].moment;
   });
   REQUIRE(arrow != scene.arrows.arrows.end());
   robot.point_at(0.2 * arrow->from + 0.8 * arrow->to);
   robot.frames(2);
-  CHECK(app.widgets.count("load/pointed") == 1);
+  CHECK(app.ui.widgets.count("load/pointed") == 1);
   robot.key('A');
-  CHECK(app.widgets.count("load/pointed") == 0);
+  CHECK(app.ui.widgets.count("load/pointed") == 0);
 }
 
 TEST_CASE("a reaction that is one of many says so when it is pointed at") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  open_scene(app, FLYBALL_CASES "/reactions_nonunique_by_joint.json");
+  open_scene(app.session, FLYBALL_CASES "/reactions_nonunique_by_joint.json");
   robot.frames(3);
-  REQUIRE(app.answer.solution.reactions_nonunique);
+  REQUIRE(app.session.answer.solution.reactions_nonunique);
   robot.key('A');
-  const ViewScene& scene = *shown_scene(app);
+  const ViewScene& scene = *shown_scene(app.context());
   int told = 0;
   for (const LoadArrow& arrow : scene.arrows.arrows) {
     robot.point_at(0.2 * arrow.from + 0.8 * arrow.to);
     robot.frames(2);
-    told += static_cast<int>(app.widgets.count("load/nonunique"));
+    told += static_cast<int>(app.ui.widgets.count("load/nonunique"));
   }
   CHECK(told > 0);
   CHECK(told < static_cast<int>(scene.arrows.arrows.size())); // the other joint's is the only one
@@ -172,7 +177,7 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   App& app = robot.app;
   robot.key('A');
   const auto reaction = [&] {
-    for (const Load& load : shown_scene(app)->loads)
+    for (const Load& load : shown_scene(app.context())->loads)
       if (load.kind == LoadKind::inertia && !load.moment && load.vector.norm() > 1) return load.vector;
     return Vec3(Vec3::Zero());
   };
@@ -180,22 +185,22 @@ TEST_CASE("arrows turn along where that is exact, and the legend says where they
   REQUIRE(at_first.norm() > 1);
   robot.key(' ');
   robot.frames(10, 0.03);
-  CHECK(app.playback.time > 0.1);
+  CHECK(app.session.playback.time > 0.1);
   CHECK(reaction().norm() == Approx(at_first.norm()));
   CHECK((reaction() - at_first).norm() > 0.2 * at_first.norm());
-  CHECK(loads_missing(app, app.tool, app.view).empty());
+  CHECK(loads_missing(app.session, app.tool, app.view).empty());
   robot.key(' ');
-  open_scene(app, shipped_file("rate_gyro"));
+  open_scene(app.session, shipped_file("rate_gyro"));
   robot.frames(3);
-  CHECK(!shown_scene(app)->loads.empty());
+  CHECK(!shown_scene(app.context())->loads.empty());
   robot.key(' ');
   robot.frames(5, 0.03);
-  CHECK(shown_scene(app)->loads.empty());
+  CHECK(shown_scene(app.context())->loads.empty());
   CHECK(has_row(app, "at the drawn phase only"));
   robot.key(' ');
-  rewind(app);
+  rewind(app.session);
   robot.frames(2);
-  CHECK(!shown_scene(app)->loads.empty());
+  CHECK(!shown_scene(app.context())->loads.empty());
   robot.key(258); // Tab: building
   CHECK(has_row(app, "while exploring"));
 }
@@ -216,7 +221,7 @@ TEST_CASE("an exported picture has the arrows where that is ticked") {
   CHECK_FALSE(app.view.alone);
   robot.key('E', true);
   robot.frames(2);
-  CHECK_FALSE(app.dialog.loads);
+  CHECK_FALSE(app.panels->picture.loads());
   robot.click("export/loads");
-  CHECK(app.dialog.loads);
+  CHECK(app.panels->picture.loads());
 }

@@ -3,6 +3,7 @@
 
 #include "app/plot/csv.hpp"
 #include "app/session/map.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -23,12 +24,12 @@ constexpr PixelSize wide{1280, 900};
 
 struct MapRobot : Robot {
   explicit MapRobot(const std::string& scene = "governor") : Robot(wide) {
-    open_scene(app, shipped_file(scene));
+    open_scene(app.session, shipped_file(scene));
     frames(3);
     key('P');
     frames(3);
   }
-  MapState& map() { return app.study.map; }
+  MapState& map() { return app.session.study.map; }
 };
 
 double solved(Mechanism m, const MapChoice& choice, double x, double y) {
@@ -42,17 +43,17 @@ double solved(Mechanism m, const MapChoice& choice, double x, double y) {
 
 TEST_CASE("no map before it is asked for, and a closed one is gone but for what was chosen") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.map.cells.asked);
+  CHECK_FALSE(robot.app.session.study.map.cells.asked);
   robot.key('P');
   robot.frames(2);
-  REQUIRE(robot.app.study.map.cells.found);
-  robot.app.study.map.choice.axes[0].count = 21;
+  REQUIRE(robot.app.session.study.map.cells.found);
+  robot.app.session.study.map.choice.axes[0].count = 21;
   robot.click("study/close");
-  CHECK_FALSE(robot.app.study.map.cells.asked);
-  CHECK_FALSE(robot.app.study.map.curves.asked);
-  CHECK_FALSE(robot.app.study.map.cells.found);
-  CHECK_FALSE(robot.app.study.map.curves.found);
-  CHECK(robot.app.study.map.choice.axes[0].count == 21);
+  CHECK_FALSE(robot.app.session.study.map.cells.asked);
+  CHECK_FALSE(robot.app.session.study.map.curves.asked);
+  CHECK_FALSE(robot.app.session.study.map.cells.found);
+  CHECK_FALSE(robot.app.session.study.map.curves.found);
+  CHECK(robot.app.session.study.map.choice.axes[0].count == 21);
 }
 
 TEST_CASE("every place of the map is what a solve of its own gives") {
@@ -62,12 +63,12 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
   CHECK(choice.axes[0].address == "joints.spin.drive.speed");
   const auto columns = static_cast<std::size_t>(choice.axes[0].count);
   REQUIRE(cells.size() == columns * static_cast<std::size_t>(choice.axes[1].count));
-  const Plot& plot = robot.app.plots.map.plot;
+  const Plot& plot = robot.app.panels->studies.shown().map.plot;
   REQUIRE(plot.heat);
   for (std::size_t i = 7; i < cells.size(); i += 173) {
     CAPTURE(i);
     const double x = plot.heat->x[i % columns], y = plot.heat->y[i / columns];
-    const double expected = solved(robot.app.mechanism(), choice, x, y);
+    const double expected = solved(robot.app.session.mechanism(), choice, x, y);
     if (std::isnan(expected)) {
       CHECK(std::isnan(cells[i].value));
     } else {
@@ -81,10 +82,10 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
 
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
   Robot plain(wide);
-  open_scene(plain.app, shipped_file("watt_governor"));
+  open_scene(plain.app.session, shipped_file("watt_governor"));
   // A torque that turns along has no potential: then the answer is the state nearest to the drawn pose, and
   // that is unstable at high speeds.
-  edit(plain.app, "Twist", [](Mechanism& m, Selection&) {
+  edit(plain.app.session, "Twist", [](Mechanism& m, Selection&) {
     Force twist;
     twist.name = "twist";
     twist.type = ForceType::torque;
@@ -96,12 +97,12 @@ TEST_CASE("unstable places are hatched, which is neither read off nor written to
   plain.frames(3);
   plain.key('P');
   plain.frames(3);
-  const MapState& map = plain.app.study.map;
+  const MapState& map = plain.app.session.study.map;
   REQUIRE(map.cells.found);
   const MapCells& cells = map.cells.found->result;
   const auto unstable = std::ranges::count(cells, std::optional(false), &MapCell::stable);
   REQUIRE(unstable > 0);
-  const Plot& plot = plain.app.plots.map.plot;
+  const Plot& plot = plain.app.panels->studies.shown().map.plot;
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
   REQUIRE(hatch != plot.curves.end());
   CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
@@ -114,28 +115,29 @@ TEST_CASE("a click in the map sets both numbers as one step, and the answer is t
   App& app = robot.app;
   const MapChoice choice = robot.map().choice;
   const WidgetRect area = robot.widget("plot/map/area");
-  const std::size_t steps = app.document.position();
+  const std::size_t steps = app.session.document.position();
   robot.click(
       ImVec2{area.from.x + 0.7f * (area.to.x - area.from.x), area.from.y + 0.4f * (area.to.y - area.from.y)});
   robot.frames(2);
-  CHECK(app.document.position() == steps + 1);
+  CHECK(app.session.document.position() == steps + 1);
   std::array<double, 2> place{};
   for (std::size_t k = 0; k < 2; ++k) {
     const MapAxis& axis = choice.axes[k];
-    place[k] = get_parameter(app.mechanism(), axis.address);
+    place[k] = get_parameter(app.session.mechanism(), axis.address);
     const double share = k == 0 ? 0.7 : 0.6;
     CHECK(place[k] == Approx(axis.from + share * (axis.to - axis.from)).margin(0.01 * (axis.to - axis.from)));
   }
-  REQUIRE(robot.app.plots.map.plot.marker);
-  CHECK(robot.app.plots.map.plot.marker->x == place[0]);
-  CHECK(robot.app.plots.map.plot.marker->y == place[1]);
-  const std::optional<MapQuantity> shown = map_quantity(app);
+  REQUIRE(robot.app.panels->studies.shown().map.plot.marker);
+  CHECK(robot.app.panels->studies.shown().map.plot.marker->x == place[0]);
+  CHECK(robot.app.panels->studies.shown().map.plot.marker->y == place[1]);
+  const std::optional<MapQuantity> shown = map_quantity(app.session);
   REQUIRE(shown);
-  CHECK(shown->value.value() == Approx(solved(app.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
+  CHECK(shown->value.value() ==
+        Approx(solved(app.session.mechanism(), choice, place[0], place[1])).epsilon(1e-9));
   // Moving in its own plane does not compute the map anew.
   CHECK_FALSE(robot.map().stale);
-  undo(app);
-  CHECK(get_parameter(app.mechanism(), choice.axes[0].address) != place[0]);
+  undo(app.session);
+  CHECK(get_parameter(app.session.mechanism(), choice.axes[0].address) != place[0]);
 }
 
 TEST_CASE("what is chosen is computed; a value that a number cannot have is refused in words") {
@@ -145,17 +147,17 @@ TEST_CASE("what is chosen is computed; a value that a number cannot have is refu
   robot.map().choice.axes[1].count = 4;
   robot.frames(2);
   CHECK(robot.map().cells.found->result.size() == 20);
-  change_parameter(app, "joints.slide.spring.stiffness", 1234);
+  change_parameter(app.session, "joints.slide.spring.stiffness", 1234);
   robot.frames(3); // an axis of the map: the same map
   const std::vector<MapCell> before = robot.map().cells.found->result;
   // Whatever it took on a busy machine.
   robot.map().cells.found->run_time = robot.map().curves.found->run_time = 0;
-  edit(app, "Heavier", [](Mechanism& m, Selection&) { set_parameter(m, "bodies.collar.mass", 3); });
+  edit(app.session, "Heavier", [](Mechanism& m, Selection&) { set_parameter(m, "bodies.collar.mass", 3); });
   robot.frames(3);
   CHECK(robot.map().cells.found->result[10].value != before[10].value);
   robot.map().choice.axes[1] = {"joints.slide.spring.stiffness", -100, 100, 3};
   robot.frames(2);
-  const bool refused = !map_problem(robot.app).empty();
+  const bool refused = !map_problem(robot.app.session).empty();
   const bool solved_all = robot.map().cells.found->of.choice.axes[1].from == -100;
   CHECK(refused != solved_all);
 }
@@ -169,7 +171,7 @@ TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length
   CHECK(choice.axes[1].address == "gravity.1");
   REQUIRE(robot.map().curves.found);
   REQUIRE(robot.map().curves.found->result.folds);
-  const Body& ball = app.mechanism().bodies[1];
+  const Body& ball = app.session.mechanism().bodies[1];
   const double length = std::hypot(ball.position.x(), 1 - ball.position.y());
   std::size_t points = 0;
   for (const PlaneCurve& curve : robot.map().curves.found->result.folds->curves)
@@ -179,7 +181,7 @@ TEST_CASE("the curve on which the conical pendulum lifts is where speed^2 length
       ++points;
     }
   CHECK(points > 10);
-  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
+  CHECK(std::ranges::any_of(robot.app.panels->studies.shown().map.plot.curves,
                             [](const PlotCurve& c) { return c.name == "crossings"; }));
 }
 
@@ -202,9 +204,9 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
         }
   CHECK(points > 5);
   // It is drawn, with its value and unit in the legend.
-  CHECK(std::ranges::any_of(robot.app.plots.map.plot.curves,
+  CHECK(std::ranges::any_of(robot.app.panels->studies.shown().map.plot.curves,
                             [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
-  CHECK(app.widgets.count("map/level/value") == 1);
+  CHECK(app.ui.widgets.count("map/level/value") == 1);
 }
 
 TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
@@ -213,7 +215,7 @@ TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
   choice.axes[0].count = choice.axes[1].count = 9;
   choice.shown = "height";
   robot.frames(2);
-  const MapQuantity now = map_quantity(robot.app).value();
+  const MapQuantity now = map_quantity(robot.app.session).value();
   CHECK(now.unit == "m");
   REQUIRE(robot.map().cells.found);
   const auto& cells = robot.map().cells.found->result;
@@ -230,7 +232,7 @@ TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
   std::size_t points = 0;
   for (const PlaneCurve& curve : robot.map().curves.found->result.level->curves)
     for (std::size_t i = 0; i < curve.points.size(); i += 10) {
-      Mechanism m = robot.app.mechanism();
+      Mechanism m = robot.app.session.mechanism();
       const std::array<ParameterValue, 2> place{
           {{choice.axes[0].address, curve.points[i].x}, {choice.axes[1].address, curve.points[i].y}}};
       set_parameters(m, place);
@@ -250,13 +252,13 @@ TEST_CASE("a map shows a measure, and the curve on which it keeps its value") {
 TEST_CASE("a map over a number that an undo takes away is over another, while its axis is shown") {
   MapRobot robot("governor_parametric");
   App& app = robot.app;
-  edit(app, "Name a number", [](Mechanism& m, Selection&) {
+  edit(app.session, "Name a number", [](Mechanism& m, Selection&) {
     m.parameters.push_back({"extra", "", 1, "", {}});
   });
   robot.frames(2);
   robot.map().choice.axes[1] = {"parameters.extra", 0, 2, 5};
   robot.frames(3);
-  CHECK(app.widgets.count("map/y/to") == 1);
+  CHECK(app.ui.widgets.count("map/y/to") == 1);
   robot.key('Z', true);
   robot.frames(3);
   CHECK(robot.map().choice.axes[1].address != "parameters.extra");
@@ -264,7 +266,7 @@ TEST_CASE("a map over a number that an undo takes away is over another, while it
 
 TEST_CASE("a map in the background tells its progress, can be stopped, and goes with its tab") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, shipped_file("governor"));
+  open_scene(app.session, shipped_file("governor"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});
@@ -272,24 +274,24 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
     }
     REQUIRE(until());
   };
-  wait([&] { return app.answer.ticket != 0; });
-  app.study.map.choice.folds = false;
-  open_study(app, StudyKind::map);
-  wait([&] { return app.study.map.cells.found != nullptr; });
-  CHECK(map_progress(app).part == 1);
-  for (MapAxis& axis : app.study.map.choice.axes)
+  wait([&] { return app.session.answer.ticket != 0; });
+  app.session.study.map.choice.folds = false;
+  open_study(app.session, StudyKind::map);
+  wait([&] { return app.session.study.map.cells.found != nullptr; });
+  CHECK(map_progress(app.session).part == 1);
+  for (MapAxis& axis : app.session.study.map.choice.axes)
     axis.count = 401; // 160 801 solves: some seconds
   update(app, 0.01, {400, 300});
-  CHECK(computing_map(app));
-  CHECK(studying(app));
-  wait([&] { return map_progress(app).part < 1; });
-  cancel_map(app);
-  wait([&] { return !computing_map(app) && !map_problem(app).empty(); });
-  CHECK(map_problem(app) == "Computing the map was stopped.");
-  CHECK(app.study.map.cells.found->result.size() == 41 * 41); // what there was stays
-  compute_map(app);
-  open_study(app, StudyKind::none); // does not wait for the end
-  CHECK_FALSE(app.study.map.cells.asked);
+  CHECK(computing_map(app.session));
+  CHECK(studying(app.session));
+  wait([&] { return map_progress(app.session).part < 1; });
+  cancel_map(app.session);
+  wait([&] { return !computing_map(app.session) && !map_problem(app.session).empty(); });
+  CHECK(map_problem(app.session) == "Computing the map was stopped.");
+  CHECK(app.session.study.map.cells.found->result.size() == 41 * 41); // what there was stays
+  compute_map(app.session);
+  open_study(app.session, StudyKind::none); // does not wait for the end
+  CHECK_FALSE(app.session.study.map.cells.asked);
 }
 
 TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft ones, with the frequency") {
@@ -304,7 +306,7 @@ TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft o
   REQUIRE(robot.map().curves.found->result.hunting);
   const PlaneCurves& found = *robot.map().curves.found->result.hunting;
   REQUIRE(found.curves.size() == 1);
-  const Plot& plot = app.plots.map.plot;
+  const Plot& plot = app.panels->studies.shown().map.plot;
   const auto drawn = std::ranges::find(plot.curves, std::string("hunting begins hard"), &PlotCurve::name);
   REQUIRE(drawn != plot.curves.end());
   REQUIRE(drawn->points.size() == found.curves[0].points.size());

@@ -19,17 +19,17 @@ struct MeasureDesk : Desk {
   explicit MeasureDesk(const char* scene = "governor") : Desk(scene, {1200, 1000}) {}
   void build() { // and nothing selected
     Desk::build();
-    select(app, {});
+    select(app.session, {});
     frames(2);
   }
   void solved() {
-    for (int i = 0; i < 2000 && solving(app); ++i)
+    for (int i = 0; i < 2000 && solving(app.session); ++i)
       frames(1);
-    REQUIRE(converged(app));
+    REQUIRE(converged(app.session));
   }
   double value(const std::string& name) {
     solved();
-    const auto& all = app.answer.solution.measures;
+    const auto& all = app.session.answer.solution.measures;
     const auto found = std::ranges::find(all, name, &MeasureSolution::name);
     REQUIRE(found != all.end());
     REQUIRE(found->value.has_value());
@@ -54,28 +54,28 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
   REQUIRE(d.m().measures.size() == 1);
   CHECK(d.m().measures[0].name == "height");
   CHECK(d.m().measures[0].text == "y(collar)");
-  CHECK(std::abs(d.value("height") - (0.2 - slide_of(d.app))) < 1e-12);
-  CHECK(d.app.widgets.contains("results/measure/height"));
+  CHECK(std::abs(d.value("height") - (0.2 - slide_of(d.app.session))) < 1e-12);
+  CHECK(d.app.ui.widgets.contains("results/measure/height"));
 
   d.enter("inspector/measure/height", "=coordinate(slide) - 0.1 m");
-  CHECK(std::abs(d.value("height") - (slide_of(d.app) - 0.1)) < 1e-12);
+  CHECK(std::abs(d.value("height") - (slide_of(d.app.session) - 0.1)) < 1e-12);
   d.enter("inspector/measure/height/name", "rise");
   CHECK(d.m().measures[0].name == "rise");
-  const std::size_t steps = d.app.document.position();
+  const std::size_t steps = d.app.session.document.position();
 
   SECTION("what is wrong with it is said while it is typed") {
     d.frames(60);
     d.click("inspector/measure/rise");
     d.type("=coordinate(slid)");
     d.frames(1);
-    CHECK(d.app.fields.typing.mistake.find("did you mean \"slide\"") != std::string::npos);
+    CHECK(d.app.ui.fields.typing.mistake.find("did you mean \"slide\"") != std::string::npos);
     d.key(key_escape);
     d.frames(2);
-    CHECK(d.app.document.position() == steps);
+    CHECK(d.app.session.document.position() == steps);
     CHECK(d.m().measures[0].text == "coordinate(slide) - 0.1 m");
   }
   SECTION("parts that are renamed are renamed in it") {
-    edit(d.app, "rename", [](Mechanism& mechanism, Selection&) {
+    edit(d.app.session, "rename", [](Mechanism& mechanism, Selection&) {
       rename_part(mechanism, {PartKind::joint, "slide"}, "the slide");
     });
     d.frames(2);
@@ -96,9 +96,9 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
     CHECK(d.m().measures.size() == 1);
   }
   SECTION("units are as a person wants them") {
-    d.app.units.length = LengthUnit::millimetre;
+    d.app.session.units.length = LengthUnit::millimetre;
     d.frames(2);
-    CHECK(d.app.widgets.contains("results/measure/rise"));
+    CHECK(d.app.ui.widgets.contains("results/measure/rise"));
   }
 }
 
@@ -130,10 +130,10 @@ TEST_CASE("without a measure others have its expression, without a parameter its
 TEST_CASE("measures are drawn over a number and wanted") {
   MeasureDesk d("governor_parametric");
   d.solved();
-  const auto offered = response_quantities(response_point(d.app.answer.solution, 0));
+  const auto offered = response_quantities(response_point(d.app.session.answer.solution, 0));
   const auto quantity = std::ranges::find(offered, "measure ball_pull", &ResponseQuantity::key);
   REQUIRE(quantity != offered.end());
   CHECK(quantity->unit == "N");
   CHECK(quantity->group == "Measures");
-  CHECK(quantity_values(response_point(d.app.answer.solution, 0), "measure ball_pull").size() == 1);
+  CHECK(quantity_values(response_point(d.app.session.answer.solution, 0), "measure ball_pull").size() == 1);
 }

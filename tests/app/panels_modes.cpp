@@ -3,7 +3,10 @@
 
 #include "app/session/campbell.hpp"
 #include "app/session/modes.hpp"
+#include "app/ui/camera_glide.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -21,12 +24,12 @@ constexpr PixelSize wide{1280, 900};
 
 struct ModesRobot : Robot {
   explicit ModesRobot(const std::string& scene) : Robot(wide) {
-    open_scene(app, shipped_file(scene));
+    open_scene(app.session, shipped_file(scene));
     frames(3);
     key('O');
     frames(3);
   }
-  const std::vector<VibrationMode>& modes() { return app.study.modes.list.found->result.modes; }
+  const std::vector<VibrationMode>& modes() { return app.session.study.modes.list.found->result.modes; }
   // The first that swings.
   std::size_t swinging() {
     const auto found = std::ranges::find_if(modes(), &VibrationMode::oscillates);
@@ -59,37 +62,37 @@ double opened(const Mechanism& m, const std::vector<Pose>& drawn, const std::vec
 
 TEST_CASE("no modes before they are asked for, and a closed study leaves nothing that moves") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.modes.list.asked);
-  CHECK_FALSE(robot.app.study.modes.campbell.diagram.asked);
+  CHECK_FALSE(robot.app.session.study.modes.list.asked);
+  CHECK_FALSE(robot.app.session.study.modes.campbell.diagram.asked);
   robot.key('O');
   robot.frames(2);
-  REQUIRE(robot.app.study.modes.list.found);
+  REQUIRE(robot.app.session.study.modes.list.found);
   robot.click("modes/row/1");
-  CHECK_FALSE(robot.app.study.modes.poses.empty());
-  CHECK(in_motion(robot.app));
+  CHECK_FALSE(robot.app.session.study.modes.poses.empty());
+  CHECK(in_motion(robot.app.session, robot.app.view));
   robot.click("study/close");
-  const ModesState& modes = robot.app.study.modes;
+  const ModesState& modes = robot.app.session.study.modes;
   CHECK_FALSE(modes.list.asked);
   CHECK_FALSE(modes.list.found);
   CHECK_FALSE(modes.campbell.diagram.asked);
   CHECK(modes.poses.empty());
-  CHECK_FALSE(in_motion(robot.app));
-  CHECK(view_frame(robot.app).motion.empty());
+  CHECK_FALSE(in_motion(robot.app.session, robot.app.view));
+  CHECK(view_frame(robot.app.session, robot.app.ui, robot.app.tool, robot.app.view).motion.empty());
 }
 
 TEST_CASE("the governor's modes are its eigenvalues, and agree with its potential") {
   ModesRobot robot("governor");
   const App& app = robot.app;
-  REQUIRE(app.answer.solution.eigenvalues);
+  REQUIRE(app.session.answer.solution.eigenvalues);
   for (const VibrationMode& mode : robot.modes()) {
     double nearest = 1e300;
-    for (const std::complex<double>& s : *app.answer.solution.eigenvalues)
+    for (const std::complex<double>& s : *app.session.answer.solution.eigenvalues)
       nearest = std::min(nearest, std::abs(s - mode.eigenvalue));
     CHECK(nearest < 1e-6 * (1 + mode.natural_frequency));
     CHECK_FALSE(grows(mode));
   }
-  REQUIRE(app.study.modes.list.found->result.evidence);
-  CHECK(app.study.modes.list.found->result.evidence->agree);
+  REQUIRE(app.session.study.modes.list.found->result.evidence);
+  CHECK(app.session.study.modes.list.found->result.evidence->agree);
   robot.widget("modes/verdict");
   robot.widget("modes/row/1");
 }
@@ -98,39 +101,39 @@ TEST_CASE("a chosen mode moves about the steady state, and the governor's links 
   ModesRobot robot("governor");
   App& app = robot.app;
   robot.click("modes/row/1");
-  REQUIRE(moving_mode(app));
-  const std::vector<Pose> drawn = drawn_poses(app.mechanism());
+  REQUIRE(moving_mode(app.session));
+  const std::vector<Pose> drawn = drawn_poses(app.session.mechanism());
   double furthest = 0;
   std::vector<Vec3> seen;
   for (int i = 0; i < 40; ++i) {
     robot.frames(1, 0.05);
-    const std::vector<Pose>& poses = app.study.modes.poses;
-    REQUIRE(poses.size() == app.poses.size());
-    CHECK(opened(app.mechanism(), drawn, poses) < 1e-9);
+    const std::vector<Pose>& poses = app.session.study.modes.poses;
+    REQUIRE(poses.size() == app.session.poses.size());
+    CHECK(opened(app.session.mechanism(), drawn, poses) < 1e-9);
     for (std::size_t b = 0; b < poses.size(); ++b)
-      furthest = std::max(furthest, (poses[b].position - app.poses[b].position).norm());
+      furthest = std::max(furthest, (poses[b].position - app.session.poses[b].position).norm());
     seen.push_back(poses[1].position);
   }
   CHECK(furthest > 0.005);
   CHECK(furthest < 0.2);
   CHECK((seen.front() - seen[10]).norm() > 1e-4);
   // Amber beside the solid one.
-  const ViewFrame frame = view_frame(app);
-  CHECK(frame.motion.size() == app.poses.size());
-  CHECK(frame.poses.size() == app.poses.size());
+  const ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
+  CHECK(frame.motion.size() == app.session.poses.size());
+  CHECK(frame.poses.size() == app.session.poses.size());
   CHECK(frame.ghost.empty());
   // A larger amplitude is more.
-  app.study.modes.playing = false;
-  app.study.modes.phase = 0;
+  app.session.study.modes.playing = false;
+  app.session.study.modes.phase = 0;
   robot.frames(2);
-  const double before = (app.study.modes.poses[1].position - app.poses[1].position).norm();
+  const double before = (app.session.study.modes.poses[1].position - app.session.poses[1].position).norm();
   robot.drag("modes/amplitude", {0.3f, 0.5f}, {0.6f, 0.5f});
   robot.frames(2);
-  CHECK((app.study.modes.poses[1].position - app.poses[1].position).norm() > 1.5 * before);
+  CHECK((app.session.study.modes.poses[1].position - app.session.poses[1].position).norm() > 1.5 * before);
   // The same row again: nothing moves.
   robot.click("modes/row/1");
-  CHECK_FALSE(moving_mode(app));
-  CHECK(app.study.modes.poses.empty());
+  CHECK_FALSE(moving_mode(app.session));
+  CHECK(app.session.study.modes.poses.empty());
 }
 
 TEST_CASE("Space pauses a mode and plays it on, at a pace that can be watched") {
@@ -141,37 +144,37 @@ TEST_CASE("Space pauses a mode and plays it on, at a pace that can be watched") 
   const double period = shown_period(robot.modes()[swinging]);
   CHECK(period >= 0.8);
   CHECK(period <= 4);
-  const double begin = app.study.modes.phase;
+  const double begin = app.session.study.modes.phase;
   robot.frames(5, period / 20);
-  CHECK(std::remainder(app.study.modes.phase - begin - std::numbers::pi / 2, 2 * std::numbers::pi) ==
+  CHECK(std::remainder(app.session.study.modes.phase - begin - std::numbers::pi / 2, 2 * std::numbers::pi) ==
         Approx(0).margin(1e-9));
   robot.key(' ');
-  CHECK_FALSE(app.study.modes.playing);
-  CHECK_FALSE(app.playback.playing); // the drives did not start instead
-  const double phase = app.study.modes.phase;
+  CHECK_FALSE(app.session.study.modes.playing);
+  CHECK_FALSE(app.session.playback.playing); // the drives did not start instead
+  const double phase = app.session.study.modes.phase;
   robot.frames(3, 0.1);
-  CHECK(app.study.modes.phase == phase);
+  CHECK(app.session.study.modes.phase == phase);
   robot.key(' ');
   robot.frames(1, 0.1);
-  CHECK(app.study.modes.phase != phase);
+  CHECK(app.session.study.modes.phase != phase);
 }
 
 TEST_CASE("an unstable state's growing mode is marked") {
   ModesRobot robot("conical_pendulum");
   App& app = robot.app;
   CHECK(std::ranges::none_of(robot.modes(), grows));
-  go_to_state(app, "", 0, {{"swing", 0}});
+  go_to_state(app.session, "", 0, {{"swing", 0}});
   robot.frames(3);
-  REQUIRE(app.answer.solution.stable == false);
-  CHECK(modes_are_current(app));
+  REQUIRE(app.session.answer.solution.stable == false);
+  CHECK(modes_are_current(app.session));
   CHECK(std::ranges::any_of(robot.modes(), grows));
 }
 
 TEST_CASE("Campbell lines are continuous, and agree with the modes where the mechanism is") {
   ModesRobot robot("rate_gyro");
   App& app = robot.app;
-  const CampbellState& campbell = app.study.modes.campbell;
-  const CampbellView& drawn = app.plots.campbell;
+  const CampbellState& campbell = app.session.study.modes.campbell;
+  const CampbellView& drawn = app.panels->studies.shown().campbell;
   REQUIRE(campbell.diagram.found);
   REQUIRE_FALSE(drawn.plot.curves.empty());
   double highest = 0;
@@ -188,7 +191,7 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   }
   CHECK(lines > 0);
   // Each mode that swings lies on a line at the present speed.
-  const double speed = get_parameter(app.mechanism(), campbell.diagram.found->of.drive);
+  const double speed = get_parameter(app.session.mechanism(), campbell.diagram.found->of.drive);
   for (const VibrationMode& mode : robot.modes()) {
     if (!mode.oscillates()) continue;
     double nearest = 1e300;
@@ -216,22 +219,23 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   ModesRobot robot("governor");
   App& app = robot.app;
   const std::string speed = "joints.spin.drive.speed";
-  const PlotRange range = campbell_range(app);
-  const auto followed = app.study.modes.campbell.diagram.found;
+  const PlotRange range = campbell_range(app.session);
+  const auto followed = app.session.study.modes.campbell.diagram.found;
   const WidgetRect area = robot.widget("plot/campbell/area");
   robot.click(
       ImVec2{area.from.x + 0.6f * (area.to.x - area.from.x), area.from.y + 0.2f * (area.to.y - area.from.y)});
   robot.frames(2);
   const double wanted = range[0] + 0.6 * (range[1] - range[0]);
-  CHECK(get_parameter(app.mechanism(), speed) == Approx(wanted).margin(0.01 * (range[1] - range[0])));
+  CHECK(get_parameter(app.session.mechanism(), speed) == Approx(wanted).margin(0.01 * (range[1] - range[0])));
   // The diagram still holds: only the speed has changed.
-  CHECK(app.study.modes.campbell.current);
-  CHECK(app.study.modes.campbell.diagram.found == followed);
-  REQUIRE_FALSE(app.plots.campbell.plot.references.empty());
-  CHECK(app.plots.campbell.plot.references[0].at == get_parameter(app.mechanism(), speed));
+  CHECK(app.session.study.modes.campbell.current);
+  CHECK(app.session.study.modes.campbell.diagram.found == followed);
+  REQUIRE_FALSE(app.panels->studies.shown().campbell.plot.references.empty());
+  CHECK(app.panels->studies.shown().campbell.plot.references[0].at ==
+        get_parameter(app.session.mechanism(), speed));
   // Another number changes it.
-  app.study.modes.campbell.diagram.found->run_time = 0; // whatever it took on a busy machine
-  change_parameter(app, "joints.slide.spring.stiffness", 1500);
+  app.session.study.modes.campbell.diagram.found->run_time = 0; // whatever it took on a busy machine
+  change_parameter(app.session, "joints.slide.spring.stiffness", 1500);
   robot.frames(3);
-  CHECK(app.study.modes.campbell.diagram.found != followed);
+  CHECK(app.session.study.modes.campbell.diagram.found != followed);
 }

@@ -2,7 +2,10 @@
 #include "robot.hpp"
 
 #include "app/session/motion.hpp"
+#include "app/ui/camera_glide.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
@@ -23,7 +26,7 @@ namespace {
 constexpr PixelSize wide{1280, 900};
 
 const Run& run_of(const App& app) {
-  const MotionRun* shown = shown_motion(app);
+  const MotionRun* shown = shown_motion(app.session);
   REQUIRE(shown);
   return *shown->run;
 }
@@ -44,110 +47,110 @@ struct MotionRobot : Robot {
 
 TEST_CASE("without being asked for there is no motion, no integrator and no panel of it") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.motion.on);
-  for (const MotionRun& run : robot.app.motion.runs)
+  CHECK_FALSE(robot.app.session.motion.on);
+  for (const MotionRun& run : robot.app.session.motion.runs)
     CHECK_FALSE(run.task);
-  CHECK_FALSE(robot.app.study.compare.measured.asked);
-  CHECK(robot.app.widgets.count("motion/play") == 0);
-  CHECK(robot.app.widgets.count("study/motion") == 0);
-  CHECK(robot.app.widgets.count("parameters/joints.slide.damping") == 0);
+  CHECK_FALSE(robot.app.session.study.compare.measured.asked);
+  CHECK(robot.app.ui.widgets.count("motion/play") == 0);
+  CHECK(robot.app.ui.widgets.count("study/motion") == 0);
+  CHECK(robot.app.ui.widgets.count("parameters/joints.slide.damping") == 0);
 }
 
 TEST_CASE("the motion begins when it is asked for, and ends in the steady state") {
   MotionRobot robot;
   App& app = robot.app;
-  REQUIRE(app.motion.on);
-  CHECK(app.playback.playing);
+  REQUIRE(app.session.motion.on);
+  CHECK(app.session.playback.playing);
   const Run& run = run_of(app);
   CHECK(run.damped);
-  CHECK(run.time.back() == Approx(app.mechanism().simulation.duration));
-  REQUIRE(app.motion.runs[1].run);
-  CHECK_FALSE(app.motion.runs[1].run->damped);
-  REQUIRE(app.motion.settled);
-  CHECK(app.motion.settled->distance < 2e-3);
+  CHECK(run.time.back() == Approx(app.session.mechanism().simulation.duration));
+  REQUIRE(app.session.motion.runs[1].run);
+  CHECK_FALSE(app.session.motion.runs[1].run->damped);
+  REQUIRE(app.session.motion.settled);
+  CHECK(app.session.motion.settled->distance < 2e-3);
   // Played to its end, the two pictures are one.
   robot.frames(130, 0.1);
-  CHECK_FALSE(app.playback.playing);
-  CHECK(app.playback.time == run.time.back());
-  REQUIRE(app.motion.poses.size() == app.poses.size());
-  for (std::size_t i = 0; i < app.poses.size(); ++i)
-    CHECK((app.motion.poses[i].position - app.poses[i].position).norm() < 1e-3);
+  CHECK_FALSE(app.session.playback.playing);
+  CHECK(app.session.playback.time == run.time.back());
+  REQUIRE(app.session.motion.poses.size() == app.session.poses.size());
+  for (std::size_t i = 0; i < app.session.poses.size(); ++i)
+    CHECK((app.session.motion.poses[i].position - app.session.poses[i].position).norm() < 1e-3);
   // And at the beginning they were not.
   robot.click("motion/first");
-  CHECK(app.playback.time == 0);
+  CHECK(app.session.playback.time == 0);
   double apart = 0;
-  for (std::size_t i = 0; i < app.poses.size(); ++i)
-    apart = std::max(apart, (app.motion.poses[i].position - app.poses[i].position).norm());
+  for (std::size_t i = 0; i < app.session.poses.size(); ++i)
+    apart = std::max(apart, (app.session.motion.poses[i].position - app.session.poses[i].position).norm());
   CHECK(apart > 0.02);
 }
 
 TEST_CASE("a closed panel takes everything of the motion with it") {
   MotionRobot robot;
   robot.click("study/close");
-  CHECK_FALSE(robot.app.motion.on);
-  for (const MotionRun& run : robot.app.motion.runs)
+  CHECK_FALSE(robot.app.session.motion.on);
+  for (const MotionRun& run : robot.app.session.motion.runs)
     CHECK_FALSE(run.task);
-  CHECK(robot.app.motion.poses.empty());
-  CHECK(robot.app.playback.time == 0);
-  CHECK(robot.app.study.open == StudyKind::none);
+  CHECK(robot.app.session.motion.poses.empty());
+  CHECK(robot.app.session.playback.time == 0);
+  CHECK(robot.app.session.study.open == StudyKind::none);
 }
 
 TEST_CASE("the motion is paused, stepped and scrubbed") {
   MotionRobot robot;
   App& app = robot.app;
   robot.click("motion/play");
-  CHECK_FALSE(app.playback.playing);
+  CHECK_FALSE(app.session.playback.playing);
   const double step = run_of(app).time[1] - run_of(app).time[0];
   robot.click("motion/first");
   robot.click("motion/forward");
   robot.click("motion/forward");
-  CHECK(app.playback.time == Approx(2 * step));
+  CHECK(app.session.playback.time == Approx(2 * step));
   robot.click("motion/back");
-  CHECK(app.playback.time == Approx(step));
+  CHECK(app.session.playback.time == Approx(step));
   robot.drag("motion/scrub", {0.1f, 0.5f}, {0.5f, 0.5f});
-  CHECK(app.playback.time == Approx(6).margin(0.7));
+  CHECK(app.session.playback.time == Approx(6).margin(0.7));
   // The picture follows.
-  const std::vector<Pose> expected = poses_at(run_of(app), app.playback.time);
-  CHECK(app.motion.poses[1].position.isApprox(expected[1].position, 1e-12));
+  const std::vector<Pose> expected = poses_at(run_of(app), app.session.playback.time);
+  CHECK(app.session.motion.poses[1].position.isApprox(expected[1].position, 1e-12));
   // Space plays on from there.
-  const double before = app.playback.time;
+  const double before = app.session.playback.time;
   robot.key(' ');
   robot.frames(3, 0.05);
-  CHECK(app.playback.time > before);
+  CHECK(app.session.playback.time > before);
 }
 
 TEST_CASE("a loop begins again, and slow motion is slow") {
   MotionRobot robot;
   App& app = robot.app;
   robot.click("motion/loop");
-  seek_motion(app, run_of(app).time.back() - 0.05);
+  seek_motion(app.session, run_of(app).time.back() - 0.05);
   robot.frames(2, 0.1);
-  CHECK(app.playback.playing);
-  CHECK(app.playback.time < 1);
-  const double before = app.playback.time;
-  app.playback.factor = 0.1;
+  CHECK(app.session.playback.playing);
+  CHECK(app.session.playback.time < 1);
+  const double before = app.session.playback.time;
+  app.session.playback.factor = 0.1;
   robot.frames(10, 0.01);
-  CHECK(app.playback.time - before == Approx(0.01).epsilon(1e-6));
+  CHECK(app.session.playback.time - before == Approx(0.01).epsilon(1e-6));
 }
 
 TEST_CASE("a slider begins the motion anew, or goes on with it, as was chosen") {
   MotionRobot robot;
   App& app = robot.app;
   robot.click("motion/play");
-  seek_motion(app, 2);
+  seek_motion(app.session, 2);
   robot.frames(2);
   const std::vector<double> before = track(run_of(app), "slide").value;
   const std::string slider = "parameters/joints.slide.damping";
   SECTION("anew, and a paused hand stays where it is") {
     robot.drag(slider, {0.5f, 0.5f}, {0.9f, 0.5f});
-    CHECK(get_parameter(app.mechanism(), "joints.slide.damping") > 40);
+    CHECK(get_parameter(app.session.mechanism(), "joints.slide.damping") > 40);
     const std::vector<double>& after = track(run_of(app), "slide").value;
     CHECK(after.front() == before.front());
     CHECK(after[20] != before[20]);
-    CHECK(app.playback.time == Approx(2));
+    CHECK(app.session.playback.time == Approx(2));
   }
   SECTION("going on") {
-    app.motion.go_on = true;
+    app.session.motion.go_on = true;
     robot.drag(slider, {0.5f, 0.5f}, {0.9f, 0.5f});
     const Run& run = run_of(app);
     const std::vector<double>& after = track(run, "slide").value;
@@ -163,28 +166,28 @@ TEST_CASE("a drive's speed changed on the way keeps the phases of both pictures 
   MotionRobot robot;
   App& app = robot.app;
   robot.click("motion/play");
-  app.motion.go_on = true;
-  seek_motion(app, 1);
+  app.session.motion.go_on = true;
+  seek_motion(app.session, 1);
   robot.frames(2);
-  change_parameter(app, "joints.spin.drive.speed", 14);
-  seek_motion(app, 9.9);
+  change_parameter(app.session, "joints.spin.drive.speed", 14);
+  seek_motion(app.session, 9.9);
   robot.frames(3);
   // The spindle is driven: both show it at the same angle.
-  const int spindle = body_index(app.mechanism(), "spindle");
+  const int spindle = body_index(app.session.mechanism(), "spindle");
   REQUIRE(spindle >= 0);
   const auto i = static_cast<std::size_t>(spindle);
-  CHECK(app.motion.poses[i].rotation.angularDistance(app.poses[i].rotation) < 1e-9);
+  CHECK(app.session.motion.poses[i].rotation.angularDistance(app.session.poses[i].rotation) < 1e-9);
 }
 
 TEST_CASE("plots show the motion, the motion without dampers, and the steady value") {
   MotionRobot robot;
   App& app = robot.app;
   const Run& run = run_of(app);
-  const Plot plot = motion_plot(app, "value slide");
+  const Plot plot = motion_plot(app.session, "value slide");
   REQUIRE(plot.curves.size() == 2);
   CHECK(plot.y.unit == "m");
   REQUIRE(plot.references.size() == 1);
-  CHECK(plot.references[0].at == Approx(value(app.answer.solution, "slide")));
+  CHECK(plot.references[0].at == Approx(value(app.session.answer.solution, "slide")));
   for (const PlotCurve& curve : plot.curves) {
     if (curve.name != "damped") continue;
     REQUIRE(curve.points.size() == run.time.size());
@@ -194,38 +197,38 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
   // Everything that is offered can be drawn.
   for (const MotionQuantity& each : motion_quantities(run)) {
     CAPTURE(each.key);
-    const Plot offered = motion_plot(app, each.key);
+    const Plot offered = motion_plot(app.session, each.key);
     CHECK_FALSE(offered.curves.empty());
     CHECK_FALSE(offered.y.unit.empty());
   }
   // Dragging the play head scrubs.
-  CHECK(app.widgets.count("plot/motion/plot1/area") == 1);
+  CHECK(app.ui.widgets.count("plot/motion/plot1/area") == 1);
 }
 
 TEST_CASE("the state that is shown can be kept and started from") {
   MotionRobot robot;
   App& app = robot.app;
   robot.click("motion/play");
-  seek_motion(app, 1.2345);
+  seek_motion(app.session, 1.2345);
   robot.frames(2);
   robot.click("motion/keep");
-  REQUIRE_FALSE(app.motion.saved.coordinates.empty());
-  app.motion.start = Start::state;
+  REQUIRE_FALSE(app.session.motion.saved.coordinates.empty());
+  app.session.motion.start = Start::state;
   const double slide = track(run_of(app), "slide").value[sample_before(run_of(app), 1.2345)];
-  restart_motion(app);
+  restart_motion(app.session);
   robot.frames(2);
   CHECK(track(run_of(app), "slide").value.front() == Approx(slide));
-  CHECK(run_of(app).time.front() == Approx(app.motion.saved.time));
-  CHECK(app.playback.time >= app.motion.saved.time);
+  CHECK(run_of(app).time.front() == Approx(app.session.motion.saved.time));
+  CHECK(app.session.playback.time >= app.session.motion.saved.time);
 }
 
 TEST_CASE("a kick sets the steady state going") {
   MotionRobot robot;
   App& app = robot.app;
-  app.motion.start = Start::equilibrium;
-  app.motion.kicked = "slide";
-  app.motion.kick = 0.3;
-  restart_motion(app);
+  app.session.motion.start = Start::equilibrium;
+  app.session.motion.kicked = "slide";
+  app.session.motion.kick = 0.3;
+  restart_motion(app.session);
   robot.frames(2);
   const CoordinateTrack& slide = track(run_of(app), "slide");
   CHECK(slide.rate.front() == Approx(0.3).epsilon(1e-9));
@@ -235,12 +238,12 @@ TEST_CASE("a kick sets the steady state going") {
 TEST_CASE("the motion can have a view of its own") {
   MotionRobot robot;
   App& app = robot.app;
-  app.playback.playing = false;
-  app.motion.beside = true;
+  app.session.playback.playing = false;
+  app.session.motion.beside = true;
   robot.frames(2);
   const WidgetRect left = robot.widget("view"), right = robot.widget("beside");
   CHECK(right.from.x == Approx(left.to.x));
-  CHECK(view_frame(app).motion.empty());
+  CHECK(view_frame(app.session, app.ui, app.tool, app.view).motion.empty());
   // One camera for both.
   const double azimuth = app.view.camera.azimuth;
   robot.drag("beside", {0.4f, 0.5f}, {0.6f, 0.5f});
@@ -249,12 +252,12 @@ TEST_CASE("the motion can have a view of its own") {
 
 TEST_CASE("while nothing changes nothing is drawn, also with a motion") {
   MotionRobot robot;
-  robot.app.playback.playing = false;
+  robot.app.session.playback.playing = false;
   robot.frames(3);
   const int drawn = robot.stage.views_changed();
   robot.frames(5);
   CHECK(robot.stage.views_changed() == drawn);
-  CHECK_FALSE(in_motion(robot.app));
+  CHECK_FALSE(in_motion(robot.app.session, robot.app.view));
   robot.click("motion/forward");
   CHECK(robot.stage.views_changed() > drawn);
 }
@@ -263,10 +266,10 @@ TEST_CASE("an edit while the motion is shown is followed, and undone") {
   MotionRobot robot;
   App& app = robot.app;
   const double before = track(run_of(app), "slide").value[100];
-  change_parameter(app, "bodies.ball1.mass", 3);
+  change_parameter(app.session, "bodies.ball1.mass", 3);
   robot.frames(2);
   CHECK(track(run_of(app), "slide").value[100] != before);
-  undo(app);
+  undo(app.session);
   robot.frames(2);
   CHECK(track(run_of(app), "slide").value[100] == before);
 }
@@ -278,8 +281,8 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
            .scenes = {},
            .theme = Theme::light,
            .numbers = {}});
-  Stage stage(app, 1);
-  open_scene(app, shipped_file("chain20"));
+  Stage stage(app.ui, 1);
+  open_scene(app.session, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       stage.frame(app, wide, 0.01);
@@ -287,43 +290,43 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
     }
     REQUIRE(until());
   };
-  wait([&] { return app.answer.ticket != 0; });
-  app.motion.duration = 1000;
-  open_study(app, StudyKind::motion);
-  CHECK(computed_motion(app) == 0.);
-  wait([&] { return app.widgets.contains("motion/progress"); });
-  wait([&] { return computed_motion(app).value_or(0) > 0; });
-  CHECK(*computed_motion(app) < 1000);
-  stop_motion(app);
-  wait([&] { return !computing_motion(app); });
-  CHECK_FALSE(computed_motion(app));
+  wait([&] { return app.session.answer.ticket != 0; });
+  app.session.motion.duration = 1000;
+  open_study(app.session, StudyKind::motion);
+  CHECK(computed_motion(app.session) == 0.);
+  wait([&] { return app.ui.widgets.contains("motion/progress"); });
+  wait([&] { return computed_motion(app.session).value_or(0) > 0; });
+  CHECK(*computed_motion(app.session) < 1000);
+  stop_motion(app.session);
+  wait([&] { return !computing_motion(app.session); });
+  CHECK_FALSE(computed_motion(app.session));
   stage.frame(app, wide, 0.01);
-  CHECK_FALSE(app.widgets.contains("motion/progress"));
+  CHECK_FALSE(app.ui.widgets.contains("motion/progress"));
 }
 
 TEST_CASE("building ends the motion") {
   MotionRobot robot;
-  set_mode(robot.app, Mode::build);
+  set_mode(robot.app.session, Mode::build);
   robot.frames(2);
-  CHECK_FALSE(robot.app.motion.on);
-  CHECK(robot.app.widgets.count("motion/play") == 0);
+  CHECK_FALSE(robot.app.session.motion.on);
+  CHECK(robot.app.ui.widgets.count("motion/play") == 0);
 }
 
 TEST_CASE("the comparison is measured and drawn") {
   Robot robot(wide);
   App& app = robot.app;
-  open_study(app, StudyKind::compare);
+  open_study(app.session, StudyKind::compare);
   robot.frames(2);
-  app.study.compare.repeats = 1;
+  app.session.study.compare.repeats = 1;
   robot.click("compare/run");
   robot.frames(2);
-  REQUIRE(app.study.compare.measured.found);
-  const Comparison& c = app.study.compare.measured.found->result;
+  REQUIRE(app.session.study.compare.measured.found);
+  const Comparison& c = app.session.study.compare.measured.found->result;
   CHECK(c.status == Status::converged);
   REQUIRE(c.best);
   CHECK(c.best->ratio() > 1);
-  CHECK(app.plots.compare.plot.curves.size() > 3);
-  CHECK(app.widgets.count("compare/ratio") == 1);
+  CHECK(app.panels->studies.shown().compare.plot.curves.size() > 3);
+  CHECK(app.ui.widgets.count("compare/ratio") == 1);
   // Its table has a line for each mark and run, below the heading.
   std::ptrdiff_t lines = 2 + std::ssize(c.direct);
   for (const MotionCurve& curve : c.motion)
@@ -332,25 +335,25 @@ TEST_CASE("the comparison is measured and drawn") {
   const std::string table = ImGui::GetClipboardText();
   CHECK(std::ranges::count(table, '\n') == lines);
   CHECK(table.starts_with("method,duration_s,tolerance,"));
-  CHECK(app.widgets.count("plot/compare/area") == 1);
+  CHECK(app.ui.widgets.count("plot/compare/area") == 1);
 }
 
 TEST_CASE("the comparison shows the errors of a measure") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  open_scene(app, shipped_file("governor_parametric"));
-  edit(app, "Short", [](Mechanism& m, Selection&) { m.simulation.duration = 0.2; });
+  open_scene(app.session, shipped_file("governor_parametric"));
+  edit(app.session, "Short", [](Mechanism& m, Selection&) { m.simulation.duration = 0.2; });
   robot.frames(3);
-  open_study(app, StudyKind::compare);
+  open_study(app.session, StudyKind::compare);
   robot.frames(2);
-  app.study.compare.repeats = 1;
+  app.session.study.compare.repeats = 1;
   robot.click("compare/run");
   robot.frames(2);
-  REQUIRE(app.study.compare.measured.found);
-  CHECK(app.widgets.count("compare/shown") == 1);
-  CHECK(app.plots.compare.plot.y.label == "error |q - q*|");
-  app.study.compare.shown = "height";
+  REQUIRE(app.session.study.compare.measured.found);
+  CHECK(app.ui.widgets.count("compare/shown") == 1);
+  CHECK(app.panels->studies.shown().compare.plot.y.label == "error |q - q*|");
+  app.session.study.compare.shown = "height";
   robot.frames(2);
-  CHECK(app.plots.compare.plot.y.label == "error of height");
-  CHECK(app.plots.compare.plot.y.unit == "m");
+  CHECK(app.panels->studies.shown().compare.plot.y.label == "error of height");
+  CHECK(app.panels->studies.shown().compare.plot.y.unit == "m");
 }

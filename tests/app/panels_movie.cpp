@@ -6,8 +6,10 @@
 #include "app/session/modes.hpp"
 #include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
 #include "app/ui/studies/motion/run_movie.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
@@ -25,13 +27,13 @@ namespace {
 class MovieRobot : public Robot {
  public:
   MovieRobot() {
-    app.motion.duration = 0.5;
-    run_command(app, "study.motion");
+    app.session.motion.duration = 0.5;
+    app.commands.run("study.motion");
     frames(3);
     app.movie.width = 160;
     app.movie.height = 91;
     app.movie.rate = 10;
-    run_command(app, "study.export");
+    app.commands.run("study.export");
     frames(3);
     REQUIRE(app.dialog.showing);
     point({2, 2}); // nothing lights up
@@ -39,7 +41,7 @@ class MovieRobot : public Robot {
   // Types the name of the film.
   void name(const fs::path& file) {
     click("movie/png"); // leaves the field of the path
-    app.file_dialogs.path = file.string();
+    app.panels->movie.query().path = file.string();
     frames(2);
   }
   // Until it is made, or is not; returns how many frames of the window that took.
@@ -74,7 +76,8 @@ TEST_CASE("a run is exported as numbered frames while the window goes on") {
   CHECK(robot.wait() >= 6);
   CHECK(robot.most_drawn >= 5);
   CHECK_FALSE(robot.app.dialog.showing);
-  CHECK(robot.app.notice == "Saved 6 frames, " + (folder / "run-0001.png").string() + " to run-0006.png");
+  CHECK(robot.app.session.notice ==
+        "Saved 6 frames, " + (folder / "run-0001.png").string() + " to run-0006.png");
   REQUIRE(names_in(folder) == Names{"run-0001.png", "run-0002.png", "run-0003.png", "run-0004.png",
                                     "run-0005.png", "run-0006.png"});
   std::set<std::string> pictures;
@@ -100,9 +103,9 @@ TEST_CASE("frames show the moments and the part of the run that were asked for")
   robot.wait();
   CHECK(names_in(folder).size() == 6); // 0.1, 0.12 ... 0.2 s
   // The same moment, seen in the window's own view from the same place, is the same picture.
-  seek_motion(robot.app, 0.14);
+  seek_motion(robot.app.session, 0.14);
   robot.frames(3);
-  ViewFrame frame = view_frame(robot.app);
+  ViewFrame frame = view_frame(robot.app.session, robot.app.ui, robot.app.tool, robot.app.view);
   frame.hovered = {};
   ViewRenderer renderer;
   Framebuffer target(160, 91, robot.app.view.samples);
@@ -116,21 +119,21 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   App& app = robot.app;
   robot.key('O');
   robot.frames(3);
-  run_command(app, "study.export_mode"); // no mode moves yet
+  app.commands.run("study.export_mode"); // no mode moves yet
   robot.frames(3);
   REQUIRE_FALSE(app.dialog.showing);
   robot.click("modes/row/1");
-  app.study.modes.amplitude = 0.2;
+  app.session.study.modes.amplitude = 0.2;
   app.movie.width = 160;
   app.movie.height = 91;
   app.movie.rate = 10;
   robot.click("modes/export");
   robot.frames(3);
   REQUIRE(app.dialog.showing);
-  CHECK(fs::path(app.file_dialogs.path).stem() == "flyball-governor-mode-1");
+  CHECK(fs::path(app.panels->movie.query().path).stem() == "flyball-governor-mode-1");
   robot.point({2, 2});
   robot.click("movie/png");
-  app.file_dialogs.path = (folder / "swing.png").string();
+  app.panels->movie.query().path = (folder / "swing.png").string();
   robot.frames(2);
   robot.click("movie/save");
   for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
@@ -138,12 +141,13 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   robot.frames(2);
   CHECK_FALSE(app.dialog.showing);
   // At 1.04 Hz, as fast as it is.
-  CHECK(app.notice == "Saved 10 frames, " + (folder / "swing-0001.png").string() + " to swing-0010.png");
+  CHECK(app.session.notice ==
+        "Saved 10 frames, " + (folder / "swing-0001.png").string() + " to swing-0010.png");
   // The same phase, seen in the window's own view from the same place, is the same picture.
-  app.study.modes.playing = false;
-  app.study.modes.phase = 2 * std::numbers::pi * 3 / 10;
+  app.session.study.modes.playing = false;
+  app.session.study.modes.phase = 2 * std::numbers::pi * 3 / 10;
   robot.frames(3);
-  ViewFrame frame = view_frame(app);
+  ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   frame.hovered = {};
   ViewRenderer renderer;
   Framebuffer target(160, 91, app.view.samples);
@@ -155,14 +159,14 @@ TEST_CASE("a film goes through ffmpeg from the dialog") {
   const FakeFfmpeg ffmpeg;
   const TemporaryFolder folder;
   MovieRobot robot;
-  CHECK(fs::path(robot.app.file_dialogs.path).filename() == "flyball-governor.mp4");
+  CHECK(fs::path(robot.app.panels->movie.query().path).filename() == "flyball-governor.mp4");
   robot.name(folder / "run.mp4");
   robot.click("movie/gif");
-  CHECK(robot.app.file_dialogs.path == (folder / "run.gif").string());
+  CHECK(robot.app.panels->movie.query().path == (folder / "run.gif").string());
   robot.click("movie/mp4");
   robot.click("movie/save");
   robot.wait();
-  CHECK(robot.app.notice == "Saved " + (folder / "run.mp4").string());
+  CHECK(robot.app.session.notice == "Saved " + (folder / "run.mp4").string());
   CHECK(names_in(folder) == Names{"run.mp4"});
   CHECK(fs::file_size(folder / "run.mp4") == 6 * 3 * 160 * 92);
 }
@@ -189,7 +193,7 @@ TEST_CASE("an export that is given up leaves nothing, and the dialog as it was")
   CHECK_FALSE(robot.app.movie.progress);
   CHECK(names_in(folder).empty());
   CHECK(robot.app.dialog.showing);
-  CHECK(robot.app.notice.empty());
+  CHECK(robot.app.session.notice.empty());
   robot.click("movie/cancel");
   CHECK_FALSE(robot.app.dialog.showing);
 }
@@ -198,16 +202,16 @@ TEST_CASE("without ffmpeg the dialog offers frames and says what is missing") {
   const NoFfmpeg none;
   const TemporaryFolder folder;
   MovieRobot robot;
-  CHECK(fs::path(robot.app.file_dialogs.path).filename() == "flyball-governor.png");
+  CHECK(fs::path(robot.app.panels->movie.query().path).filename() == "flyball-governor.png");
   robot.click("movie/mp4");
-  CHECK(fs::path(robot.app.file_dialogs.path).extension() == ".png");
+  CHECK(fs::path(robot.app.panels->movie.query().path).extension() == ".png");
   // A name that is typed all the same goes nowhere.
   robot.name(folder / "run.mp4");
   robot.click("movie/save");
   CHECK_FALSE(robot.app.movie.request);
   CHECK_FALSE(robot.app.movie.progress);
   robot.click("movie/png");
-  CHECK(robot.app.file_dialogs.path == (folder / "run.png").string());
+  CHECK(robot.app.panels->movie.query().path == (folder / "run.png").string());
   robot.click("movie/save");
   robot.wait();
   CHECK(names_in(folder).size() == 6);
@@ -241,15 +245,15 @@ TEST_CASE("frames that are there already are replaced when the person says so") 
 
 TEST_CASE("the export is on offer where a motion is shown") {
   Robot robot;
-  CHECK_FALSE(is_enabled(robot.app, command("study.export")));
-  robot.app.motion.duration = 0.2;
-  run_command(robot.app, "study.motion");
+  CHECK_FALSE(robot.app.commands.enabled(command("study.export")));
+  robot.app.session.motion.duration = 0.2;
+  robot.app.commands.run("study.motion");
   robot.frames(3);
-  CHECK(is_enabled(robot.app, command("study.export")));
+  CHECK(robot.app.commands.enabled(command("study.export")));
   robot.click("motion/export");
   robot.frames(2);
   CHECK(robot.app.dialog.showing);
-  CHECK(robot.app.widgets.contains("movie/save"));
+  CHECK(robot.app.ui.widgets.contains("movie/save"));
 }
 
 TEST_CASE("the frames of a run are evenly spaced and end with it") {

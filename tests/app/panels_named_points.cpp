@@ -33,19 +33,19 @@ struct Sheet : Robot {
       add_joint(next, JointType::revolute, {"ground", "ball1"}, {0.1, -0.35, 0}, Vec3::UnitZ());
     });
   }
-  const Mechanism& m() const { return app.mechanism(); }
+  const Mechanism& m() const { return app.session.mechanism(); }
   const Joint& joint() const { return m().joints.back(); }
-  std::size_t steps() const { return app.document.position(); }
+  std::size_t steps() const { return app.session.document.position(); }
   void change(const char* step, const std::function<void(Mechanism&)>& act) {
-    ++app.gesture;
-    edit(app, step, [&](Mechanism& next, Selection& selection) {
+    ++app.session.gesture;
+    edit(app.session, step, [&](Mechanism& next, Selection& selection) {
       act(next);
       selection = {};
     });
     frames(3);
   }
   void pick(Part part) {
-    select(app, {{std::move(part)}});
+    select(app.session, {{std::move(part)}});
     frames(3);
   }
   void ask(const std::string& field) {
@@ -67,17 +67,17 @@ const std::string vector = "joints.revolute1.at";
 
 TEST_CASE("named points are marked where they are of use, and no others' business elsewhere") {
   Sheet s;
-  CHECK(s.app.widgets.contains("point/A"));
+  CHECK(s.app.ui.widgets.contains("point/A"));
   s.pick(the_hinge);
-  CHECK_FALSE(s.app.widgets.contains("point/A"));
+  CHECK_FALSE(s.app.ui.widgets.contains("point/A"));
   s.click("tools/force");
   s.frames(2);
-  CHECK(s.app.widgets.contains("point/B"));
+  CHECK(s.app.ui.widgets.contains("point/B"));
   s.key(key_escape);
-  set_mode(s.app, Mode::explore);
-  select(s.app, {});
+  set_mode(s.app.session, Mode::explore);
+  select(s.app.session, {});
   s.frames(3);
-  CHECK_FALSE(s.app.widgets.contains("point/A"));
+  CHECK_FALSE(s.app.ui.widgets.contains("point/A"));
 }
 
 TEST_CASE("a named point is selected by its name and dragged with all that stands there, in one step") {
@@ -91,11 +91,11 @@ TEST_CASE("a named point is selected by its name and dragged with all that stand
   s.pull("gizmo/centre", Vec3(0.052, 0.198, 0));
 
   s.release();
-  INFO(s.app.notice);
+  INFO(s.app.session.notice);
   CHECK((s.m().points[0].at - Vec3(0.2, 0.3, 0)).norm() < 1e-15);
   CHECK((s.joint().at - Vec3(0.2, 0.3, 0)).norm() < 1e-15);
   CHECK(s.steps() == before + 1);
-  CHECK(s.app.document.steps().back().name == "Move A");
+  CHECK(s.app.session.document.steps().back().name == "Move A");
   CHECK(s.app.tool.point == "A");
   s.key('Z', true);
   CHECK(s.m().points[0].at == place_a);
@@ -120,7 +120,7 @@ TEST_CASE("typing in the list selects the point in the view") {
   s.click("inspector/point/B/y");
   s.frames(2);
   CHECK(s.app.tool.point == "B");
-  CHECK(s.app.widgets.contains("gizmo/centre"));
+  CHECK(s.app.ui.widgets.contains("gizmo/centre"));
 }
 
 TEST_CASE("a vector takes a named point that is clicked in the view") {
@@ -131,8 +131,8 @@ TEST_CASE("a vector takes a named point that is clicked in the view") {
   s.click("inspector/at/y/pick");
   s.frames(2);
   REQUIRE(s.app.tool.tool == Tool::point);
-  CHECK(s.app.widgets.contains("point/A"));
-  CHECK(tool_hint(s.app, s.app.inspector, s.app.tool).find("Click the named point") != std::string::npos);
+  CHECK(s.app.ui.widgets.contains("point/A"));
+  CHECK(tool_hint(s.app.session, s.app.tool).find("Click the named point") != std::string::npos);
   SECTION("by its place") {
     s.click_at(place_a);
   }
@@ -142,7 +142,7 @@ TEST_CASE("a vector takes a named point that is clicked in the view") {
   SECTION("nothing beside one") {
     s.click_at({0, 0.3, 0});
     CHECK(s.app.tool.tool == Tool::point);
-    CHECK(s.app.notice.find("no named point here") != std::string::npos);
+    CHECK(s.app.session.notice.find("no named point here") != std::string::npos);
     s.key(key_escape);
     s.frames(1);
     CHECK(s.app.tool.tool == Tool::select);
@@ -152,7 +152,7 @@ TEST_CASE("a vector takes a named point that is clicked in the view") {
   CHECK(s.app.tool.tool == Tool::select);
   CHECK(s.at_of(vector) == "A.x A.y A.z");
   CHECK(s.joint().at == place_a);
-  CHECK(s.app.selection().parts == std::vector{the_hinge});
+  CHECK(s.app.session.selection().parts == std::vector{the_hinge});
   CHECK(s.steps() == before + 1);
   s.key('Z', true);
   CHECK(s.at_of(vector) == "  ");
@@ -161,14 +161,14 @@ TEST_CASE("a vector takes a named point that is clicked in the view") {
 TEST_CASE("without a mouse the point is in the field's menu, and the cursor of the pick goes to it") {
   Sheet s;
   s.pick(the_hinge);
-  focus_widget(s.app, "inspector/at/x");
+  focus_widget(s.app.ui, "inspector/at/x");
   s.frames(3);
   const auto choose = [&](const std::string& entry) {
     s.key(348); // the menu key
     s.frames(3);
-    for (int i = 0; i < 8 && s.app.keyboard.at != "inspector/at/x/" + entry; ++i)
+    for (int i = 0; i < 8 && s.app.ui.keyboard.at != "inspector/at/x/" + entry; ++i)
       s.key(264); // Down
-    REQUIRE(s.app.keyboard.at == "inspector/at/x/" + entry);
+    REQUIRE(s.app.ui.keyboard.at == "inspector/at/x/" + entry);
     s.key(key_enter);
     s.frames(3);
   };
@@ -214,8 +214,7 @@ TEST_CASE("what is placed on a named point stands there, undone whole; with Ctrl
     s.hold(freely, false);
     s.point_at(place_a);
     s.frames(1);
-    CHECK((tool_hint(s.app, s.app.inspector, s.app.tool).find("It stands at A then") != std::string::npos) ==
-          !freely);
+    CHECK((tool_hint(s.app.session, s.app.tool).find("It stands at A then") != std::string::npos) == !freely);
     s.click_at(place_a);
     s.hold(false, false);
     s.key(key_enter);
@@ -247,7 +246,7 @@ TEST_CASE("what is dragged onto a named point stands there, in the same step") {
     s.pull("gizmo/centre", place_b - from + Vec3(0.004, -0.003, 0));
     REQUIRE(s.app.tool.grab);
     CHECK(s.app.tool.grab->stands == "B");
-    CHECK(tool_hint(s.app, s.app.inspector, s.app.tool).find("It stands at B then") != std::string::npos);
+    CHECK(tool_hint(s.app.session, s.app.tool).find("It stands at B then") != std::string::npos);
     s.release();
     CHECK(s.at_of(vector) == "B.x B.y B.z");
     CHECK(s.joint().at == place_b);
@@ -257,7 +256,7 @@ TEST_CASE("what is dragged onto a named point stands there, in the same step") {
     s.pull("gizmo/centre", Vec3(0.1, 0.2, 0));
     s.release();
     CHECK(s.m().points[1].at == s.joint().at);
-    INFO(s.app.notice);
+    INFO(s.app.session.notice);
     REQUIRE((s.joint().at - place_b).norm() > 0.1);
     s.key('Z', true);
     s.key('Z', true);
@@ -297,8 +296,8 @@ TEST_CASE("a body that is placed on a named point stands there with all of it") 
       s.hold(freely, false);
       s.point_at(place_a);
       s.frames(1);
-      CHECK((tool_hint(s.app, s.app.inspector, s.app.tool).find("It stands at A then") !=
-             std::string::npos) == !freely);
+      CHECK((tool_hint(s.app.session, s.app.tool).find("It stands at A then") != std::string::npos) ==
+            !freely);
       s.click_at(place_a);
       s.hold(false, false);
       s.frames(2);
@@ -353,7 +352,7 @@ TEST_CASE("a body that is dragged onto a named point by its middle stands there"
     s.frames(60);
     s.pull("gizmo/centre", Vec3(0.1, 0.2, 0));
     s.release();
-    INFO(s.app.notice);
+    INFO(s.app.session.notice);
     CHECK(s.m().points[1].at == s.m().bodies[0].position);
     CHECK((s.m().points[1].at - place_b).norm() > 0.1);
   }
@@ -399,5 +398,5 @@ TEST_CASE("a point that expressions give moves what determines it, or says what 
   s.pull("gizmo/x", Vec3(0.15, 0, 0));
   s.release();
   CHECK(s.m().points[0].at.x() == 0.15);
-  CHECK(s.app.notice.find("given by \"=0.15 m\"") != std::string::npos);
+  CHECK(s.app.session.notice.find("given by \"=0.15 m\"") != std::string::npos);
 }

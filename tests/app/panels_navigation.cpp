@@ -14,7 +14,7 @@ constexpr int left = 0, right = 1, middle = 2;
 // What a drag over empty space of the view did to the camera.
 CameraDrag done(Robot& robot, int button, bool ctrl, bool shift) {
   App& app = robot.app;
-  select(app, {});
+  select(app.session, {});
   robot.key('1');
   robot.frames(2);
   const ViewCamera before = app.view.camera;
@@ -38,13 +38,13 @@ TEST_CASE("drags mean what the chosen habits say") {
   CHECK(done(robot, right, false, false) == CameraDrag::pan);
   CHECK(done(robot, middle, false, false) == CameraDrag::pan);
   CHECK(done(robot, middle, false, true) == CameraDrag::orbit);
-  choose_navigation(app, Navigation::blender);
+  choose_navigation(app.session, app.ui, app.view, Navigation::blender);
   CHECK(done(robot, middle, false, false) == CameraDrag::orbit);
   CHECK(done(robot, middle, false, true) == CameraDrag::pan);
   CHECK(done(robot, middle, true, false) == CameraDrag::zoom);
   CHECK(done(robot, left, false, false) == CameraDrag::none);
   CHECK(done(robot, right, false, false) == CameraDrag::none);
-  choose_navigation(app, Navigation::cad);
+  choose_navigation(app.session, app.ui, app.view, Navigation::cad);
   CHECK(done(robot, right, false, false) == CameraDrag::orbit);
   CHECK(done(robot, middle, false, false) == CameraDrag::orbit);
   CHECK(done(robot, right, true, false) == CameraDrag::pan);
@@ -56,11 +56,12 @@ TEST_CASE("drags mean what the chosen habits say") {
 TEST_CASE("where the left button does not turn the view it frames parts") {
   Robot robot;
   App& app = robot.app;
-  choose_navigation(app, Navigation::cad);
+  choose_navigation(app.session, app.ui, app.view, Navigation::cad);
   robot.drag("view", {0.15f, 0.1f}, {0.85f, 0.9f});
-  CHECK(app.selection().parts.size() > 3);
-  robot.click_at(app.poses[static_cast<std::size_t>(body_index(app.mechanism(), "ball1"))].position);
-  CHECK(app.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
+  CHECK(app.session.selection().parts.size() > 3);
+  robot.click_at(
+      app.session.poses[static_cast<std::size_t>(body_index(app.session.mechanism(), "ball1"))].position);
+  CHECK(app.session.selection().parts == std::vector<Part>{{PartKind::body, "ball1"}});
 }
 
 TEST_CASE("zooming keeps what is under the pointer where it is") {
@@ -90,7 +91,7 @@ TEST_CASE("zooming keeps what is under the pointer where it is") {
     CHECK(std::hypot(now.x - at.x, now.y - at.y) < 0.01f);
   }
   // So does dragging, about the point where the button went down.
-  choose_navigation(app, Navigation::blender);
+  choose_navigation(app.session, app.ui, app.view, Navigation::blender);
   robot.hold(true, false);
   robot.drag(at, {at.x, at.y + 60}, middle);
   CHECK((under(at) - before).norm() < 1e-9);
@@ -105,22 +106,22 @@ TEST_CASE("the habits are kept, and the sheet of shortcuts tells them") {
              .scenes = {},
              .numbers = {},
              .state = folder.path()});
-    CHECK(app.navigation == Navigation::own);
-    choose_navigation(app, Navigation::blender);
+    CHECK(app.view.navigation == Navigation::own);
+    choose_navigation(app.session, app.ui, app.view, Navigation::blender);
   }
   App app({.mode = LiveSolver::Mode::immediate,
            .on_news = {},
            .scenes = {},
            .numbers = {},
            .state = folder.path()});
-  CHECK(app.navigation == Navigation::blender);
+  CHECK(app.view.navigation == Navigation::blender);
   Robot robot({1280, 900});
   robot.key('?');
   robot.frames(2);
-  CHECK(robot.app.widgets.count("shortcuts/Right drag, Shift+drag") == 1);
+  CHECK(robot.app.ui.widgets.count("shortcuts/Right drag, Shift+drag") == 1);
   robot.key(key_escape);
-  choose_navigation(robot.app, Navigation::cad);
+  choose_navigation(robot.app.session, robot.app.ui, robot.app.view, Navigation::cad);
   robot.key('?');
   robot.frames(2);
-  CHECK(robot.app.widgets.count("shortcuts/Right drag, middle drag") == 1);
+  CHECK(robot.app.ui.widgets.count("shortcuts/Right drag, middle drag") == 1);
 }

@@ -1,4 +1,5 @@
 // The open dialog, recent files and the gallery of examples.
+#include "app/ui/panel_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 
@@ -13,18 +14,18 @@ TEST_CASE("recent files are offered by the open dialog and survive the program")
   const fs::path first = governor_in(folder, "first.json"), second = governor_in(folder, "second.json");
   {
     FileRobot robot(folder);
-    CHECK(robot.app.files.recent.empty()); // what the program opens by itself does not count
+    CHECK(robot.app.session.files.recent.empty()); // what the program opens by itself does not count
     robot.open(first);
     robot.open(second);
   }
   FileRobot robot(folder);
-  CHECK(robot.app.files.recent == std::vector<fs::path>{second, first});
+  CHECK(robot.app.session.files.recent == std::vector<fs::path>{second, first});
   robot.key('O', true);
   robot.frames(2);
   robot.click("open/recent/1");
   CHECK_FALSE(robot.app.dialog.showing);
-  CHECK(robot.app.document.file() == first);
-  CHECK(robot.app.files.recent.front() == first);
+  CHECK(robot.app.session.document.file() == first);
+  CHECK(robot.app.session.files.recent.front() == first);
 }
 
 TEST_CASE("the open dialog finds files by part of a name and by path") {
@@ -45,7 +46,7 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
     robot.frames(1);
     CHECK_FALSE(robot.shows("open/spinning.json"));
     robot.key(key_enter);
-    CHECK(app.document.file() == other);
+    CHECK(app.session.document.file() == other);
   }
   SECTION("arrow keys, into a folder") {
     robot.key(key_down);
@@ -54,7 +55,7 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
     CHECK(robot.shows("open/deep.json"));
     robot.key(key_down);
     robot.key(key_enter);
-    CHECK(app.document.file() == folder / "inner/deep.json");
+    CHECK(app.session.document.file() == folder / "inner/deep.json");
   }
   SECTION("a folder and back up, with the mouse") {
     robot.click("open/inner");
@@ -62,24 +63,24 @@ TEST_CASE("the open dialog finds files by part of a name and by path") {
     robot.click("open/up");
     CHECK(robot.shows("open/inner"));
     robot.click("open/resting.json");
-    CHECK(app.document.file() == other);
+    CHECK(app.session.document.file() == other);
   }
   SECTION("a path") {
     robot.type((folder / "inner/deep.json").string());
     robot.key(key_enter);
-    CHECK(app.document.file() == folder / "inner/deep.json");
+    CHECK(app.session.document.file() == folder / "inner/deep.json");
   }
   SECTION("a path that leads nowhere") {
     robot.type((folder / "inner/none.json").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.file_dialogs.message, ContainsSubstring("There is no"));
-    CHECK(app.document.file() == here);
+    CHECK_THAT(app.panels->open.query().message, ContainsSubstring("There is no"));
+    CHECK(app.session.document.file() == here);
   }
   SECTION("Escape") {
     robot.key(key_escape);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.document.file() == here);
+    CHECK(app.session.document.file() == here);
   }
 }
 
@@ -87,12 +88,12 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   const TemporaryFolder folder;
   FileRobot robot(folder);
   App& app = robot.app;
-  show_gallery(app);
+  app.commands.run("file.examples");
   robot.frames(2);
   REQUIRE(app.dialog.showing);
-  const auto& cards = app.file_dialogs.gallery.cards;
+  const auto& cards = app.panels->gallery.cards();
   std::size_t shipped = 0;
-  for (const auto& entry : fs::directory_iterator(app.options.scenes))
+  for (const auto& entry : fs::directory_iterator(app.session.options.scenes))
     shipped += entry.path().extension() == ".json" ? 1 : 0;
   CHECK(cards.size() == shipped);
   std::set<unsigned> pictures;
@@ -102,32 +103,32 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   }
   CHECK(pictures.size() == shipped);
   CHECK_FALSE(pictures.contains(0));
-  CHECK_FALSE(app.file_dialogs.gallery.drawing);
+  CHECK_FALSE(app.panels->gallery.drawing);
 
   SECTION("with the mouse") {
     robot.click("gallery/" + cards[1].file.filename().string());
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.document.file() == app.file_dialogs.gallery.cards[1].file);
-    CHECK(app.answer.solution.status == Status::converged);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[1].file);
+    CHECK(app.session.answer.solution.status == Status::converged);
   }
   SECTION("with the keys") {
     robot.key(key_right);
     robot.key(key_right);
     robot.key(key_enter);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(app.document.file() == app.file_dialogs.gallery.cards[2].file);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[2].file);
   }
   SECTION("asking first") {
     robot.key(key_escape);
     robot.set_speed(5);
-    show_gallery(app);
+    app.commands.run("file.examples");
     robot.frames(2);
     robot.click("gallery/" + cards[0].file.filename().string());
     robot.frames(2);
     REQUIRE(robot.shows("unsaved/discard"));
     CHECK(robot.speed_now() == 5);
     robot.click("unsaved/discard");
-    CHECK(app.document.file() == app.file_dialogs.gallery.cards[0].file);
+    CHECK(app.session.document.file() == app.panels->gallery.cards()[0].file);
   }
 }
 
@@ -135,19 +136,19 @@ TEST_CASE("the gallery opens at once, its pictures come one a frame and again in
   const TemporaryFolder folder;
   FileRobot robot(folder);
   App& app = robot.app;
-  app.options.mode = LiveSolver::Mode::background; // a person's window
-  show_gallery(app);
+  app.session.options.mode = LiveSolver::Mode::background; // a person's window
+  app.commands.run("file.examples");
   const auto drawn = [&] {
-    return std::ranges::count_if(app.file_dialogs.gallery.cards,
+    return std::ranges::count_if(app.panels->gallery.cards(),
                                  [](const SceneCard& card) { return card.picture != 0; });
   };
-  const auto count = static_cast<std::ptrdiff_t>(app.file_dialogs.gallery.cards.size());
+  const auto count = static_cast<std::ptrdiff_t>(app.panels->gallery.cards().size());
   for (std::ptrdiff_t i = 1; i <= count; ++i) {
     robot.frames(1);
     CHECK(drawn() == i);
-    CHECK(app.file_dialogs.gallery.drawing == (i < count));
+    CHECK(app.panels->gallery.drawing == (i < count));
   }
-  app.theme = Theme::dark;
+  app.ui.theme = Theme::dark;
   robot.frames(1);
   CHECK(drawn() == 1);
   robot.frames(static_cast<int>(count));

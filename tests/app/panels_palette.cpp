@@ -3,6 +3,7 @@
 
 #include "app/session/fuzzy_match.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/panels/palette_entries.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -21,12 +22,12 @@ struct Finder : Robot {
   void find(const std::string& text) {
     key('P', true);
     frames(2);
-    REQUIRE(app.commands.palette_showing);
+    REQUIRE(app.panels->palette.showing());
     type(text);
     frames(2);
   }
   const PaletteEntry& entry(std::size_t i = 0) {
-    const std::vector<PaletteEntry>& found = palette_entries(app);
+    const std::vector<PaletteEntry>& found = app.panels->palette.found();
     REQUIRE(found.size() > i);
     return found[i];
   }
@@ -66,11 +67,11 @@ TEST_CASE("a part that is found is selected and brought into view") {
   CHECK(robot.entry().name == "part/body/ball1");
   robot.key(key_enter);
   robot.frames(2);
-  CHECK_FALSE(app.commands.palette_showing);
-  CHECK(app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  CHECK_FALSE(app.panels->palette.showing());
+  CHECK(app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
   CHECK(app.view.camera.distance < before.distance);
-  const int ball = body_index(app.mechanism(), "ball1");
-  const ImVec2 at = robot.pixel(app.poses[static_cast<std::size_t>(ball)].position);
+  const int ball = body_index(app.session.mechanism(), "ball1");
+  const ImVec2 at = robot.pixel(app.session.poses[static_cast<std::size_t>(ball)].position);
   const ImVec2 middle = robot.widget("view").center();
   CHECK(std::abs(at.x - middle.x) < 160); // its arm, too, is in view
   CHECK(std::abs(at.y - middle.y) < 160);
@@ -85,16 +86,31 @@ TEST_CASE("a number that is found has its value and unit, and its slider or fiel
     CHECK(robot.entry().right == "1000 N/m");
     robot.key(key_enter);
     robot.frames(6);
-    CHECK(app.keyboard.at == "parameters/joints.slide.spring.stiffness");
-    CHECK(has_keyboard(app, app.keyboard.at));
+    CHECK(app.ui.keyboard.at == "parameters/joints.slide.spring.stiffness");
+    CHECK(has_keyboard(app.ui, app.ui.keyboard.at));
+  }
+  SECTION("a slider of a group that was closed, whichever it is") {
+    const auto [group, words, address] = GENERATE(table<const char*, const char*, const char*>(
+        {{"parameters/drives", "speed of spin", spin_speed},
+         {"parameters/springs", "spring stiffness of slide", "joints.slide.spring.stiffness"}}));
+    robot.click(group);
+    robot.frames(2);
+    const std::string slider = std::string("parameters/") + address;
+    REQUIRE_FALSE(app.ui.widgets.contains(slider));
+    robot.find(words);
+    REQUIRE(robot.entry().address == address);
+    robot.key(key_enter);
+    robot.frames(6);
+    CHECK(app.ui.widgets.contains(slider));
+    CHECK(app.ui.keyboard.at == slider);
   }
   SECTION("a field of a part that was not selected, in a section that was closed") {
     robot.find("mass of ball1");
     CHECK(robot.entry().right == "1 kg");
     robot.key(key_enter);
     robot.frames(8);
-    CHECK(app.keyboard.at == "inspector/mass");
-    CHECK(app.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+    CHECK(app.ui.keyboard.at == "inspector/mass");
+    CHECK(app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
   }
 }
 
@@ -103,25 +119,25 @@ TEST_CASE("a number behind its name is shown as what would be set, and set by En
   App& app = robot.app;
   const auto [typed, wanted] = GENERATE(table<const char*, double>(
       {{"speed of spin 15 rad/s", 15.0}, {"spin 15", 15.0}, {"spin 150 rpm", 5 * 3.14159265358979}}));
-  const double before = get_parameter(app.mechanism(), spin_speed);
+  const double before = get_parameter(app.session.mechanism(), spin_speed);
   robot.find(typed);
   CHECK(robot.entry().address == spin_speed);
   REQUIRE(robot.entry().value);
   CHECK(*robot.entry().value == Approx(wanted));
   CHECK_THAT(robot.entry().right, ContainsSubstring("→"));
-  CHECK(get_parameter(app.mechanism(), spin_speed) == before); // not yet
+  CHECK(get_parameter(app.session.mechanism(), spin_speed) == before); // not yet
   robot.key(key_enter);
   robot.frames(2);
-  CHECK(get_parameter(app.mechanism(), spin_speed) == Approx(wanted));
-  CHECK_THAT(app.notice, ContainsSubstring("speed of spin"));
+  CHECK(get_parameter(app.session.mechanism(), spin_speed) == Approx(wanted));
+  CHECK_THAT(app.session.notice, ContainsSubstring("speed of spin"));
   robot.key('Z', true);
-  CHECK(get_parameter(app.mechanism(), spin_speed) == before);
+  CHECK(get_parameter(app.session.mechanism(), spin_speed) == before);
 }
 
 TEST_CASE("what was used last comes first, and all commands without a word") {
   Finder robot;
   robot.find("");
-  const std::vector<PaletteEntry> all = palette_entries(robot.app);
+  const std::vector<PaletteEntry> all = robot.app.panels->palette.found();
   for (const Command& command : commands())
     CHECK(std::ranges::any_of(all, [&](const PaletteEntry& entry) { return entry.name == command.id; }));
   robot.key(key_escape);

@@ -19,20 +19,20 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
   d.enter("inspector/mass", "=100*m + 50 kg");
   CHECK(d.m().bodies[0].mass == 150);
   CHECK(formula_at(d.m(), "bodies.spindle.mass") == "100*m + 50 kg");
-  const std::size_t steps = d.app.document.position();
+  const std::size_t steps = d.app.session.document.position();
   SECTION("it is shown for typing, and stays as it is when nothing is changed") {
     d.frames(60);
     d.click("inspector/mass");
-    CHECK(d.app.fields.typing.text == "=100*m + 50 kg");
+    CHECK(d.app.ui.fields.typing.text == "=100*m + 50 kg");
     d.key(key_escape);
     d.frames(2);
-    CHECK(d.app.document.position() == steps);
+    CHECK(d.app.session.document.position() == steps);
   }
   SECTION("a number takes its place in one step") {
     d.enter("inspector/mass", "120");
     CHECK(d.m().bodies[0].mass == 120);
     CHECK_FALSE(formula_at(d.m(), "bodies.spindle.mass"));
-    CHECK(d.app.document.position() == steps + 1);
+    CHECK(d.app.session.document.position() == steps + 1);
     d.key('Z', true);
     CHECK(formula_at(d.m(), "bodies.spindle.mass") == "100*m + 50 kg");
   }
@@ -41,7 +41,7 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
     d.click("inspector/mass");
     d.type("=L");
     d.frames(1);
-    CHECK(d.app.fields.typing.mistake.find("expected kg, found m") != std::string::npos);
+    CHECK(d.app.ui.fields.typing.mistake.find("expected kg, found m") != std::string::npos);
     d.key(key_escape);
   }
 }
@@ -59,13 +59,13 @@ TEST_CASE("a number is named in one gesture") {
   // With a slider, which moves what it gives.
   d.enter("parameters/parameters.mass/value", "3");
   CHECK(d.m().bodies[1].mass == 3);
-  CHECK(d.app.document.stored().bodies[1].mass == 1);
+  CHECK(d.app.session.document.stored().bodies[1].mass == 1);
 }
 
 TEST_CASE("the list of parameters and points") {
   Desk d("governor_parametric");
   d.build();
-  select(d.app, {});
+  select(d.app.session, {});
   d.frames(2);
   d.enter("inspector/parameter/L/name", "arm");
   CHECK(formula_at(d.m(), "parameters.c") == "arm/2");
@@ -88,8 +88,8 @@ TEST_CASE("the list of parameters and points") {
 TEST_CASE("a slider that asks for what cannot be made says so and stays") {
   Desk d("governor_parametric");
   d.enter("parameters/parameters.L/value", "0.4");
-  CHECK(d.app.notice.find("the value is not finite") != std::string::npos);
-  CHECK(d.m() == d.app.document.stored());
+  CHECK(d.app.session.notice.find("the value is not finite") != std::string::npos);
+  CHECK(d.m() == d.app.session.document.stored());
 }
 
 namespace {
@@ -97,7 +97,7 @@ namespace {
 // The whole inspector of a body in sight, and nothing selected before.
 struct TallDesk : Desk {
   explicit TallDesk(const std::string& scene = "governor") : Desk(scene, {1200, 2000}) {
-    app.panels.inspector_share = 0.8f;
+    app.sizes.inspector_share = 0.8f;
   }
   void ask(const std::string& field) {
     frames(60);
@@ -113,16 +113,16 @@ TEST_CASE("a shape's numbers take expressions and names as others do") {
   TallDesk d("governor_parametric");
   d.build();
   d.pick(PartKind::body, "ball1");
-  const std::size_t steps = d.app.document.position();
+  const std::size_t steps = d.app.session.document.position();
   d.enter("inspector/shapes/0/radius", "=L/8");
   CHECK(d.ball().shapes[0].radius == 0.02);
   CHECK(formula_at(d.m(), "bodies.ball1.shapes.0.radius") == "L/8");
-  CHECK(d.app.document.steps().back().name == "Set radius of shape 0 of ball1 by an expression");
+  CHECK(d.app.session.document.steps().back().name == "Set radius of shape 0 of ball1 by an expression");
   SECTION("a number takes its place in one step, and undo brings it back") {
     d.enter("inspector/shapes/0/radius", "30 mm");
     CHECK(d.ball().shapes[0].radius == 0.03);
     CHECK_FALSE(formula_at(d.m(), "bodies.ball1.shapes.0.radius"));
-    CHECK(d.app.document.position() == steps + 2);
+    CHECK(d.app.session.document.position() == steps + 2);
     d.key('Z', true);
     CHECK(formula_at(d.m(), "bodies.ball1.shapes.0.radius") == "L/8");
   }
@@ -132,9 +132,9 @@ TEST_CASE("a shape's numbers take expressions and names as others do") {
     d.frames(2);
     CHECK(formula_at(d.m(), "bodies.ball1.shapes.1.radius") == "radius2"); // a measure is called radius
     CHECK(get_parameter(d.m(), "parameters.radius2") == 0.005);
-    set_mode(d.app, Mode::explore);
+    set_mode(d.app.session, Mode::explore);
     d.frames(3);
-    CHECK(d.app.widgets.contains("parameters/parameters.radius2/value"));
+    CHECK(d.app.ui.widgets.contains("parameters/parameters.radius2/value"));
   }
   SECTION("dragged by its label it takes what it rests on along") {
     const WidgetRect label = d.widget("inspector/shapes/0/radius/label");
@@ -157,13 +157,13 @@ TEST_CASE("a shape's numbers take expressions and names as others do") {
     d.click("inspector/shapes/0/radius");
     d.type("=m");
     d.frames(1);
-    CHECK(d.app.fields.typing.mistake.find("expected m, found kg") != std::string::npos);
+    CHECK(d.app.ui.fields.typing.mistake.find("expected m, found kg") != std::string::npos);
     d.key(key_escape);
     d.frames(60);
     d.click("inspector/shapes/0/radius");
     d.type("=-L");
     d.frames(1);
-    CHECK(d.app.fields.typing.mistake == "Expected more than zero.");
+    CHECK(d.app.ui.fields.typing.mistake == "Expected more than zero.");
     d.key(key_escape);
   }
 }
@@ -171,7 +171,7 @@ TEST_CASE("a shape's numbers take expressions and names as others do") {
 TEST_CASE("the mass of a uniform solid follows a size that an expression gives") {
   TallDesk d;
   d.build();
-  edit(d.app, "Add ball", [](Mechanism& next, Selection& selection) {
+  edit(d.app.session, "Add ball", [](Mechanism& next, Selection& selection) {
     selection.set({PartKind::body, add_body(next, {.at = {0.5, 0, 0}, .radius = 0.1})});
   });
   d.frames(3);
@@ -203,12 +203,12 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
   CHECK(formula_at(d.m(), "bodies.ball1.rotation.0") == "cos(turn_z/2)");
   CHECK(parameter_unit(d.m(), "parameters.turn_z") == "rad");
   CHECK(shows(0, 0, 30));
-  const std::size_t steps = d.app.document.position();
+  const std::size_t steps = d.app.session.document.position();
   SECTION("another turn beside it stays a number") {
     d.enter("inspector/rotation/x", "10");
     CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "turn_z");
     CHECK(shows(10, 0, 30));
-    CHECK(d.app.document.position() == steps + 1);
+    CHECK(d.app.session.document.position() == steps + 1);
     d.enter("inspector/rotation/x", "=turn_z/3");
     CHECK(shows(10, 0, 30));
     CHECK(expression_at(d.m(), "bodies.ball1.turn.0") == "turn_z/3");
@@ -216,16 +216,16 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
   SECTION("it is typed again as it was, and stays") {
     d.frames(60);
     d.click(z);
-    CHECK(d.app.fields.typing.text == "=turn_z");
+    CHECK(d.app.ui.fields.typing.text == "=turn_z");
     d.key(key_escape);
     d.frames(2);
-    CHECK(d.app.document.position() == steps);
+    CHECK(d.app.session.document.position() == steps);
   }
   SECTION("a number takes its place in one step") {
     d.enter(z, "45");
     CHECK(shows(0, 0, 45));
     CHECK_FALSE(is_rotation_given(d.ball()));
-    CHECK(d.app.document.position() == steps + 1);
+    CHECK(d.app.session.document.position() == steps + 1);
     d.key('Z', true);
     CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "turn_z");
     CHECK(shows(0, 0, 30));
@@ -238,7 +238,7 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
     CHECK(shows(0, 0, angle));
   }
   SECTION("renamed") {
-    edit(d.app, "Rename", [](Mechanism& next, Selection&) { rename_parameter(next, "turn_z", "phi"); });
+    edit(d.app.session, "Rename", [](Mechanism& next, Selection&) { rename_parameter(next, "turn_z", "phi"); });
     d.frames(2);
     CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "phi");
   }
@@ -279,7 +279,7 @@ TEST_CASE("what is on a body turns with it, whether a number or an expression is
 TEST_CASE("a quaternion given otherwise is shown, and a turn that is typed takes its place") {
   TallDesk d;
   d.build();
-  edit(d.app, "By hand", [](Mechanism& next, Selection&) {
+  edit(d.app.session, "By hand", [](Mechanism& next, Selection&) {
     Body& ball = next.bodies[1];
     ball.formulas = {{"rotation.0", "sqrt(1 - 0.5^2)"}, {"rotation.3", "0.5"}};
     evaluate_formulas(next);
@@ -287,11 +287,11 @@ TEST_CASE("a quaternion given otherwise is shown, and a turn that is typed takes
   d.pick(PartKind::body, "ball1");
   d.frames(2);
   CHECK(is_rotation_given(d.ball()));
-  const std::size_t steps = d.app.document.position();
+  const std::size_t steps = d.app.session.document.position();
   d.enter("inspector/rotation/x", "20");
   CHECK_FALSE(is_rotation_given(d.ball()));
   CHECK(1 - std::abs(d.ball().rotation.dot(rotation_by({20, 0, 60}))) < 1e-14);
-  CHECK(d.app.document.position() == steps + 1);
+  CHECK(d.app.session.document.position() == steps + 1);
   d.key('Z', true);
   CHECK(formula_at(d.m(), "bodies.ball1.rotation.3") == "0.5");
 }

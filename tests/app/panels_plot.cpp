@@ -5,6 +5,7 @@
 #include "app/render/offscreen.hpp"
 #include "app/ui/app.hpp"
 #include "app/ui/plots/plot_picture.hpp"
+#include "app/ui/plots/plot_save.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 #include "temporary_folder.hpp"
@@ -36,6 +37,7 @@ struct Bench {
            .scenes = {},
            .theme = Theme::light,
            .numbers = {}}};
+  PlotDialog dialog;
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context{ImGui::CreateContext(),
                                                                  ImGui::DestroyContext};
   Plot plot = two_lines();
@@ -54,8 +56,8 @@ struct Bench {
     imgui_compat::map_key(ImGuiKey_Enter, 257);
     imgui_compat::map_key(ImGuiKey_Escape, 256);
     imgui_compat::take_events_at_once();
-    app.scale = scale;
-    app.fonts = load_fonts(*io.Fonts, 16, scale);
+    app.ui.scale = scale;
+    app.ui.fonts = load_fonts(*io.Fonts, 16, scale);
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
@@ -64,15 +66,15 @@ struct Bench {
 
   void frame(int count = 1) {
     for (int i = 0; i < count; ++i) {
-      app.widgets.clear();
+      app.ui.widgets.clear();
       ImGui::NewFrame();
       ImGui::SetNextWindowPos({0, 0});
       ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
       ImGui::Begin("bench", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-      now = plot_view(app, "test", view, plot, {600 * app.scale, 400 * app.scale});
-      ImGui::Dummy({10, 2000 * app.scale});
+      now = plot_view(app.session, app.ui, "test", view, plot, {600 * app.ui.scale, 400 * app.ui.scale});
+      ImGui::Dummy({10, 2000 * app.ui.scale});
       ImGui::End();
-      plot_dialog(app);
+      if (auto picture = dialog.draw(app.session, app.ui, app.dialog)) app.export_request = picture;
       ImGui::Render();
       vertices = ImGui::GetDrawData()->TotalVtxCount;
       ImGui::GetIO().MouseWheel = 0;
@@ -83,9 +85,9 @@ struct Bench {
   }
 
   WidgetRect widget(const std::string& name) {
-    const auto found = app.widgets.find(name);
+    const auto found = app.ui.widgets.find(name);
     INFO("widget " << name);
-    REQUIRE(found != app.widgets.end());
+    REQUIRE(found != app.ui.widgets.end());
     return found->second;
   }
   // Where a value stands in the window.
@@ -312,7 +314,7 @@ TEST_CASE("a plot is saved as SVG, CSV and PNG through the dialog") {
     bench.type(file);
     bench.click("save_plot/save");
     if (bench.app.export_request) export_picture(bench.app, {900, 700});
-    CHECK(bench.app.notice == "Saved " + file);
+    CHECK(bench.app.session.notice == "Saved " + file);
     const std::string bytes = read_bytes(file);
     if (kind == std::string("csv")) CHECK(bytes == to_csv(bench.plot));
     if (kind == std::string("svg")) CHECK(bytes.starts_with("<svg"));

@@ -14,7 +14,8 @@ TEST_CASE_METHOD(OpenGovernor, "unsaved work is kept beside the file while it la
   robot.set_speed(5);
   robot.pass(2);
   REQUIRE(hidden(folder, "-autosave") == 1);
-  CHECK(get_parameter(parse_scene(parse_autosave(read_bytes(app.files.autosave.path())).scene), speed) == 5);
+  CHECK(get_parameter(parse_scene(parse_autosave(read_bytes(app.session.files.autosave.path())).scene),
+                      speed) == 5);
   SECTION("until it is saved") {
     robot.key('S', true);
   }
@@ -30,7 +31,7 @@ TEST_CASE_METHOD(OpenGovernor, "unsaved work is kept beside the file while it la
   SECTION("until another document takes its place") {
     robot.key('N', true);
     robot.click("unsaved/discard");
-    CHECK(app.document.file().empty());
+    CHECK(app.session.document.file().empty());
   }
   CHECK(hidden(folder, "-autosave") == 0);
 }
@@ -42,11 +43,11 @@ TEST_CASE_METHOD(OpenGovernor, "an opening that fails keeps the work and its aut
   robot.open(folder / "broken.json");
   robot.click("unsaved/discard");
   robot.frames(2);
-  CHECK_THAT(robot.app.problem, ContainsSubstring("broken.json"));
-  CHECK(robot.app.document.file() == file);
+  CHECK_THAT(robot.app.session.problem, ContainsSubstring("broken.json"));
+  CHECK(robot.app.session.document.file() == file);
   CHECK(robot.speed_now() == 5);
   CHECK(hidden(folder, "-autosave") == 1);
-  CHECK(robot.app.files.recent.front() == file);
+  CHECK(robot.app.session.files.recent.front() == file);
 }
 
 TEST_CASE("work that a crash has left is offered when its file is opened") {
@@ -68,13 +69,13 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     robot.click("recover/recover");
     CHECK_FALSE(app.dialog.showing);
     CHECK(robot.speed_now() == 5);
-    CHECK(app.document.file() == file);
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.file() == file);
+    CHECK(app.session.document.unsaved());
     CHECK(speed_in(file) == 11.0174);
-    CHECK(app.answer.solution.status == Status::converged);
+    CHECK(app.session.answer.solution.status == Status::converged);
     CHECK(hidden(folder, "-autosave") == 1); // safe from the next crash at once
     robot.pass(2);
-    CHECK(find_leftovers(file, app.options.state).empty()); // it is this program's now
+    CHECK(find_leftovers(file, app.session.options.state).empty()); // it is this program's now
     robot.key('Z', true);
     CHECK(robot.speed_now() == 11.0174);
     robot.key('Z', true);
@@ -108,11 +109,11 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     CHECK(hidden(folder, "-autosave") == 1);
   }
   SECTION("recovered in two windows: the second is told") {
-    const Leftover leftover = app.files.leftovers.at(0);
+    const Leftover leftover = app.session.files.leftovers.at(0);
     fs::remove(leftover.path);
     robot.click("recover/recover");
     CHECK(robot.speed_now() == 11.0174);
-    CHECK_THAT(app.notice, ContainsSubstring("no longer there"));
+    CHECK_THAT(app.session.notice, ContainsSubstring("no longer there"));
   }
 }
 
@@ -123,7 +124,7 @@ TEST_CASE("whoever starts with a file is not asked about another one") {
   FileRobot robot(folder);
   robot.click("recover/later");
   robot.open(file);
-  begin_files(robot.app, robot.app.dialog, true);
+  begin_files(robot.app.session, robot.app.dialog, true);
   robot.frames(3);
   CHECK_FALSE(robot.app.dialog.showing);
   robot.open(other);
@@ -142,16 +143,16 @@ TEST_CASE("recovering over a file that has changed since, or is gone") {
   FileRobot robot(folder);
   App& app = robot.app;
   // A file that is gone is no recent one: whoever asks for it by name is offered what is left.
-  app.files.leftovers = find_leftovers(file, app.options.state);
-  REQUIRE(app.files.leftovers.size() == 1);
-  CHECK(app.files.leftovers[0].outdated);
-  recover(app, Leftover(app.files.leftovers[0]));
+  app.session.files.leftovers = find_leftovers(file, app.session.options.state);
+  REQUIRE(app.session.files.leftovers.size() == 1);
+  CHECK(app.session.files.leftovers[0].outdated);
+  recover(app, Leftover(app.session.files.leftovers[0]));
   CHECK(robot.speed_now() == 5);
-  CHECK(app.document.file() == file);
-  CHECK(app.document.unsaved());
-  undo(app);
+  CHECK(app.session.document.file() == file);
+  CHECK(app.session.document.unsaved());
+  undo(app.session);
   if (gone)
-    CHECK(app.mechanism().bodies.empty());
+    CHECK(app.session.mechanism().bodies.empty());
   else
     CHECK(robot.speed_now() == 8);
 }
@@ -160,10 +161,10 @@ TEST_CASE("untitled work that a crash has left is offered at the next start") {
   const TemporaryFolder folder;
   for (const char* name : {"ball", "block"}) {
     FileRobot robot(folder, crashed);
-    robot.app.files.leftovers.clear();
+    robot.app.session.files.leftovers.clear();
     robot.key(key_escape);
     robot.key('N', true);
-    edit(robot.app, "Add", [&](Mechanism& m, Selection&) {
+    edit(robot.app.session, "Add", [&](Mechanism& m, Selection&) {
       m.name = name;
       m.bodies.push_back(test::body(name));
     });
@@ -171,15 +172,15 @@ TEST_CASE("untitled work that a crash has left is offered at the next start") {
   }
   FileRobot robot(folder);
   App& app = robot.app;
-  REQUIRE(app.files.leftovers.size() == 2);
+  REQUIRE(app.session.files.leftovers.size() == 2);
   robot.click("recover/1");
-  const std::string wanted = app.files.leftovers[1].autosave.name;
+  const std::string wanted = app.session.files.leftovers[1].autosave.name;
   robot.click("recover/recover");
-  CHECK(app.mechanism().bodies.at(0).name == wanted);
-  CHECK(app.document.file().empty());
-  CHECK(app.document.unsaved());
+  CHECK(app.session.mechanism().bodies.at(0).name == wanted);
+  CHECK(app.session.document.file().empty());
+  CHECK(app.session.document.unsaved());
   robot.pass(2);
-  CHECK(find_leftovers({}, app.options.state).size() == 1); // the other one, for later
+  CHECK(find_leftovers({}, app.session.options.state).size() == 1); // the other one, for later
 }
 
 TEST_CASE("another program's running work is not offered") {

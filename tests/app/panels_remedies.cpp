@@ -20,12 +20,12 @@ struct Falling : Robot {
     });
   }
   void make(const std::function<void(Mechanism&)>& change) {
-    ++app.gesture;
-    edit(app, "Make", [&](Mechanism& m, Selection&) { change(m); });
+    ++app.session.gesture;
+    edit(app.session, "Make", [&](Mechanism& m, Selection&) { change(m); });
     frames(3);
   }
-  const Solution& solution() const { return app.answer.solution; }
-  bool offers(const std::string& remedy) const { return app.widgets.contains("results/remedy/" + remedy); }
+  const Solution& solution() const { return app.session.answer.solution; }
+  bool offers(const std::string& remedy) const { return app.ui.widgets.contains("results/remedy/" + remedy); }
 };
 
 } // namespace
@@ -35,11 +35,11 @@ TEST_CASE("a slide that nothing holds is offered a spring, a stop or no gravity"
   REQUIRE(robot.solution().status == Status::not_converged);
   REQUIRE(robot.solution().unheld.size() == 1);
   CHECK(robot.offers("motion"));
-  const std::size_t steps = robot.app.document.position();
+  const std::size_t steps = robot.app.session.document.position();
   const auto remedy = GENERATE("spring", "stop", "gravity off");
   robot.click(std::string("results/remedy/") + remedy);
   robot.frames(3);
-  CHECK(robot.app.document.position() == steps + 1);
+  CHECK(robot.app.session.document.position() == steps + 1);
   CHECK(robot.solution().status == Status::converged);
   CHECK_FALSE(robot.offers("motion"));
   if (remedy == std::string("spring")) {
@@ -48,7 +48,7 @@ TEST_CASE("a slide that nothing holds is offered a spring, a stop or no gravity"
     CHECK(sag < -0.03);
     CHECK(sag > -0.3);
   }
-  undo(robot.app);
+  undo(robot.app.session);
   robot.frames(2);
   CHECK(robot.solution().unheld.size() == 1);
 }
@@ -58,9 +58,9 @@ TEST_CASE("one button shows how it moves instead") {
   REQUIRE(robot.offers("motion"));
   robot.click("results/remedy/motion");
   robot.frames(5);
-  CHECK(robot.app.mode == Mode::explore);
-  CHECK(robot.app.study.open == StudyKind::motion);
-  CHECK(robot.app.motion.on);
+  CHECK(robot.app.session.mode == Mode::explore);
+  CHECK(robot.app.session.study.open == StudyKind::motion);
+  CHECK(robot.app.session.motion.on);
 }
 
 TEST_CASE("weight that turns with the drive is offered gravity along the axis, or none") {
@@ -79,7 +79,7 @@ TEST_CASE("weight that turns with the drive is offered gravity along the axis, o
   const bool along = GENERATE(true, false);
   robot.click(along ? "results/remedy/gravity along" : "results/remedy/gravity off");
   robot.frames(3);
-  CHECK(robot.app.mechanism().gravity == (along ? Vec3(0, 0, -9.80665) : Vec3(0, 0, 0)));
+  CHECK(robot.app.session.mechanism().gravity == (along ? Vec3(0, 0, -9.80665) : Vec3(0, 0, 0)));
   CHECK(robot.solution().status == Status::converged);
 }
 
@@ -103,13 +103,13 @@ TEST_CASE("a loop that its drive turns has no steady state, and is shown moving"
   REQUIRE(robot.offers("motion"));
   robot.click("results/remedy/motion");
   robot.frames(5);
-  CHECK(robot.app.motion.on);
+  CHECK(robot.app.session.motion.on);
   // Building ends it, and the same button has it back.
-  set_mode(robot.app, Mode::build);
+  set_mode(robot.app.session, Mode::build);
   robot.frames(3);
   robot.click("results/remedy/motion");
   robot.frames(3);
-  CHECK(robot.app.motion.on);
+  CHECK(robot.app.session.motion.on);
 }
 
 TEST_CASE("remedies fit what they are for") {

@@ -1,5 +1,6 @@
 // A report from the File menu: asked where to, written in the background, and told of.
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
@@ -12,14 +13,14 @@ TEST_CASE("a report is exported of what is shown") {
   Robot robot;
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_exported_report.html";
   std::filesystem::remove(file);
-  open_scene(robot.app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(robot.app.session, FLYBALL_ASSETS "/scenes/governor.json");
   robot.frames(3);
-  change_parameter(robot.app, "joints.spin.drive.speed", 12.5); // explored, not stored
+  change_parameter(robot.app.session, "joints.spin.drive.speed", 12.5); // explored, not stored
   const bool building = GENERATE(false, true);
-  set_mode(robot.app, building ? Mode::build : Mode::explore);
-  const Theme theme = robot.app.theme;
-  run_command(robot.app, "file.report");
-  robot.app.file_dialogs.path = file.string(); // before the field has it
+  set_mode(robot.app.session, building ? Mode::build : Mode::explore);
+  const Theme theme = robot.app.ui.theme;
+  robot.app.commands.run("file.report");
+  robot.app.panels->report.query().path = file.string(); // before the field has it
   robot.frames(3);
   robot.click("report/save");
   REQUIRE(robot.app.export_request);
@@ -28,9 +29,9 @@ TEST_CASE("a report is exported of what is shown") {
   robot.app.export_request->height = 100;
   export_picture(robot.app, robot.size);
   robot.frames(2);
-  CHECK(robot.app.notice == "Saved " + file.string());
-  CHECK(robot.app.theme == theme);
-  CHECK(robot.app.mode == (building ? Mode::build : Mode::explore));
+  CHECK(robot.app.session.notice == "Saved " + file.string());
+  CHECK(robot.app.ui.theme == theme);
+  CHECK(robot.app.session.mode == (building ? Mode::build : Mode::explore));
   const std::string page = read_bytes(file);
   CHECK(page.ends_with("</html>\n"));
   // While building, what is explored is put aside.
@@ -45,12 +46,12 @@ TEST_CASE("a report is exported of what is shown") {
 
 TEST_CASE("a report that cannot be written says so") {
   Robot robot;
-  open_scene(robot.app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(robot.app.session, FLYBALL_ASSETS "/scenes/governor.json");
   robot.frames(3);
   robot.app.export_request =
       ExportRequest{.file = "/no/such/folder/report.html", .width = 160, .height = 100, .report = true};
   export_picture(robot.app, robot.size);
   robot.frames(2);
-  CHECK(robot.app.notice.starts_with("Not saved: /no/such/folder"));
-  CHECK(is_error(robot.app));
+  CHECK(robot.app.session.notice.starts_with("Not saved: /no/such/folder"));
+  CHECK(is_error(robot.app.session));
 }

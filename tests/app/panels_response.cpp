@@ -4,6 +4,7 @@
 
 #include "app/session/response.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
 #include "engine/mechanism/address.hpp"
@@ -27,21 +28,21 @@ constexpr PixelSize wide{1280, 900};
 const std::string speed = "joints.spin.drive.speed", stiffness = "joints.slide.spring.stiffness";
 
 double present(const App& app, const std::string& name) {
-  REQUIRE(converged(app));
-  return value(app.answer.solution, name);
+  REQUIRE(converged(app.session));
+  return value(app.session.answer.solution, name);
 }
 
 // The response is asked for with the key C.
 struct ResponseRobot : Robot {
   explicit ResponseRobot(const std::string& scene = "") : Robot(wide) {
-    if (!scene.empty()) open_scene(app, shipped_file(scene));
+    if (!scene.empty()) open_scene(app.session, shipped_file(scene));
     frames(2);
     key('C');
     frames(3);
   }
 
-  ResponseState& state() { return app.study.response; }
-  ResponseView& drawn() { return app.plots.response; }
+  ResponseState& state() { return app.session.study.response; }
+  const ResponseView& drawn() { return app.panels->studies.shown().response; }
   const PlotLayout& layout() {
     REQUIRE(drawn().view.kept.layout);
     return *drawn().view.kept.layout;
@@ -71,7 +72,7 @@ struct ResponseRobot : Robot {
     release();
     frames(2);
   }
-  double number(const std::string& address) { return get_parameter(app.mechanism(), address); }
+  double number(const std::string& address) { return get_parameter(app.session.mechanism(), address); }
 };
 
 // Where the curves of this name go through `x`.
@@ -94,9 +95,9 @@ std::vector<double> crossings(const Plot& plot, const std::string& name, double 
 
 TEST_CASE("without being asked for there is no response curve") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.response.curve.asked);
-  CHECK_FALSE(robot.app.study.response.curve.found);
-  CHECK(robot.app.widgets.count("plot/response/area") == 0);
+  CHECK_FALSE(robot.app.session.study.response.curve.asked);
+  CHECK_FALSE(robot.app.session.study.response.curve.found);
+  CHECK(robot.app.ui.widgets.count("plot/response/area") == 0);
 }
 
 TEST_CASE("the curve of the governor goes through what solves find at several speeds") {
@@ -107,9 +108,9 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
   CHECK(state.choice.address == speed);
   CHECK(state.choice.quantity == "value slide");
   CHECK(drawn.plot.y.unit == "m");
-  Analysis analysis(robot.app.mechanism());
+  Analysis analysis(robot.app.session.mechanism());
   for (const double at : {2.0, 9.0, 11.0174, 16.0, 25.0}) {
-    Mechanism mechanism = robot.app.mechanism();
+    Mechanism mechanism = robot.app.session.mechanism();
     set_parameter(mechanism, speed, at);
     analysis.update(mechanism);
     const Solution solution = analysis.solve({});
@@ -122,7 +123,7 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
   // At its points the curve is exact.
   for (std::size_t i = 0; i < state.curve.found->result.lines[0].points.size(); i += 7) {
     const ResponsePoint& point = state.curve.found->result.lines[0].points[i];
-    Mechanism mechanism = robot.app.mechanism();
+    Mechanism mechanism = robot.app.session.mechanism();
     set_parameter(mechanism, speed, point.parameter);
     analysis.update(mechanism);
     CHECK(value(analysis.solve({}).coordinates, "slide") ==
@@ -133,11 +134,11 @@ TEST_CASE("the curve of the governor goes through what solves find at several sp
 TEST_CASE("everything that is offered is drawn, and the marker lies on it") {
   ResponseRobot robot;
   const ResponseView& drawn = robot.drawn();
-  const std::vector<ResponseQuantity> offered = offered_quantities(robot.app);
+  const std::vector<ResponseQuantity> offered = offered_quantities(robot.app.session);
   CHECK(offered.size() > 10);
   for (const ResponseQuantity& quantity : offered) {
     CAPTURE(quantity.key);
-    choose_quantity(robot.app, quantity);
+    choose_quantity(robot.app.session, quantity);
     robot.frames(2);
     CHECK(drawn.plot.y.label == quantity.title);
     CHECK((drawn.plot.y.si_unit.empty() ? drawn.plot.y.unit : drawn.plot.y.si_unit) == quantity.unit);
@@ -180,7 +181,7 @@ TEST_CASE("the varied slider moves the marker alone, another one the curve") {
   CHECK(crossings(drawn.plot, "stable", drawn.plot.marker->x).at(0) ==
         Approx(drawn.plot.marker->y).margin(5e-4));
   // Back with undo.
-  undo(app);
+  undo(app.session);
   robot.frames(2);
   CHECK(crossings(drawn.plot, "stable", 20).at(0) == Approx(before).margin(1e-4));
 }
@@ -189,29 +190,29 @@ TEST_CASE("the marker dragged along the curve moves parameter and mechanism as o
   ResponseRobot robot;
   App& app = robot.app;
   const ResponseView& drawn = robot.drawn();
-  const std::size_t steps = app.document.position();
+  const std::size_t steps = app.session.document.position();
   const double before = present(app, "slide");
   const double y = crossings(drawn.plot, "stable", 18).at(0);
   robot.drag(robot.marker(), robot.place(18, y));
-  CHECK(app.document.position() == steps + 1);
-  const double now = get_parameter(app.mechanism(), speed);
+  CHECK(app.session.document.position() == steps + 1);
+  const double now = get_parameter(app.session.mechanism(), speed);
   CHECK(now == Approx(18).margin(0.3));
   CHECK(std::abs(present(app, "slide") - before) > 0.002);
   CHECK(present(app, "slide") == Approx(crossings(drawn.plot, "stable", now).at(0)).margin(5e-4));
   // What the hand sets has digits that a hand can mean.
   CHECK(now * 1000 == Approx(std::round(now * 1000)).margin(1e-9));
-  undo(app);
+  undo(app.session);
   robot.frames(2);
-  CHECK(get_parameter(app.mechanism(), speed) == 11.0174);
+  CHECK(get_parameter(app.session.mechanism(), speed) == 11.0174);
   CHECK(present(app, "slide") == Approx(before));
 }
 
 TEST_CASE("the point of the curve is pulled up, and the other pinned sliders bring it there") {
   ResponseRobot robot("governor_parametric");
   App& app = robot.app;
-  choose_response(app, "parameters.w");
+  choose_response(app.session, "parameters.w");
   robot.frames(3);
-  const std::size_t steps = app.document.position();
+  const std::size_t steps = app.session.document.position();
   const double w = robot.number("parameters.w"), before = present(app, "slide");
   const std::string quantity = robot.state().choice.quantity;
   REQUIRE(quantity == "value slide");
@@ -221,25 +222,25 @@ TEST_CASE("the point of the curve is pulled up, and the other pinned sliders bri
   CHECK(robot.number("parameters.w") == w);
   CHECK(present(app, "slide") > before + 1e-3);
   // Where the hand was, seen on the axis as it stood, and exactly as much as a pixel tells.
-  REQUIRE(sought(app));
-  CHECK(sought(app)->reached);
-  CHECK(present(app, "slide") == Approx(sought(app)->goals[0].goal).epsilon(1e-9));
+  REQUIRE(sought(app.session));
+  CHECK(sought(app.session)->reached);
+  CHECK(present(app, "slide") == Approx(sought(app.session)->goals[0].goal).epsilon(1e-9));
   CHECK(robot.number("parameters.L") != 0.16);
   // The curve goes through it.
   CHECK(robot.state().curve.found != curve);
   CHECK(crossings(robot.drawn().plot, "stable", w).at(0) == Approx(present(app, "slide")).margin(5e-4));
   CHECK(robot.marker().x == Approx(from.x).margin(0.5));
-  CHECK(app.document.position() == steps + 1);
-  undo(app);
+  CHECK(app.session.document.position() == steps + 1);
+  undo(app.session);
   robot.frames(3);
   CHECK(present(app, "slide") == Approx(before).epsilon(1e-9));
-  CHECK(app.document.position() == steps);
+  CHECK(app.session.document.position() == steps);
 }
 
 TEST_CASE("pulled sideways the varied number goes along, and the place under the hand is the state's") {
   ResponseRobot robot("governor_parametric");
   App& app = robot.app;
-  choose_response(app, "parameters.w");
+  choose_response(app.session, "parameters.w");
   robot.frames(3);
   const ImVec2 from = robot.marker();
   const double w = robot.number("parameters.w");
@@ -256,31 +257,31 @@ TEST_CASE("pulled sideways the varied number goes along, and the place under the
   CHECK(robot.number("parameters.w") == pulled);
 
   SECTION("unless it is held") {
-    undo(app);
-    hold_number(app, "parameters.w", true);
+    undo(app.session);
+    hold_number(app.session, "parameters.w", true);
     robot.frames(2);
     robot.pull(40, 4);
     CHECK(robot.number("parameters.w") == w);
-    CHECK(present(app, "slide") == Approx(sought(app)->goals[0].goal).epsilon(1e-9));
+    CHECK(present(app, "slide") == Approx(sought(app.session)->goals[0].goal).epsilon(1e-9));
   }
 }
 
 TEST_CASE("what a pull cannot reach is shown with the nearest that can be") {
   ResponseRobot robot("governor_parametric");
   App& app = robot.app;
-  choose_response(app, "parameters.w");
-  for (const ParameterControl& control : app.parameters)
+  choose_response(app.session, "parameters.w");
+  for (const ParameterControl& control : app.session.parameters)
     if (control.group == ParameterGroup::pinned && control.address != "parameters.w" &&
         control.address != "parameters.L")
-      hold_number(app, control.address, true);
+      hold_number(app.session, control.address, true);
   robot.frames(3);
   const auto range = robot.drawn().plot.y.range;
   robot.pull(0, 400, false);
-  REQUIRE(sought(app));
-  CHECK_FALSE(sought(app)->reached);
+  REQUIRE(sought(app.session));
+  CHECK_FALSE(sought(app.session)->reached);
   REQUIRE(robot.drawn().plot.marker);
   CHECK(robot.drawn().plot.marker->label == "the nearest");
-  CHECK_THAT(app.notice, ContainsSubstring("The nearest that can be reached: slide = "));
+  CHECK_THAT(app.session.notice, ContainsSubstring("The nearest that can be reached: slide = "));
   CHECK(robot.drawn().plot.y.range == range); // or the place under the hand would run away
   robot.release();
   robot.frames(2);
@@ -290,38 +291,38 @@ TEST_CASE("what a pull cannot reach is shown with the nearest that can be") {
 TEST_CASE("where only the varied number may move a pull goes along the curve; keys pull, too") {
   ResponseRobot robot("governor_parametric");
   App& app = robot.app;
-  choose_response(app, "parameters.w");
-  for (const ParameterControl& control : app.parameters)
+  choose_response(app.session, "parameters.w");
+  for (const ParameterControl& control : app.session.parameters)
     if (control.group == ParameterGroup::pinned && control.address != "parameters.w")
-      hold_number(app, control.address, true);
+      hold_number(app.session, control.address, true);
   robot.frames(3);
   const auto curve = robot.state().curve.found;
   const double w = robot.number("parameters.w"), before = present(app, "slide");
-  focus_widget(app, "plot/response/pull");
+  focus_widget(app.ui, "plot/response/pull");
   robot.frames(2);
-  const std::size_t steps = app.document.position();
+  const std::size_t steps = app.session.document.position();
   for (int i = 0; i < 3; ++i)
     robot.key(265); // up
   robot.frames(2);
   CHECK(present(app, "slide") > before);
   CHECK(robot.number("parameters.w") < w);
   CHECK(robot.state().curve.found == curve);
-  CHECK(app.document.position() == steps + 1);
-  hold_number(app, "parameters.w", true);
+  CHECK(app.session.document.position() == steps + 1);
+  hold_number(app.session, "parameters.w", true);
   robot.key(264);
   robot.frames(2);
-  CHECK(is_error(app));
-  CHECK_THAT(app.notice, ContainsSubstring("all pinned sliders are held"));
+  CHECK(is_error(app.session));
+  CHECK_THAT(app.session.notice, ContainsSubstring("all pinned sliders are held"));
 }
 
 TEST_CASE("what is no goal has no grip") {
   ResponseRobot robot("governor_parametric");
-  CHECK(robot.app.widgets.count("plot/response/pull") == 1);
-  for (const ResponseQuantity& quantity : offered_quantities(robot.app)) {
-    choose_quantity(robot.app, quantity);
+  CHECK(robot.app.ui.widgets.count("plot/response/pull") == 1);
+  for (const ResponseQuantity& quantity : offered_quantities(robot.app.session)) {
+    choose_quantity(robot.app.session, quantity);
     robot.frames(2);
     const bool goal = quantity.group == "Coordinates" || quantity.group == "Measures";
-    CHECK(robot.app.widgets.count("plot/response/pull") == (goal ? 1 : 0));
+    CHECK(robot.app.ui.widgets.count("plot/response/pull") == (goal ? 1 : 0));
   }
 }
 
@@ -339,25 +340,25 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
   REQUIRE(crossings(drawn.plot, "unstable", 6).size() == 1);
   CHECK(crossings(drawn.plot, "undecided", 6).empty());
   // Stable as solved at first; dragged along to the straight state above the branch point.
-  CHECK(app.answer.solution.stable == true);
+  CHECK(app.session.answer.solution.stable == true);
   robot.drag(robot.marker(), robot.place(6, 0));
-  CHECK(get_parameter(app.mechanism(), speed) == Approx(6).margin(0.1));
+  CHECK(get_parameter(app.session.mechanism(), speed) == Approx(6).margin(0.1));
   CHECK(present(app, "swing") == Approx(0).margin(1e-9));
-  CHECK(app.answer.solution.stable == false);
-  CHECK(app.on_branch);
+  CHECK(app.session.answer.solution.stable == false);
+  CHECK(app.session.on_branch);
 
   SECTION("sliders follow the branch, until the drawn pose is started from again") {
-    change_parameter(app, speed, 8);
+    change_parameter(app.session, speed, 8);
     robot.frames(2);
     CHECK(present(app, "swing") == Approx(0).margin(1e-9));
-    CHECK(app.answer.solution.stable == false);
-    change_parameter(app, "bodies.bob.mass", 2);
+    CHECK(app.session.answer.solution.stable == false);
+    change_parameter(app.session, "bodies.bob.mass", 2);
     robot.frames(2);
     CHECK(present(app, "swing") == Approx(0).margin(1e-9));
     robot.click("parameters/restart");
-    CHECK_FALSE(app.on_branch);
+    CHECK_FALSE(app.session.on_branch);
     CHECK(std::abs(present(app, "swing")) > 0.5);
-    CHECK(app.answer.solution.stable == true);
+    CHECK(app.session.answer.solution.stable == true);
   }
   SECTION("a click jumps to another branch") {
     const std::vector<double> bent = crossings(drawn.plot, "stable", 8);
@@ -365,15 +366,15 @@ TEST_CASE("the conical pendulum: drawn as a fork, and dragged onto the unstable 
     for (const double y : bent) {
       robot.click(robot.place(8, y));
       CHECK(present(app, "swing") * 180 / std::numbers::pi == Approx(y).margin(1));
-      CHECK(app.answer.solution.stable == true);
-      CHECK(get_parameter(app.mechanism(), speed) == Approx(8).margin(0.1));
+      CHECK(app.session.answer.solution.stable == true);
+      CHECK(get_parameter(app.session.mechanism(), speed) == Approx(8).margin(0.1));
     }
   }
   SECTION("undo leaves the branch") {
-    undo(app);
+    undo(app.session);
     robot.frames(2);
-    CHECK_FALSE(app.on_branch);
-    CHECK(app.answer.solution.stable == true);
+    CHECK_FALSE(app.session.on_branch);
+    CHECK(app.session.answer.solution.stable == true);
   }
 }
 
@@ -382,12 +383,12 @@ TEST_CASE("where a branch ends an ordinary state is shown, and told") {
   App& app = robot.app;
   const double y = crossings(robot.drawn().plot, "stable", 8).at(0);
   robot.click(robot.place(8, y));
-  REQUIRE(app.on_branch);
+  REQUIRE(app.session.on_branch);
   // Below the branch point there is no bent state.
-  change_parameter(app, speed, 1);
+  change_parameter(app.session, speed, 1);
   robot.frames(2);
   CHECK(present(app, "swing") == Approx(0).margin(1e-6));
-  CHECK(app.answer.solution.stable == true);
+  CHECK(app.session.answer.solution.stable == true);
 }
 
 TEST_CASE("another parameter, its own range, and a logarithmic axis") {
@@ -406,7 +407,7 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
   // A click between two points of the curve is one on the curve.
   const double y = crossings(drawn.plot, "stable", 3000).at(0);
   robot.click(robot.place(3000, y));
-  CHECK(get_parameter(app.mechanism(), stiffness) == Approx(3000).epsilon(0.05));
+  CHECK(get_parameter(app.session.mechanism(), stiffness) == Approx(3000).epsilon(0.05));
   // A narrower range is typed.
   robot.click("response/to");
   robot.key('A', true);
@@ -419,18 +420,41 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
       CHECK(point[0] <= 5000 * (1 + 1e-12));
 }
 
-TEST_CASE("a mechanism without a steady state says why there is no curve") {
+TEST_CASE("a mechanism whose balance turns has periodic motions for a curve, and steady states again") {
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;
-  edit(app, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
+  choose_response_end(app.session, &ResponseChoice::to, 1);
+  robot.frames(2);
+  REQUIRE(robot.state().curve.found);
+  edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
   robot.frames(3);
-  CHECK_THAT(response_refusal(app), ContainsSubstring("No steady state: the weight"));
-  CHECK(app.widgets.count("response/problem") == 1);
-  CHECK(app.widgets.count("plot/response/area") == 0);
-  undo(app);
+  CHECK_FALSE(robot.state().curve.found);
+  REQUIRE(robot.state().resonance.found);
+  CHECK(app.ui.widgets.count("response/find") == 0);
+  undo(app.session);
   robot.frames(3);
-  CHECK(response_refusal(app).empty());
-  CHECK(app.widgets.count("plot/response/area") == 1);
+  CHECK_FALSE(robot.state().resonance.found);
+  REQUIRE(robot.state().curve.found);
+  CHECK(response_refusal(app.session).empty());
+  CHECK(app.ui.widgets.count("plot/response/area") == 1);
+}
+
+TEST_CASE("where nothing moves periodically either, the response says why") {
+  ResponseRobot robot("conical_pendulum");
+  App& app = robot.app;
+  choose_response_end(app.session, &ResponseChoice::to, 1);
+  choose_response_end(app.session, &ResponseChoice::from, 0.5); // it would stand where nothing turns
+  edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) {
+    mechanism.gravity = {3, -9, 0};
+    for (Joint& joint : mechanism.joints) // it sticks and slips
+      for (Coordinate& coordinate : joint.coordinates)
+        if (!coordinate.drive) coordinate.friction.emplace().limit = 1e-3;
+  });
+  robot.frames(3);
+  REQUIRE(app.session.answer.solution.status == Status::no_steady_state);
+  CHECK_THAT(response_refusal(app.session), ContainsSubstring("dry friction"));
+  CHECK(app.ui.widgets.count("response/problem") == 1);
+  CHECK(app.ui.widgets.count("plot/response/area") == 0);
 }
 
 TEST_CASE("a closed response takes everything with it but what was chosen") {
@@ -440,12 +464,12 @@ TEST_CASE("a closed response takes everything with it but what was chosen") {
   robot.click("response/quantity");
   robot.click("response/quantity/value arm1");
   robot.click("study/close");
-  CHECK(robot.app.study.open == StudyKind::none);
+  CHECK(robot.app.session.study.open == StudyKind::none);
   CHECK_FALSE(state.curve.asked);
   CHECK_FALSE(state.curve.found);
   CHECK(drawn.plot.curves.empty());
   CHECK(drawn.pieces.empty());
-  change_parameter(robot.app, stiffness, 900);
+  change_parameter(robot.app.session, stiffness, 900);
   robot.frames(2);
   CHECK_FALSE(state.curve.asked);
   robot.key('C');
@@ -458,12 +482,12 @@ TEST_CASE("measures are drawn over the parameter, and wanted") {
   ResponseRobot robot("governor_parametric");
   App& app = robot.app;
   ResponseState& state = robot.state();
-  choose_response(app, "parameters.w");
+  choose_response(app.session, "parameters.w");
   robot.frames(3);
-  for (const ResponseQuantity& quantity : offered_quantities(app)) {
+  for (const ResponseQuantity& quantity : offered_quantities(app.session)) {
     if (quantity.group != "Measures") continue;
     CAPTURE(quantity.key);
-    choose_quantity(app, quantity);
+    choose_quantity(app.session, quantity);
     robot.frames(2);
     CHECK(robot.drawn().plot.y.label == quantity.title);
     REQUIRE(robot.drawn().plot.marker);
@@ -482,7 +506,7 @@ TEST_CASE("measures are drawn over the parameter, and wanted") {
   robot.click("response/solution/1");
   robot.frames(3);
   const auto pull =
-      std::ranges::find(app.answer.solution.measures, "ball_pull", &MeasureSolution::name)->value;
+      std::ranges::find(app.session.answer.solution.measures, "ball_pull", &MeasureSolution::name)->value;
   REQUIRE(pull.has_value());
   CHECK(*pull == Approx(20).epsilon(1e-10));
 }
@@ -506,15 +530,15 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
     CHECK(value(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
   const double found = answer.solutions[0].parameter;
   // Solved at that speed, the collar is there.
-  Mechanism mechanism = app.mechanism();
+  Mechanism mechanism = app.session.mechanism();
   set_parameter(mechanism, speed, found);
   Analysis analysis(mechanism);
   CHECK(value(analysis.solve({}).coordinates, "slide") == Approx(0.12).margin(1e-12));
   robot.click("response/solution/1");
-  CHECK(get_parameter(app.mechanism(), speed) == found);
+  CHECK(get_parameter(app.session.mechanism(), speed) == found);
   CHECK(present(app, "slide") == Approx(0.12).margin(1e-12));
   // With another spring there is another answer, without asking again.
-  change_parameter(app, stiffness, 800);
+  change_parameter(app.session, stiffness, 800);
   robot.frames(3);
   REQUIRE_FALSE(state.design.answer.found->result.solutions.empty());
   CHECK(std::abs(state.design.answer.found->result.solutions[0].parameter - found) > 0.1);
@@ -522,7 +546,7 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   state.design.value = 5;
   robot.click("response/find");
   CHECK(state.design.answer.found->result.solutions.empty());
-  CHECK(app.widgets.count("response/never") == 1);
+  CHECK(app.ui.widgets.count("response/never") == 1);
 }
 
 TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
@@ -530,13 +554,13 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
   App& app = robot.app;
   for (const std::string& address : {speed, stiffness}) {
     CAPTURE(address);
-    CHECK(app.widgets.count("parameters/" + address + "/rate") == 1);
-    const std::vector<ShownRate> rates = shown_rates(app, address);
+    CHECK(app.ui.widgets.count("parameters/" + address + "/rate") == 1);
+    const std::vector<ShownRate> rates = shown_rates(app.session, address);
     REQUIRE(rates.size() == 3);
     CHECK(rates[0].share >= (1 - 1e-6) * rates[1].share); // alike: the first is named
-    const double at = get_parameter(app.mechanism(), address), step = 1e-4 * at;
+    const double at = get_parameter(app.session.mechanism(), address), step = 1e-4 * at;
     const auto solved = [&](double value) {
-      Mechanism mechanism = app.mechanism();
+      Mechanism mechanism = app.session.mechanism();
       set_parameter(mechanism, address, value);
       Analysis analysis(mechanism);
       return analysis.solve({}).coordinates;
@@ -551,13 +575,13 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
     }
   }
   // Where there is no steady state there is nothing to tell.
-  open_scene(app, shipped_file("conical_pendulum"));
+  open_scene(app.session, shipped_file("conical_pendulum"));
   robot.frames(2);
-  CHECK_FALSE(shown_rates(app, speed).empty());
-  CHECK(app.widgets.count("parameters/" + speed + "/rate") == 1);
-  edit(app, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
+  CHECK_FALSE(shown_rates(app.session, speed).empty());
+  CHECK(app.ui.widgets.count("parameters/" + speed + "/rate") == 1);
+  edit(app.session, "Tilt", [](Mechanism& mechanism, Selection&) { mechanism.gravity = {3, -9, 0}; });
   robot.frames(2);
-  REQUIRE_FALSE(converged(app));
-  CHECK(shown_rates(app, speed).empty());
-  CHECK(app.widgets.count("parameters/" + speed + "/rate") == 0);
+  REQUIRE_FALSE(converged(app.session));
+  CHECK(shown_rates(app.session, speed).empty());
+  CHECK(app.ui.widgets.count("parameters/" + speed + "/rate") == 0);
 }

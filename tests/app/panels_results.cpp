@@ -22,7 +22,7 @@ TEST_CASE("a number is told in SI below only where that is another unit") {
   App& app = robot.app;
   // "0.78561568149 rad  +- 1.8e-15 rad" beside "+- 2.7e-16 m"
   CHECK(width(robot.widget("results/slide/error")) < 0.6f * width(robot.widget("results/arm1/error")));
-  choose_units(app, {AngleUnit::radian, LengthUnit::millimetre, SpeedUnit::radian});
+  choose_units(app.session, app.ui, app.view, {AngleUnit::radian, LengthUnit::millimetre, SpeedUnit::radian});
   robot.frames(2);
   CHECK(width(robot.widget("results/arm1/error")) < 0.6f * width(robot.widget("results/slide/error")));
 }
@@ -32,16 +32,16 @@ TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
   App& app = robot.app;
   Mechanism crank = Document::empty_mechanism();
   add_driven_slider_crank(crank, 10);
-  open_document(app, Document(crank));
+  open_document(app.session, Document(crank));
   robot.frames(3);
-  const PeriodicState* motion = periodic_motion(app);
+  const PeriodicState* motion = periodic_motion(app.session);
   REQUIRE(motion);
   int going = 0;
   for (const PeriodicCoordinate& c : motion->coordinates) {
     const std::string row = "results/periodic/" + c.joint;
     CAPTURE(row);
-    REQUIRE(app.widgets.contains(row));
-    CHECK(app.widgets.contains(row + "/less") == c.goes_on());
+    REQUIRE(app.ui.widgets.contains(row));
+    CHECK(app.ui.widgets.contains(row + "/less") == c.goes_on());
     going += c.goes_on();
   }
   CHECK(going > 0);

@@ -3,6 +3,7 @@
 #include "robot.hpp"
 
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -18,15 +19,15 @@ namespace {
 
 struct SpreadRobot : Robot {
   explicit SpreadRobot(const std::string& scene = "governor_parametric") : Robot({1400, 1000}) {
-    open_scene(app, shipped_file(scene));
+    open_scene(app.session, shipped_file(scene));
     frames(3);
-    open_study(app, StudyKind::motion);
+    open_study(app.session, StudyKind::motion);
     frames(2);
     click("study/spread");
     frames(3);
   }
-  SpreadState& state() { return app.study.spread; }
-  const Plot& plot() { return app.plots.spread.plot; }
+  SpreadState& state() { return app.session.study.spread; }
+  const Plot& plot() { return app.panels->studies.shown().spread.plot; }
   void retype(const std::string& field, const std::string& text) {
     click(field);
     key('A', true);
@@ -47,8 +48,8 @@ double samples_in(const PlotBand& band) {
 
 TEST_CASE("without being asked for there are no samples") {
   Robot robot;
-  CHECK_FALSE(robot.app.study.spread.samples.asked);
-  CHECK(robot.app.widgets.count("plot/spread/area") == 0);
+  CHECK_FALSE(robot.app.session.study.spread.samples.asked);
+  CHECK(robot.app.ui.widgets.count("plot/spread/area") == 0);
 }
 
 TEST_CASE("the histogram holds every sample, beside the numbers that say what it is") {
@@ -58,7 +59,7 @@ TEST_CASE("the histogram holds every sample, beside the numbers that say what it
   CHECK(samples_in(robot.plot().bands[0]) == 2000);
   CHECK(robot.plot().x.label == "slide");
   for (const char* name : {"plot/spread/area", "spread/mean", "spread/deviation", "spread/copy"})
-    CHECK(robot.app.widgets.count(name) == 1);
+    CHECK(robot.app.ui.widgets.count(name) == 1);
   CHECK(robot.plot().curves.size() == 1); // as the rates promise
   robot.click("spread/copy");
   const std::string csv = ImGui::GetClipboardText();
@@ -84,7 +85,7 @@ TEST_CASE("numbers that change nothing spread nothing: all samples stand at one 
 
 TEST_CASE("a width is typed in per cent or in the number's unit, and what it is scatters so") {
   SpreadRobot robot;
-  const auto deviation = [&] { return shown_output(robot.app)->linear_deviation; };
+  const auto deviation = [&] { return shown_output(robot.app.session)->linear_deviation; };
   const double before = deviation();
   robot.retype("spread/parameters.w/width", "2 %");
   robot.retype("spread/parameters.L/width", "2");
@@ -106,7 +107,7 @@ TEST_CASE("a width is typed in per cent or in the number's unit, and what it is 
   robot.click("spread/parameters.L/remove");
   robot.frames(3);
   REQUIRE(robot.state().choice.tolerances.size() == 1);
-  CHECK(shown_output(robot.app)->linear_shares == std::vector<double>{1});
+  CHECK(shown_output(robot.app.session)->linear_shares == std::vector<double>{1});
 }
 
 TEST_CASE("another number gets a tolerance, another output is shown, and more samples are made") {
@@ -116,7 +117,7 @@ TEST_CASE("another number gets a tolerance, another output is shown, and more sa
   robot.frames(3);
   REQUIRE(robot.state().choice.tolerances.size() == 3);
   CHECK(robot.state().choice.tolerances[2].address == "parameters.m");
-  CHECK(shown_output(robot.app)->linear_shares.size() == 3);
+  CHECK(shown_output(robot.app.session)->linear_shares.size() == 3);
   robot.click("spread/output");
   robot.click("spread/output/height");
   robot.frames(2);
@@ -129,22 +130,22 @@ TEST_CASE("a number that an undo takes away takes its tolerance along, while its
   SpreadRobot robot;
   App& app = robot.app;
   const std::size_t before = robot.state().choice.tolerances.size();
-  edit(app, "Name a number", [](Mechanism& m, Selection&) {
+  edit(app.session, "Name a number", [](Mechanism& m, Selection&) {
     m.parameters.push_back({"extra", "", 1, "", {}});
   });
   robot.frames(2);
-  add_tolerance(app, "parameters.extra");
+  add_tolerance(app.session, "parameters.extra");
   robot.frames(3);
-  CHECK(app.widgets.count("spread/parameters.extra/width") == 1);
+  CHECK(app.ui.widgets.count("spread/parameters.extra/width") == 1);
   robot.key('Z', true);
   robot.frames(3);
-  CHECK(app.mechanism().parameters.back().name != "extra");
+  CHECK(app.session.mechanism().parameters.back().name != "extra");
   CHECK(robot.state().choice.tolerances.size() == before);
 }
 
 TEST_CASE("the spread is reached by keys") {
   SpreadRobot robot;
-  focus_widget(robot.app, "spread/parameters.w/width");
+  focus_widget(robot.app.ui, "spread/parameters.w/width");
   robot.frames(2);
   robot.key(257);
   robot.key('A', true);
@@ -157,14 +158,14 @@ TEST_CASE("the spread is reached by keys") {
 TEST_CASE("samples beyond a fold are told apart, in words and in the histogram") {
   SpreadRobot robot("conical_pendulum");
   // The straight state is left by those that turn faster than sqrt(g / L).
-  change_parameter(robot.app, "joints.spin.drive.speed", 3.7);
+  change_parameter(robot.app.session, "joints.spin.drive.speed", 3.7);
   robot.state().choice.tolerances = {{"joints.spin.drive.speed", Distribution::uniform, 0.1, false}};
   robot.frames(4);
   REQUIRE(robot.state().samples.found);
   const SpreadAnswer& answer = robot.state().samples.found->result;
   const auto elsewhere = answer.counts[static_cast<std::size_t>(SampleFate::elsewhere)];
   CHECK(elsewhere > 200);
-  CHECK(robot.app.widgets.count("spread/fate/elsewhere") == 1);
+  CHECK(robot.app.ui.widgets.count("spread/fate/elsewhere") == 1);
   const auto& bands = robot.plot().bands;
   const auto band = std::ranges::find(bands, "in another steady state", &PlotBand::name);
   REQUIRE(band != bands.end());
@@ -175,10 +176,10 @@ TEST_CASE("from the spread to the band around the response, which is switched of
   SpreadRobot robot;
   robot.click("spread/band");
   robot.frames(4);
-  CHECK(robot.app.study.open == StudyKind::response);
-  choose_response(robot.app, "parameters.w");
+  CHECK(robot.app.session.study.open == StudyKind::response);
+  choose_response(robot.app.session, "parameters.w");
   robot.frames(4);
-  const Plot& plot = robot.app.plots.response.plot;
+  const Plot& plot = robot.app.panels->studies.shown().response.plot;
   REQUIRE_FALSE(plot.bands.empty());
   CHECK(plot.bands[0].name == "5 % to 95 % of samples");
   // The state that is shown lies within.
@@ -192,10 +193,10 @@ TEST_CASE("from the spread to the band around the response, which is switched of
       }
   CHECK(lower < plot.marker->y);
   CHECK(plot.marker->y < upper);
-  CHECK(robot.app.widgets.count("plot/response/legend/5 % to 95 % of samples") == 1);
-  CHECK(robot.app.widgets.count("response/band/words") == 1);
+  CHECK(robot.app.ui.widgets.count("plot/response/legend/5 % to 95 % of samples") == 1);
+  CHECK(robot.app.ui.widgets.count("response/band/words") == 1);
   robot.click("response/band");
   robot.frames(3);
-  CHECK(robot.app.plots.response.plot.bands.empty());
-  CHECK_FALSE(robot.app.study.band.computed.found);
+  CHECK(robot.app.panels->studies.shown().response.plot.bands.empty());
+  CHECK_FALSE(robot.app.session.study.band.computed.found);
 }

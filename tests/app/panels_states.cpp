@@ -21,28 +21,28 @@ constexpr PixelSize wide{1280, 900};
 
 struct StatesRobot : Robot {
   explicit StatesRobot(const std::string& scene = "conical_pendulum") : Robot(wide) {
-    open_scene(app, shipped_file(scene));
+    open_scene(app.session, shipped_file(scene));
     frames(3);
     key('E');
     frames(3);
   }
-  const std::vector<Solution>& all() { return app.study.states.found->result.equilibria; }
+  const std::vector<Solution>& all() { return app.session.study.states.found->result.equilibria; }
 };
 
 } // namespace
 
 TEST_CASE("nothing is searched before it is asked for, and a closed list is gone") {
   Robot robot(wide);
-  CHECK_FALSE(robot.app.study.states.asked);
-  CHECK(robot.app.widgets.count("study/states") == 0);
+  CHECK_FALSE(robot.app.session.study.states.asked);
+  CHECK(robot.app.ui.widgets.count("study/states") == 0);
   robot.key('E');
   robot.frames(2);
-  REQUIRE(robot.app.study.states.found);
-  CHECK_FALSE(robot.app.study.states.found->result.equilibria.empty());
+  REQUIRE(robot.app.session.study.states.found);
+  CHECK_FALSE(robot.app.session.study.states.found->result.equilibria.empty());
   robot.click("study/close");
-  CHECK_FALSE(robot.app.study.states.asked);
-  CHECK_FALSE(robot.app.study.states.found);
-  CHECK(robot.app.widgets.count("states/row/1") == 0);
+  CHECK_FALSE(robot.app.session.study.states.asked);
+  CHECK_FALSE(robot.app.session.study.states.found);
+  CHECK(robot.app.ui.widgets.count("states/row/1") == 0);
 }
 
 TEST_CASE("the conical pendulum's four states are listed: two stable ones aside, two unstable ones upright") {
@@ -50,7 +50,7 @@ TEST_CASE("the conical pendulum's four states are listed: two stable ones aside,
   const std::vector<Solution>& all = robot.all();
   REQUIRE(all.size() == 4);
   // Its speed of 5 rad/s is above the critical one.
-  const Mechanism& m = robot.app.mechanism();
+  const Mechanism& m = robot.app.session.mechanism();
   const double length = std::hypot(m.bodies[1].position.x(), 1 - m.bodies[1].position.y());
   const double angle = std::acos(9.80665 / (25 * length));
   int aside = 0, upright = 0;
@@ -72,7 +72,7 @@ TEST_CASE("the conical pendulum's four states are listed: two stable ones aside,
   robot.widget("states/row/4");
   robot.widget("states/search");
   // The one that is shown is one of the stable ones.
-  const std::optional<std::size_t> shown = shown_state(robot.app);
+  const std::optional<std::size_t> shown = shown_state(robot.app.session);
   REQUIRE(shown);
   CHECK(all[*shown].stable == true);
   robot.widget("states/shown");
@@ -81,47 +81,47 @@ TEST_CASE("the conical pendulum's four states are listed: two stable ones aside,
 TEST_CASE("a click on a row puts the mechanism into that state, stable or not") {
   StatesRobot robot;
   App& app = robot.app;
-  const std::uint64_t revision = app.document.revision();
+  const std::uint64_t revision = app.session.document.revision();
   for (std::size_t i = 0; i < robot.all().size(); ++i) {
     CAPTURE(i);
     robot.click("states/row/" + std::to_string(i + 1));
-    CHECK(shown_state(app) == i);
+    CHECK(shown_state(app.session) == i);
     const Solution& wanted = robot.all()[i];
-    CHECK(app.answer.solution.stable == wanted.stable);
-    CHECK(std::remainder(value(app.answer.solution, "swing") - value(wanted, "swing"),
+    CHECK(app.session.answer.solution.stable == wanted.stable);
+    CHECK(std::remainder(value(app.session.answer.solution, "swing") - value(wanted, "swing"),
                          2 * std::numbers::pi) == Approx(0).margin(1e-9));
-    REQUIRE(app.poses.size() == wanted.poses.size());
-    CHECK(app.poses[1].position.isApprox(wanted.poses[1].position, 1e-9));
+    REQUIRE(app.session.poses.size() == wanted.poses.size());
+    CHECK(app.session.poses[1].position.isApprox(wanted.poses[1].position, 1e-9));
   }
-  CHECK(app.document.revision() == revision); // looking is no edit
+  CHECK(app.session.document.revision() == revision); // looking is no edit
 }
 
 TEST_CASE("after a change the list is that of the mechanism as it is") {
   StatesRobot robot;
   App& app = robot.app;
-  app.study.states.found->run_time = 0;                // whatever it took on a busy machine
-  change_parameter(app, "joints.spin.drive.speed", 1); // below the critical speed
+  app.session.study.states.found->run_time = 0;                // whatever it took on a busy machine
+  change_parameter(app.session, "joints.spin.drive.speed", 1); // below the critical speed
   robot.frames(3);
-  CHECK(states_are_current(app));
+  CHECK(states_are_current(app.session));
   CHECK(robot.all().size() == 2);
   // A search that took long is not begun again unasked.
-  app.study.states.found->run_time = 10;
-  change_parameter(app, "joints.spin.drive.speed", 5);
+  app.session.study.states.found->run_time = 10;
+  change_parameter(app.session, "joints.spin.drive.speed", 5);
   robot.frames(3);
-  CHECK_FALSE(states_are_current(app));
-  CHECK_FALSE(shown_state(app));
+  CHECK_FALSE(states_are_current(app.session));
+  CHECK_FALSE(shown_state(app.session));
   CHECK(robot.all().size() == 2);
   robot.click("states/row/1"); // of another mechanism: not to be chosen
-  CHECK_FALSE(states_are_current(app));
+  CHECK_FALSE(states_are_current(app.session));
   robot.click("states/search_again");
   robot.frames(2);
-  CHECK(states_are_current(app));
+  CHECK(states_are_current(app.session));
   CHECK(robot.all().size() == 4);
 }
 
 TEST_CASE("a search in the background can be stopped, and what was found before stays") {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  open_scene(app, shipped_file("chain20"));
+  open_scene(app.session, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 3000 && !until(); ++i) {
       update(app, 0.01, {400, 300});
@@ -129,28 +129,28 @@ TEST_CASE("a search in the background can be stopped, and what was found before 
     }
     REQUIRE(until());
   };
-  wait([&] { return app.answer.ticket != 0; });
-  open_study(app, StudyKind::states);
+  wait([&] { return app.session.answer.ticket != 0; });
+  open_study(app.session, StudyKind::states);
   update(app, 0.01, {400, 300});
-  REQUIRE(app.study.states.asked);
-  app.study.states.stop();
-  wait([&] { return !app.study.states.problem.empty(); });
-  CHECK_FALSE(studying(app));
-  CHECK_FALSE(app.study.states.found);
-  CHECK(app.study.states.problem == "The search was stopped.");
+  REQUIRE(app.session.study.states.asked);
+  app.session.study.states.stop();
+  wait([&] { return !app.session.study.states.problem.empty(); });
+  CHECK_FALSE(studying(app.session));
+  CHECK_FALSE(app.session.study.states.found);
+  CHECK(app.session.study.states.problem == "The search was stopped.");
 }
 
 TEST_CASE("every shipped scene's list can be shown, in both themes and in a narrow window") {
   for (const char* scene : {"ball_on_string", "fourbar_turntable", "rate_gyro", "watt_governor"}) {
     CAPTURE(scene);
     StatesRobot robot(scene);
-    REQUIRE(robot.app.study.states.found);
-    CHECK(robot.app.study.states.problem.empty());
+    REQUIRE(robot.app.session.study.states.found);
+    CHECK(robot.app.session.study.states.problem.empty());
     robot.size = {820, 560};
     robot.frames(3);
-    robot.app.theme = Theme::dark;
+    robot.app.ui.theme = Theme::dark;
     robot.frames(2);
-    for (const CoordinateSolution& c : robot.app.answer.solution.coordinates)
+    for (const CoordinateSolution& c : robot.app.session.answer.solution.coordinates)
       if (!c.driven && !robot.all().empty()) {
         robot.widget("states/row/1");
         break;

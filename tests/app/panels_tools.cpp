@@ -1,51 +1,14 @@
-// What the hand does in the 3-D view: selecting, moving, turning, placing and joining, done by a robot.
-#include "robot.hpp"
+// Placing and joining in the 3-D view, done by a robot.
+#include "drawing.hpp"
 
 #include "app/document/create.hpp"
+#include "app/ui/tools/tools.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
-#include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
-
-namespace {
-
-// One metre in view: the grid's step is 0.05 m.
-struct Drawing : Robot {
-  Drawing() { begin_empty(1); }
-
-  const Mechanism& m() const { return app.mechanism(); }
-  std::size_t steps() const { return app.document.position(); }
-  std::string last_step() const { return app.document.steps()[app.document.position()].name; }
-  // A ball drawn before the test begins, selected.
-  void have_ball(const Vec3& at, double radius = 0.05) {
-    ++app.gesture;
-    edit(app, "Add ball", [&](Mechanism& next, Selection& selection) {
-      selection.set({PartKind::body, add_body(next, {.at = at, .radius = radius})});
-    });
-    frames(2);
-  }
-  void have_rod(const Vec3& from, const Vec3& to) {
-    ++app.gesture;
-    edit(app, "Add rod", [&](Mechanism& next, Selection& selection) {
-      selection.set(
-          {PartKind::body, add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = from, .to = to})});
-    });
-    frames(2);
-  }
-  void choose_nothing() {
-    select(app, {});
-    frames(1);
-  }
-};
-
-Part body(const std::string& name) {
-  return {PartKind::body, name};
-}
-
-} // namespace
 
 TEST_CASE("a ball is placed by a click, on the grid and with a round size") {
   Drawing d;
@@ -55,7 +18,7 @@ TEST_CASE("a ball is placed by a click, on the grid and with a round size") {
   REQUIRE(d.m().bodies.size() == 1);
   CHECK(d.m().bodies[0].position == Vec3(0.1, 0.2, 0));
   CHECK(d.m().bodies[0].shapes[0].radius == 0.05);
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
+  CHECK(d.app.session.selection().parts == std::vector{body_part("ball1")});
   CHECK(d.app.tool.tool == Tool::select);
   CHECK(d.steps() == 1);
   CHECK(d.last_step() == "Add ball");
@@ -123,7 +86,7 @@ TEST_CASE("the ends of a rod have to be apart") {
   d.frames(60); // no double click
   d.click_at({0, 0, 0});
   CHECK(d.m().bodies.empty());
-  CHECK_THAT(d.app.notice, ContainsSubstring("apart"));
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("apart"));
 }
 
 TEST_CASE("placing works on a plane through the last point") {
@@ -159,9 +122,9 @@ TEST_CASE("Escape drops what was begun, then the tool, then the selection") {
   CHECK(d.app.tool.tool == Tool::rod);
   d.key(key_escape);
   CHECK(d.app.tool.tool == Tool::select);
-  CHECK_FALSE(d.app.selection().empty());
+  CHECK_FALSE(d.app.session.selection().empty());
   d.key(key_escape);
-  CHECK(d.app.selection().empty());
+  CHECK(d.app.session.selection().empty());
   CHECK(d.steps() == 1);
 }
 
@@ -183,10 +146,10 @@ TEST_CASE("a joint is made by a click and the card beside it") {
     CHECK(d.m().joints[0].type == JointType::revolute);
     CHECK(d.m().joints[0].axis == Vec3::UnitZ());
     CHECK(d.m().joints[0].bodies == std::array<std::string, 2>{"ground", "rod1"});
-    CHECK(d.app.selection().parts == std::vector{Part{PartKind::joint, d.m().joints[0].name}});
+    CHECK(d.app.session.selection().parts == std::vector{Part{PartKind::joint, d.m().joints[0].name}});
     CHECK(d.steps() == 2);
     CHECK(d.last_step() == "Join ground and rod1");
-    CHECK(converged(d.app));
+    CHECK(converged(d.app.session));
   }
   SECTION("a slide along the rod, by Enter") {
     d.click("tools/type/prismatic");
@@ -234,7 +197,7 @@ TEST_CASE("a joint is made by a click and the card beside it") {
       d.key(key_escape);
     CHECK_FALSE(d.app.tool.joint);
     CHECK(d.m().joints.empty());
-    CHECK(d.app.selection().empty());
+    CHECK(d.app.session.selection().empty());
   }
 }
 
@@ -242,12 +205,12 @@ TEST_CASE("the bodies of a joint are guessed") {
   Drawing d;
   d.have_rod({0, 0, 0}, {0, 0.4, 0});
   d.have_rod({0, 0.3, 0}, {0.3, 0.3, 0});
-  edit(d.app, "Join", [](Mechanism& next, Selection&) {
+  edit(d.app.session, "Join", [](Mechanism& next, Selection&) {
     add_joint(next, JointType::revolute, {"ground", "rod2"}, {0.3, 0.3, 0}, Vec3::UnitZ());
   });
   d.choose_nothing();
   const auto guess = [&](const Vec3& at) {
-    set_tool(d.app, Tool::joint);
+    set_tool(d.app.session, d.app.ui, d.app.tool, Tool::joint);
     d.frames(1);
     d.click_at(at);
     REQUIRE(d.app.tool.joint);
@@ -265,9 +228,9 @@ TEST_CASE("the bodies of a joint are guessed") {
   }
   SECTION("two that are selected, wherever the point is") {
     Selection both;
-    both.add(body("rod1"));
-    both.add(body("rod2"));
-    select(d.app, both);
+    both.add(body_part("rod1"));
+    both.add(body_part("rod2"));
+    select(d.app.session, both);
     CHECK(guess({-0.2, 0.1, 0}) == Pair{"rod2", "rod1"});
     // They stay the ones while the point is moved.
     CHECK(guess({-0.3, 0, 0}) == Pair{"rod2", "rod1"});
@@ -305,7 +268,7 @@ TEST_CASE("a spring on one body alone is refused in words") {
   d.click("tools/spring");
   d.drag(d.pixel({-0.1, 0, 0}), d.pixel({0.1, 0, 0}));
   CHECK(d.m().forces.empty());
-  CHECK_THAT(d.app.notice, ContainsSubstring("ball1"));
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("ball1"));
   // The tool is still there for another try.
   d.drag(d.pixel({-0.1, 0, 0}), d.pixel({0.3, 0, 0}));
   CHECK(d.m().forces.size() == 1);
@@ -366,7 +329,7 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   CHECK(d.app.tool.joint->bodies == std::array<std::string, 2>{"ground", "rod1"});
   CHECK(d.app.tool.joint->at == Vec3(0.3, 0, 0));
   CHECK(d.app.tool.joint->axis == Vec3::UnitX()); // along the rod
-  CHECK(d.app.widgets.count("tools/type/revolute") == 0);
+  CHECK(d.app.ui.widgets.count("tools/type/revolute") == 0);
   CHECK(d.steps() == 1);
   if (GENERATE(false, true)) {
     d.key(key_escape);
@@ -387,15 +350,15 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   CHECK(bearing.bearing_stiffness == BearingMatrix{1e6, 0, 0, 1e6});
   CHECK(bearing.bearing_damping == BearingMatrix{1000, 0, 0, 1000});
   CHECK(d.m().joints.empty());
-  CHECK(d.app.selection().parts == std::vector{Part{PartKind::force, "bearing1"}});
+  CHECK(d.app.session.selection().parts == std::vector{Part{PartKind::force, "bearing1"}});
   CHECK(d.steps() == 2);
-  CHECK(d.app.mistakes.empty());
+  CHECK(d.app.session.mistakes.empty());
   // It is moved as what has one point, and goes with the shaft as a joint does.
   d.pull("gizmo/y", {0.3, 0.2, 0});
   d.release();
   CHECK(d.m().forces[0].at->y() > 0.05);
-  undo(d.app);
-  select(d.app, {{{PartKind::body, "rod1"}}});
+  undo(d.app.session);
+  select(d.app.session, {{{PartKind::body, "rod1"}}});
   d.frames(2);
   const Vec3 before = d.m().bodies[0].position;
   d.pull("gizmo/y", before + Vec3(0, 0.2, 0));
@@ -403,8 +366,8 @@ TEST_CASE("a bearing is put on a shaft by a click and the card beside it") {
   const Vec3 by = d.m().bodies[0].position - before;
   CHECK(by.y() > 0.05);
   CHECK((*d.m().forces[0].at - Vec3(0.3, 0, 0) - by).norm() < 1e-12);
-  undo(d.app);
-  undo(d.app);
+  undo(d.app.session);
+  undo(d.app.session);
   CHECK(d.m().forces.empty());
 }
 
@@ -423,313 +386,4 @@ TEST_CASE("a bearing lies along the axis that a body turns about") {
   d.frames(2);
   REQUIRE(d.app.tool.joint);
   CHECK(d.app.tool.joint->axis == Vec3::UnitZ());
-}
-
-TEST_CASE("an arrow moves along its axis, onto the grid, in one step") {
-  Drawing d;
-  d.have_ball({0.0123, 0.0456, 0.0789});
-  d.pull("gizmo/x", {0.14, 0.08, 0});
-  d.release();
-  CHECK(d.m().bodies[0].position == Vec3(0.15, 0.0456, 0.0789));
-  CHECK(d.steps() == 2);
-  CHECK(d.last_step() == "Move ball1");
-  undo(d.app);
-  CHECK(d.m().bodies[0].position == Vec3(0.0123, 0.0456, 0.0789));
-}
-
-TEST_CASE("patches and the ball in the middle move in their plane") {
-  Drawing d;
-  d.have_ball({0, 0, 0.01});
-  d.pull(GENERATE("gizmo/xy", "gizmo/centre"), {0.24, -0.11, 0});
-  d.release();
-  CHECK(d.m().bodies[0].position == Vec3(0.25, -0.1, 0.01));
-  CHECK(d.steps() == 2);
-}
-
-TEST_CASE("what is moved snaps to points, without snapping it goes anywhere") {
-  Drawing d;
-  d.have_ball({0.3, 0.123, 0});
-  d.have_ball({0, 0, 0});
-  SECTION("to another ball's centre") {
-    d.pull("gizmo/centre", {0.302, 0.121, 0});
-    REQUIRE(d.app.tool.grab);
-    CHECK(d.app.tool.grab->what == "centre of ball1");
-    d.release();
-    CHECK(d.m().bodies[1].position == Vec3(0.3, 0.123, 0));
-  }
-  SECTION("never to what moves along") {
-    d.pull("gizmo/centre", {0.012, 0.012, 0});
-    CHECK(d.app.tool.grab->what == "origin");
-    d.release();
-    CHECK(d.steps() == 2); // back where it was: no step
-  }
-  SECTION("freely while Ctrl is held") {
-    d.hold(true, false);
-    d.pull("gizmo/centre", {0.111, 0.033, 0});
-    d.release();
-    CHECK((d.m().bodies[1].position - Vec3(0.111, 0.033, 0)).norm() < 0.002);
-    CHECK(d.m().bodies[1].position != Vec3(0.1, 0.05, 0));
-    CHECK(d.app.selection().parts == std::vector{body("ball2")});
-  }
-}
-
-TEST_CASE("Escape or the right button takes a drag back entirely") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  const Mechanism before = d.m();
-  d.pull("gizmo/x", {0.2, 0, 0});
-  CHECK(d.m().bodies[0].position.x() == 0.2);
-  if (GENERATE(false, true)) {
-    d.key(key_escape);
-  } else {
-    d.press(1);
-    d.release(1);
-  }
-  CHECK(d.m() == before);
-  // The rest of the movement does nothing more.
-  d.point_at({-0.3, 0.3, 0});
-  d.release();
-  CHECK(d.m() == before);
-  CHECK(d.app.view.camera.azimuth == 0);
-  CHECK(d.steps() == 1);
-  CHECK(d.app.document.steps().size() == 2); // nothing to redo either
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
-}
-
-TEST_CASE("a number typed while dragging counts") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  SECTION("metres along an arrow") {
-    d.pull("gizmo/x", {0.2, 0, 0});
-    for (const char key : std::string("0.16/2"))
-      d.key(key);
-    d.release();
-    CHECK(d.m().bodies[0].position == Vec3(0.08, 0, 0));
-    CHECK(d.app.view.camera.azimuth == 0);
-  }
-  SECTION("degrees round a ring") {
-    d.key('R');
-    d.pull("gizmo/ring/z", {0.02, 0.02, 0});
-    for (const char key : std::string("-90"))
-      d.key(key);
-    d.release();
-    const Quat q = d.m().bodies[0].rotation;
-    CHECK(q.isApprox(Quat(Eigen::AngleAxisd(-std::numbers::pi / 2, Vec3::UnitZ())), 1e-12));
-  }
-  CHECK(d.steps() == 2);
-}
-
-TEST_CASE("a ring turns by round angles, in one step") {
-  Drawing d;
-  d.have_rod({0, 0, 0}, {0.2, 0, 0});
-  d.key('R');
-  CHECK(d.app.tool.tool == Tool::rotate);
-  const ImVec2 from = d.widget("gizmo/ring/z").center(), c = d.pixel({0.1, 0, 0});
-  d.point(from);
-  d.press();
-  for (int i = 1; i <= 6; ++i) {
-    // Counter-clockwise in the picture, whose y points down; a little less than a quarter.
-    const float a = -1.5f * static_cast<float>(i) / 6, dx = from.x - c.x, dy = from.y - c.y;
-    d.point({c.x + std::cos(a) * dx - std::sin(a) * dy, c.y + std::sin(a) * dx + std::cos(a) * dy});
-  }
-  d.release();
-  const Shape& shape = d.m().bodies[0].shapes[0];
-  CHECK((shape.from - Vec3(0.1, -0.1, 0)).norm() < 1e-12);
-  CHECK((shape.to - Vec3(0.1, 0.1, 0)).norm() < 1e-12);
-  CHECK(d.steps() == 2);
-  CHECK(d.last_step() == "Rotate rod1");
-}
-
-TEST_CASE("the ends of a spring are moved by themselves") {
-  Drawing d;
-  d.have_ball({0.3, 0, 0});
-  edit(d.app, "Add spring", [](Mechanism& next, Selection& selection) {
-    selection.set({PartKind::force,
-                   add_spring(next, {"ground", "ball1"}, {Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0)}, 1000, 0)});
-  });
-  d.frames(2);
-  d.pull("gizmo/end0", {0.1, 0.2, 0});
-  d.release();
-  CHECK(d.m().forces[0].points[0] == Vec3(-0.2, 0.2, 0));
-  CHECK(d.m().forces[0].points[1] == Vec3(0.3, 0, 0));
-  CHECK(d.last_step() == "Move end of spring1");
-  CHECK(d.steps() == 3);
-}
-
-TEST_CASE("clicks select, toggle and drop") {
-  Drawing d;
-  d.have_ball({-0.2, 0, 0});
-  d.have_ball({0.2, 0, 0});
-  d.choose_nothing();
-  d.app.mode = GENERATE(Mode::build, Mode::explore);
-  d.frames(2);
-  d.click_at({-0.2, 0, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
-  d.click_at({0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball2")});
-  const bool ctrl = GENERATE(false, true);
-  d.hold(ctrl, !ctrl);
-  d.click_at({-0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball2"), body("ball1")});
-  d.click_at({0.22, 0.02, 0});
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
-  d.hold(false, false);
-  d.drag(d.pixel({0, 0.3, 0}), d.pixel({0.1, 0.3, 0}));
-  CHECK(d.app.selection().parts == std::vector{body("ball1")}); // that was steering
-  CHECK(d.app.view.camera.azimuth != 0);
-  look_from(d.app.view, 0, 0);
-  d.frames(2);
-  d.click(ImVec2(d.widget("view").to.x - 30, d.widget("view").to.y - 200));
-  CHECK(d.app.selection().empty());
-  CHECK(d.steps() == 2);
-}
-
-TEST_CASE("a frame selects what it holds") {
-  Drawing d;
-  for (const double x : {-0.3, 0.0, 0.3})
-    d.have_ball({x, 0, 0});
-  d.choose_nothing();
-  const auto frame = [&](double from, double to) {
-    d.drag(d.pixel({from, 0.12, 0}), d.pixel({to, -0.12, 0}));
-  };
-  const std::vector<Part> left{body("ball1"), body("ball2")};
-  SECTION("while Ctrl is held") {
-    d.hold(true, false);
-    frame(-0.36, 0.1);
-    CHECK(d.app.selection().parts == left);
-    frame(0.1, 0.4);
-    CHECK(d.app.selection().parts == std::vector{body("ball3")});
-    d.hold(true, true);
-    frame(-0.1, 0.1);
-    CHECK(d.app.selection().parts == std::vector{body("ball3"), body("ball2")});
-  }
-  SECTION("with its tool") {
-    d.key('B');
-    frame(0.1, -0.4);
-    CHECK(d.app.selection().parts == left);
-    CHECK(d.app.tool.tool == Tool::select);
-  }
-  SECTION("unless Escape is pressed") {
-    d.key('B');
-    d.point(d.pixel({-0.4, 0.12, 0}));
-    d.press();
-    d.point(d.pixel({0.1, -0.12, 0}));
-    d.key(key_escape);
-    d.point(d.pixel({0.12, -0.12, 0}));
-    d.release();
-    CHECK(d.app.selection().empty());
-  }
-  CHECK(d.app.view.camera.azimuth == 0);
-}
-
-TEST_CASE("a click on a handle means the part behind it, and no move") {
-  Drawing d;
-  d.have_ball({0, 0, 0}, 0.1);
-  d.have_ball({0.1, 0.1, 0.3}, 0.01);
-  Selection both = d.app.selection();
-  both.add(body("ball1"));
-  select(d.app, both);
-  d.frames(2);
-  d.click("gizmo/centre");
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
-  // There is nothing behind the head of the arrow.
-  d.click("gizmo/x");
-  CHECK(d.app.selection().parts == std::vector{body("ball1")});
-  CHECK(d.steps() == 2);
-}
-
-TEST_CASE("a double click on nothing shows everything, on a handle it does not") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  const double distance = d.app.view.camera.distance;
-  d.double_click("gizmo/x");
-  CHECK(d.app.view.camera.distance == distance);
-  d.point_at({0.2, -0.3, 0});
-  for (int i = 0; i < 4; ++i) {
-    ImGui::GetIO().MouseDown[0] = i % 2 == 0;
-    d.frames(1);
-  }
-  d.frames(1);
-  CHECK(d.app.view.camera.distance < 0.9 * distance);
-}
-
-TEST_CASE("several parts move together") {
-  Drawing d;
-  d.have_ball({-0.1, 0, 0});
-  d.have_ball({0.1, 0, 0});
-  Selection both;
-  both.add(body("ball1"));
-  both.add(body("ball2"));
-  select(d.app, both);
-  d.frames(2);
-  d.pull("gizmo/y", {0, 0.21, 0});
-  d.release();
-  CHECK(d.m().bodies[0].position == Vec3(-0.1, 0.2, 0));
-  CHECK(d.m().bodies[1].position == Vec3(0.1, 0.2, 0));
-  CHECK(d.last_step() == "Move 2 parts");
-}
-
-TEST_CASE("tools and handles are there while building only") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  CHECK(d.app.widgets.contains("gizmo/x"));
-  CHECK(d.app.widgets.contains("tools/ball"));
-  set_mode(d.app, Mode::explore);
-  d.frames(2);
-  CHECK_FALSE(d.app.widgets.contains("gizmo/x"));
-  CHECK_FALSE(d.app.widgets.contains("tools/ball"));
-  set_tool(d.app, Tool::spring);
-  d.frames(2);
-  CHECK(d.app.mode == Mode::build);
-}
-
-TEST_CASE("a drag is over when the document is another one") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  d.pull("gizmo/x", {0.2, 0, 0});
-  open_document(d.app, Document());
-  d.point_at({0.3, 0, 0});
-  d.release();
-  CHECK(d.m().bodies.empty());
-  CHECK(d.steps() == 0);
-}
-
-TEST_CASE("nothing is looked for under a cursor that rests") {
-  Drawing d;
-  d.have_ball({0, 0, 0});
-  d.point_at({0, 0.03, 0});
-  const Vec2 found_for = d.app.view.pointed_at;
-  const int drawn = d.stage.views_changed();
-  // Would be put right if anybody looked.
-  d.app.view.hovered = {};
-  d.frames(3);
-  CHECK(d.app.view.hovered == PartId{});
-  CHECK(d.app.view.pointed_at == found_for);
-  CHECK(d.stage.views_changed() <= drawn + 1);
-}
-
-TEST_CASE("what is under a cursor that rests is looked for when the picture moves") {
-  SECTION("because the camera does") {
-    Drawing d;
-    d.have_ball({0, 0, 0});
-    d.choose_nothing();
-    d.point_at({0, 0.03, 0});
-    d.frames(1);
-    CHECK(d.app.view.hovered.kind == PartKind::body);
-    d.app.view.camera.target.x() += 0.3;
-    d.frames(2);
-    CHECK(d.app.view.hovered == PartId{});
-  }
-  SECTION("because the mechanism does") {
-    Robot robot;
-    look_from(robot.app.view, 0, 0);
-    robot.frames(3);
-    const int ball = body_index(robot.app.mechanism(), "ball1");
-    robot.point_at(robot.app.poses.at(static_cast<std::size_t>(ball)).position);
-    robot.frames(1);
-    CHECK(robot.app.view.hovered == PartId{PartKind::body, ball});
-    play(robot.app, true);
-    robot.frames(3, 0.05); // about a quarter of a turn
-    CHECK(robot.app.view.hovered != PartId{PartKind::body, ball});
-  }
 }

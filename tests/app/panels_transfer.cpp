@@ -1,5 +1,6 @@
 // The linear model as a person uses it: an input and an output, Bode's plots, poles and zeros, and the file.
 #include "app/ui/commands.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
@@ -18,20 +19,20 @@ namespace {
 
 struct TransferRobot : Robot {
   explicit TransferRobot(const std::string& scene = "governor") : Robot({1400, 1000}) {
-    open_scene(app, shipped_file(scene));
+    open_scene(app.session, shipped_file(scene));
     frames(3);
-    open_study(app, StudyKind::motion);
+    open_study(app.session, StudyKind::motion);
     frames(2);
     click("study/transfer");
     frames(3);
   }
-  TransferState& state() { return app.study.transfer; }
+  TransferState& state() { return app.session.study.transfer; }
   const FoundTransfer& found() {
     INFO(state().found.problem);
     REQUIRE(state().found.found);
     return state().found.found->result;
   }
-  const TransferView& view() { return app.plots.transfer; }
+  const TransferView& view() { return app.panels->studies.shown().transfer; }
 };
 
 // What stands at a frequency of a plot's only curve, between its points.
@@ -48,8 +49,8 @@ double read(const Plot& plot, double frequency) {
 
 TEST_CASE("without being asked for there is no linear model") {
   Robot robot;
-  CHECK_FALSE(robot.app.study.transfer.found.asked);
-  CHECK(robot.app.widgets.count("plot/transfer magnitude/area") == 0);
+  CHECK_FALSE(robot.app.session.study.transfer.found.asked);
+  CHECK(robot.app.ui.widgets.count("plot/transfer magnitude/area") == 0);
 }
 
 TEST_CASE("the transfer function of what the response shows is drawn, with its poles") {
@@ -60,8 +61,8 @@ TEST_CASE("the transfer function of what the response shows is drawn, with its p
   for (const char* name :
        {"plot/transfer magnitude/area", "plot/transfer phase/area", "plot/poles and zeros/area",
         "transfer/gain", "transfer/reference", "transfer/poles", "transfer/save"})
-    CHECK(robot.app.widgets.count(name) == 1);
-  const Solution& solution = robot.app.answer.solution;
+    CHECK(robot.app.ui.widgets.count(name) == 1);
+  const Solution& solution = robot.app.session.answer.solution;
   REQUIRE(solution.eigenvalues);
   REQUIRE(found.model.poles.size() == solution.eigenvalues->size());
   for (std::size_t i = 0; i < found.model.poles.size(); ++i)
@@ -114,9 +115,9 @@ TEST_CASE("another input and another output are chosen, and what has no model sa
   robot.state().choice.input = "joints.spin.drive.speed";
   robot.frames(3);
   CHECK_FALSE(robot.state().found.found);
-  CHECK(robot.app.widgets.count("transfer/problem") == 1);
+  CHECK(robot.app.ui.widgets.count("transfer/problem") == 1);
   CHECK(robot.state().found.problem.find("feels the rate") != std::string::npos);
-  CHECK(robot.app.widgets.count("plot/transfer magnitude/area") == 0);
+  CHECK(robot.app.ui.widgets.count("plot/transfer magnitude/area") == 0);
   robot.state().choice.output = "slide";
   robot.frames(3);
   CHECK(robot.found().model.refusal.empty());
@@ -125,15 +126,15 @@ TEST_CASE("another input and another output are chosen, and what has no model sa
 TEST_CASE("the model follows a number that a hand moves") {
   TransferRobot robot;
   const auto before = robot.found().model.poles.front();
-  change_parameter(robot.app, "joints.slide.damping", 60);
+  change_parameter(robot.app.session, "joints.slide.damping", 60);
   robot.frames(4);
   CHECK(robot.found().model.poles.front().real() < 1.8 * before.real());
   // Without a steady state there is none to be made; what was chosen stays.
-  robot.app.study.transfer.choice.output = "rate(slide)";
+  robot.app.session.study.transfer.choice.output = "rate(slide)";
   robot.click("study/close");
   robot.frames(2);
   CHECK_FALSE(robot.state().found.found);
-  open_study(robot.app, StudyKind::transfer);
+  open_study(robot.app.session, StudyKind::transfer);
   robot.frames(3);
   CHECK(robot.state().choice.output == "rate(slide)");
   CHECK(robot.found().model.outputs[0].name == "rate(slide)");
@@ -154,13 +155,13 @@ TEST_CASE("the model is exported, by the ending of its name") {
        {"flyball_model.m", "flyball_model.py", "flyball_model.json", "flyball_model.npz"}) {
     const std::filesystem::path file = folder / name;
     std::filesystem::remove(file);
-    CHECK(is_enabled(robot.app, command("file.model")));
-    run_command(robot.app, "file.model");
-    robot.app.file_dialogs.path = file.string(); // before the field has it
+    CHECK(robot.app.commands.enabled(command("file.model")));
+    robot.app.commands.run("file.model");
+    robot.app.panels->model.query().path = file.string(); // before the field has it
     robot.frames(3);
     robot.click("model/save");
     robot.frames(2);
-    CHECK(robot.app.notice == "Saved " + file.string());
+    CHECK(robot.app.session.notice == "Saved " + file.string());
     CHECK(std::filesystem::file_size(file) > 200);
     std::filesystem::remove(file);
   }
@@ -169,8 +170,8 @@ TEST_CASE("the model is exported, by the ending of its name") {
   robot.click("transfer/save");
   robot.click("model/cancel");
   robot.frames(2);
-  run_command(robot.app, "file.model");
-  robot.app.file_dialogs.path = file.string();
+  robot.app.commands.run("file.model");
+  robot.app.panels->model.query().path = file.string();
   robot.frames(3);
   robot.click("model/save");
   robot.frames(2);

@@ -18,7 +18,7 @@ namespace {
 struct Drawing : Robot {
   Drawing() { begin_empty(1); }
 
-  const Mechanism& m() const { return app.mechanism(); }
+  const Mechanism& m() const { return app.session.mechanism(); }
   // A line of text, as the window tells keys: letters as capitals.
   void strike(const std::string& text) {
     for (const char c : text)
@@ -57,13 +57,15 @@ TEST_CASE("the length of a rod is typed while it is placed") {
   CHECK(shape.to.y() == 0);
   CHECK(d.app.tool.typed.empty());
   CHECK(d.app.tool.tool == Tool::select);
-  CHECK(d.app.document.position() == 1);
+  CHECK(d.app.session.document.position() == 1);
 }
 
 TEST_CASE("a typed length goes towards the point that the cursor is at") {
   Drawing d;
-  ++d.app.gesture;
-  edit(d.app, "Add ball", [&](Mechanism& next, Selection&) { add_body(next, {.at = {0.3, 0.1, 0}}); });
+  ++d.app.session.gesture;
+  edit(d.app.session, "Add ball", [&](Mechanism& next, Selection&) {
+    add_body(next, {.at = {0.3, 0.1, 0}});
+  });
   d.frames(2);
   d.click("tools/rod");
   d.click_at({0, 0, 0});
@@ -85,7 +87,7 @@ TEST_CASE("a typed length does not turn a rod") {
   REQUIRE(d.m().bodies.size() == 1);
   const Shape& shape = d.m().bodies[0].shapes[0];
   CHECK((shape.to - Vec3(0.16, 0.08, 0)).norm() < 1e-12);
-  CHECK_FALSE(d.app.keyboard.ring); // the hand is in the view
+  CHECK_FALSE(d.app.ui.keyboard.ring); // the hand is in the view
 }
 
 TEST_CASE("what is typed can be mended, and what is no length is told") {
@@ -102,11 +104,11 @@ TEST_CASE("what is typed can be mended, and what is no length is told") {
   }
   SECTION("Escape takes the number back, then the end, then the tool") {
     d.strike("0.25");
-    CHECK_THAT(tool_hint(d.app, d.app.inspector, d.app.tool), ContainsSubstring("Esc drops the number"));
+    CHECK_THAT(tool_hint(d.app.session, d.app.tool), ContainsSubstring("Esc drops the number"));
     d.key(key_escape);
     CHECK(d.app.tool.typed.empty());
     CHECK(d.app.tool.first);
-    CHECK_THAT(tool_hint(d.app, d.app.inspector, d.app.tool), ContainsSubstring("Esc drops the first"));
+    CHECK_THAT(tool_hint(d.app.session, d.app.tool), ContainsSubstring("Esc drops the first"));
     d.key(key_escape);
     CHECK_FALSE(d.app.tool.first);
     CHECK(d.app.tool.tool == Tool::rod);
@@ -115,20 +117,20 @@ TEST_CASE("what is typed can be mended, and what is no length is told") {
     d.strike(GENERATE("12 q", "0", "-1", "2 rad"));
     d.key(key_enter);
     CHECK(d.m().bodies.empty());
-    CHECK_THAT(d.app.notice, ContainsSubstring("is no length"));
+    CHECK_THAT(d.app.session.notice, ContainsSubstring("is no length"));
     CHECK(d.app.tool.first); // goes on
   }
 }
 
 TEST_CASE("the length of links, springs and dampers is typed as well") {
   Drawing d;
-  ++d.app.gesture;
-  edit(d.app, "Add block", [&](Mechanism& next, Selection&) {
+  ++d.app.session.gesture;
+  edit(d.app.session, "Add block", [&](Mechanism& next, Selection&) {
     add_body(next, {.form = BodyForm::block, .at = {0.2, 0, 0}, .size = {0.3, 0.3, 0.1}});
   });
   d.frames(2);
   const Tool tool = GENERATE(Tool::spring, Tool::damper, Tool::distance);
-  set_tool(d.app, tool);
+  set_tool(d.app.session, d.app.ui, d.app.tool, tool);
   d.frames(1);
   d.click_at({-0.2, 0, 0});
   d.point_at({0.15, 0, 0});
@@ -179,13 +181,13 @@ TEST_CASE("the size of balls, blocks and plates is typed before or while they ar
     CHECK(d.m().bodies[0].shapes[0].size == Vec3(0.4, 0.4, 0.04));
   }
   CHECK(d.app.tool.tool == Tool::select);
-  CHECK(d.app.document.position() == 1);
+  CHECK(d.app.session.document.position() == 1);
 }
 
 TEST_CASE("a drag takes a number with a unit, and Enter ends it") {
   Drawing d;
-  ++d.app.gesture;
-  edit(d.app, "Add ball", [&](Mechanism& next, Selection& selection) {
+  ++d.app.session.gesture;
+  edit(d.app.session, "Add ball", [&](Mechanism& next, Selection& selection) {
     selection.set({PartKind::body, add_body(next, {.at = {0, 0, 0}})});
   });
   d.frames(2);
@@ -221,5 +223,5 @@ TEST_CASE("a drag takes a number with a unit, and Enter ends it") {
     const double angle = 2 * std::acos(d.m().bodies[0].rotation.w());
     CHECK(angle == Approx(radians ? 0.5 : std::numbers::pi / 4));
   }
-  CHECK(d.app.document.position() == 2);
+  CHECK(d.app.session.document.position() == 2);
 }

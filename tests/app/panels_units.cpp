@@ -3,6 +3,7 @@
 #include "app/session/quantity.hpp"
 #include "app/session/settings.hpp"
 #include "app/ui/choices.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "robot.hpp"
@@ -56,35 +57,35 @@ TEST_CASE("a plain number is in the unit shown, and any unit can be typed") {
 TEST_CASE("fields, sliders and results show one and the same unit") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(2);
   robot.click(std::string("parameters/") + speed + "/value");
-  CHECK_THAT(app.fields.typing.text, ContainsSubstring("rpm"));
+  CHECK_THAT(app.ui.fields.typing.text, ContainsSubstring("rpm"));
   robot.type("120");
   robot.key(key_enter);
-  CHECK(get_parameter(app.mechanism(), speed) == Approx(4 * std::numbers::pi).epsilon(1e-15));
-  select(app, {{{PartKind::body, "collar"}}});
-  set_mode(app, Mode::build);
+  CHECK(get_parameter(app.session.mechanism(), speed) == Approx(4 * std::numbers::pi).epsilon(1e-15));
+  select(app.session, {{{PartKind::body, "collar"}}});
+  set_mode(app.session, Mode::build);
   robot.frames(3);
   robot.click("inspector/position/x");
-  CHECK_THAT(app.fields.typing.text, ContainsSubstring("mm"));
+  CHECK_THAT(app.ui.fields.typing.text, ContainsSubstring("mm"));
   robot.type("12.5");
   robot.key(key_enter);
-  CHECK(app.document.stored().bodies.back().position.x() == 0.0125);
+  CHECK(app.session.document.stored().bodies.back().position.x() == 0.0125);
   // Enter without typing changes nothing.
-  const std::size_t steps = app.document.position();
+  const std::size_t steps = app.session.document.position();
   robot.click("inspector/position/y");
   robot.key(key_enter);
-  CHECK(app.document.position() == steps);
+  CHECK(app.session.document.position() == steps);
 }
 
 TEST_CASE("the hand's steps on a slider are round in the unit shown") {
   Robot robot;
   App& app = robot.app;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(2);
   robot.drag(std::string("parameters/") + speed, {0.4f, 0.5f}, {0.71f, 0.5f});
-  const double rpm = get_parameter(app.mechanism(), speed) * 30 / std::numbers::pi;
+  const double rpm = get_parameter(app.session.mechanism(), speed) * 30 / std::numbers::pi;
   CHECK(rpm == Approx(std::round(rpm)).margin(1e-9));
 }
 
@@ -115,13 +116,13 @@ TEST_CASE("what was chosen is there when the program starts again") {
                            .state = folder.path()};
   {
     App app(options);
-    CHECK(app.units == DisplayUnits{});
-    choose_units(app, workshop);
-    open_legend(app, false);
+    CHECK(app.session.units == DisplayUnits{});
+    choose_units(app.session, app.ui, app.view, workshop);
+    open_legend(app.session, app.ui, app.view, false);
   }
   App again(options);
-  CHECK(again.units == workshop);
-  CHECK_FALSE(again.panels.legend);
+  CHECK(again.session.units == workshop);
+  CHECK_FALSE(again.view.legend);
 }
 
 TEST_CASE("settings that cannot be read are as at first") {
@@ -135,16 +136,16 @@ TEST_CASE("settings that cannot be read are as at first") {
 TEST_CASE("the lines below sliders change with the units at once") {
   Robot robot({1280, 900});
   App& app = robot.app;
-  choose_units(app, si);
+  choose_units(app.session, app.ui, app.view, si);
   robot.frames(2);
-  REQUIRE(robot.app.widgets.contains(std::string("parameters/") + speed + "/rate"));
-  const std::uint64_t ticket = app.answer.ticket;
-  const auto shown = [&] { return app.panels.rates.at(speed).rates.front(); };
+  REQUIRE(robot.app.ui.widgets.contains(std::string("parameters/") + speed + "/rate"));
+  const std::uint64_t ticket = app.session.answer.ticket;
+  const auto shown = [&] { return app.panels->parameters.rates().at(speed).rates.front(); };
   REQUIRE(shown().unit == "rad/(rad/s)");
   const double value = shown().value;
-  choose_units(app, workshop);
+  choose_units(app.session, app.ui, app.view, workshop);
   robot.frames(1);
-  CHECK(app.answer.ticket == ticket);
+  CHECK(app.session.answer.ticket == ticket);
   CHECK(shown().unit == "°/rpm");
   CHECK(shown().value == Approx(value * 6));
 }

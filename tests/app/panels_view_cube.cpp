@@ -1,4 +1,5 @@
 // The cube in the corner of the view: its faces, edges and corners are directions to look from.
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels/view_cube.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
@@ -65,7 +66,7 @@ TEST_CASE("a click on the cube looks from there, a drag turns the view") {
   robot.frames(2);
   CHECK(app.view.camera.azimuth == Approx(quarter / 2));
   CHECK(app.view.camera.elevation == Approx(0));
-  CHECK(app.selection().empty()); // the view below it was not meant
+  CHECK(app.session.selection().empty()); // the view below it was not meant
   robot.key('1');
   robot.click(on_cube(robot, 0, 0.8)); // the edge above
   robot.frames(2);
@@ -100,7 +101,7 @@ TEST_CASE("the camera glides to where a command puts it, within a fifth of a sec
   app.view.animated = true;
   robot.key('2');
   CHECK(app.view.glide);
-  CHECK(in_motion(app));
+  CHECK(in_motion(app.session, app.view));
   std::set<double> seen;
   double seconds = 0;
   while (app.view.glide && seconds < 1) {
@@ -111,7 +112,7 @@ TEST_CASE("the camera glides to where a command puts it, within a fifth of a sec
   CHECK(seconds < 0.2);
   CHECK(seen.size() > 6);
   CHECK(app.view.camera.azimuth == Approx(quarter));
-  CHECK_FALSE(in_motion(app));
+  CHECK_FALSE(in_motion(app.session, app.view));
   // A hand on the camera ends it.
   robot.key('1');
   REQUIRE(app.view.glide);

@@ -47,18 +47,18 @@ TEST_CASE("while a long solve runs the view moves and says that it is solving") 
            .numbers = {},
            .state = {}});
   app.view.samples = 1;
-  Stage stage(app, 1);
+  Stage stage(app.ui, 1);
   const PixelSize size{900, 600};
   const auto frame = [&] { stage.frame(app, size, 0.1); };
-  open_document(app, Document(long_chain(190)));
+  open_document(app.session, Document(long_chain(190)));
   for (int i = 0; i < 4; ++i)
     frame();
-  REQUIRE(solving(app));
-  CHECK(app.waited > 0.15); // long enough to be told
-  CHECK(app.widgets.contains("status"));
+  REQUIRE(solving(app.session));
+  CHECK(app.session.waited > 0.15); // long enough to be told
+  CHECK(app.ui.widgets.contains("status"));
 
   const Vec3 before = app.view.camera.target;
-  const ImVec2 middle = app.widgets.at("view").center();
+  const ImVec2 middle = app.ui.widgets.at("view").center();
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = middle;
   frame();
@@ -68,6 +68,6 @@ TEST_CASE("while a long solve runs the view moves and says that it is solving") 
   frame();
   io.MouseDown[1] = false;
   frame();
-  CHECK(solving(app)); // all this while
+  CHECK(solving(app.session)); // all this while
   CHECK((app.view.camera.target - before).norm() > 0);
 }

@@ -7,39 +7,39 @@ using namespace flyball::test;
 
 TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk is read again where nothing is unsaved") {
   robot.pass(3);
-  select(app, {{{PartKind::body, "ball1"}}});
+  select(app.session, {{{PartKind::body, "ball1"}}});
   const ViewCamera camera = app.view.camera;
   SECTION("a scene") {
     set_speed_in(file, 8);
     robot.pass(3);
     CHECK(robot.speed_now() == 8);
-    CHECK_THAT(app.notice, ContainsSubstring("Reloaded governor.json"));
-    CHECK_FALSE(app.document.unsaved());
-    CHECK(app.selection().has(Part{PartKind::body, "ball1"}));
+    CHECK_THAT(app.session.notice, ContainsSubstring("Reloaded governor.json"));
+    CHECK_FALSE(app.session.document.unsaved());
+    CHECK(app.session.selection().has(Part{PartKind::body, "ball1"}));
     CHECK(app.view.camera.eye() == camera.eye());
-    CHECK(app.answer.solution.status == Status::converged);
+    CHECK(app.session.answer.solution.status == Status::converged);
     robot.key('Z', true);
     CHECK(robot.speed_now() == 11.0174);
-    CHECK(app.document.unsaved());
+    CHECK(app.session.document.unsaved());
   }
   SECTION("no scene: the open one stays") {
     write_bytes(file, "{\"flyball\": 1");
     robot.pass(3);
     CHECK(robot.speed_now() == 11.0174);
-    CHECK_THAT(app.notice, ContainsSubstring("cannot be read"));
+    CHECK_THAT(app.session.notice, ContainsSubstring("cannot be read"));
   }
   SECTION("the same again: nothing happens") {
-    app.notice.clear();
+    app.session.notice.clear();
     write_bytes(file, read_bytes(file));
     robot.pass(3);
-    CHECK(app.notice.empty());
-    CHECK(app.document.steps().size() == 1);
+    CHECK(app.session.notice.empty());
+    CHECK(app.session.document.steps().size() == 1);
   }
   SECTION("its own saving is no change") {
     robot.set_speed(9);
     robot.key('S', true);
     robot.pass(3);
-    CHECK(app.notice == "Saved governor.json");
+    CHECK(app.session.notice == "Saved governor.json");
   }
 }
 
@@ -64,7 +64,7 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk while there are unsa
       robot.click("banner/reload");
       CHECK_FALSE(robot.shows("banner/keep"));
       CHECK(robot.speed_now() == 8);
-      CHECK_FALSE(app.document.unsaved());
+      CHECK_FALSE(app.session.document.unsaved());
       robot.key('Z', true);
       CHECK(robot.speed_now() == 5); // nothing is lost
     }
@@ -82,7 +82,7 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk while there are unsa
     robot.click("banner/keep"); // overwrite
     CHECK(speed_in(file) == 5);
     CHECK_FALSE(robot.shows("banner/keep"));
-    CHECK_FALSE(app.document.unsaved());
+    CHECK_FALSE(app.session.document.unsaved());
   }
 }
 
@@ -90,11 +90,11 @@ TEST_CASE_METHOD(OpenGovernor, "a file that vanishes is told once, and its docum
   robot.pass(3);
   fs::remove(file);
   robot.pass(3);
-  CHECK_THAT(app.notice, ContainsSubstring("no longer on disk"));
-  app.notice.clear();
+  CHECK_THAT(app.session.notice, ContainsSubstring("no longer on disk"));
+  app.session.notice.clear();
   robot.pass(5);
-  CHECK(app.notice.empty());
-  CHECK(has_unsaved_work(app));
+  CHECK(app.session.notice.empty());
+  CHECK(has_unsaved_work(app.session));
   robot.key('Q', true);
   CHECK_FALSE(app.quit);
   robot.click("unsaved/save");
@@ -106,7 +106,7 @@ TEST_CASE_METHOD(OpenGovernor, "reloading by hand can be undone") {
   robot.set_speed(5);
   robot.key('R', true);
   CHECK(robot.speed_now() == 11.0174);
-  CHECK_FALSE(robot.app.document.unsaved());
+  CHECK_FALSE(robot.app.session.document.unsaved());
   robot.key('Z', true);
   CHECK(robot.speed_now() == 5);
 }

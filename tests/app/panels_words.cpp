@@ -60,7 +60,7 @@ TEST_CASE("lines are broken at blanks, never within a number") {
 
 TEST_CASE("the help of a study's tab covers nothing of the study") {
   Robot robot({1280, 900});
-  open_study(robot.app, StudyKind::response);
+  open_study(robot.app.session, StudyKind::response);
   robot.frames(3);
   const WidgetRect tab = robot.widget("study/states");
   robot.point(tab.center());
@@ -75,20 +75,20 @@ TEST_CASE("where nothing resists the chip says it as the results do") {
   Mechanism m = Document::empty_mechanism();
   add_body(m, {.at = {0.2, 0, 0}});
   add_joint(m, JointType::revolute, {"ground", "ball1"}, Vec3::Zero(), Vec3::UnitY());
-  open_document(app, Document(m));
+  open_document(app.session, Document(m));
   robot.frames(3);
-  REQUIRE(converged(app));
-  REQUIRE(app.answer.solution.stability_reason == StabilityReason::neutral);
+  REQUIRE(converged(app.session));
+  REQUIRE(app.session.answer.solution.stability_reason == StabilityReason::neutral);
   const Image picture = robot.picture();
   const WidgetRect& chip = robot.widget("status");
-  CHECK(pixels_like(picture, chip, colors_of(app).good) > 3);
-  CHECK(pixels_like(picture, chip, colors_of(app).warn) == 0);
+  CHECK(pixels_like(picture, chip, colors_of(app.ui).good) > 3);
+  CHECK(pixels_like(picture, chip, colors_of(app.ui).warn) == 0);
 }
 
 TEST_CASE("all types of a joint are in sight in their list") {
   Robot robot({1280, 900});
-  set_mode(robot.app, Mode::build);
-  select(robot.app, {{{PartKind::joint, "arm1"}}});
+  set_mode(robot.app.session, Mode::build);
+  select(robot.app.session, {{{PartKind::joint, "arm1"}}});
   robot.frames(3);
   robot.click("inspector/type");
   robot.frames(2);
@@ -99,8 +99,8 @@ TEST_CASE("all types of a joint are in sight in their list") {
 
 TEST_CASE("the buttons of the motion's line stand in one line") {
   Robot robot({1280, 900});
-  robot.app.motion.duration = 0.2;
-  open_study(robot.app, StudyKind::response);
+  robot.app.session.motion.duration = 0.2;
+  open_study(robot.app.session, StudyKind::response);
   robot.frames(3);
   const float top = robot.widget("study/close").from.y;
   robot.key('M');
@@ -112,7 +112,7 @@ TEST_CASE("the buttons of the motion's line stand in one line") {
 TEST_CASE("the toolbar's views stay where they are between Build and Explore") {
   Robot robot({1280, 900});
   const float explore = robot.widget("toolbar/front").from.x;
-  set_mode(robot.app, Mode::build);
+  set_mode(robot.app.session, Mode::build);
   robot.frames(2);
   CHECK(robot.widget("toolbar/front").from.x == explore);
 }
@@ -125,26 +125,26 @@ TEST_CASE("in a small window the theme's button stays, and what is left out is i
   };
   CHECK(within(robot.widget("toolbar/theme"), 20));
   for (const char* name : {"toolbar/ghost", "toolbar/grid", "toolbar/shadow", "toolbar/front", "toolbar/iso"})
-    if (robot.app.widgets.contains(name)) {
+    if (robot.app.ui.widgets.contains(name)) {
       INFO(name);
       CHECK(robot.widget(name).to.x <= robot.widget("toolbar/theme").from.x);
     }
-  CHECK(robot.app.widgets.contains("toolbar/shadow") == (width >= 900));
+  CHECK(robot.app.ui.widgets.contains("toolbar/shadow") == (width >= 900));
 }
 
 TEST_CASE("where the legend would cover a fifth of the view, it folds until it is asked for") {
   Robot robot({800, 600});
   App& app = robot.app;
   app.view.loads = true;
-  open_study(app, StudyKind::response);
+  open_study(app.session, StudyKind::response);
   robot.frames(3);
-  CHECK_FALSE(app.widgets.contains("legend/0"));
+  CHECK_FALSE(app.ui.widgets.contains("legend/0"));
   robot.click("legend");
   robot.frames(2);
-  CHECK(app.widgets.contains("legend/0"));
+  CHECK(app.ui.widgets.contains("legend/0"));
   robot.frames(30); // else it would be a double click
   robot.click("legend");
   robot.frames(2);
-  CHECK_FALSE(app.widgets.contains("legend/0"));
-  CHECK(app.panels.legend); // of larger views
+  CHECK_FALSE(app.ui.widgets.contains("legend/0"));
+  CHECK(app.view.legend); // of larger views
 }

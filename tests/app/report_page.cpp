@@ -136,6 +136,35 @@ TEST_CASE("a report's curves pass through its state") {
     }
 }
 
+TEST_CASE(
+    "a report of what moves periodically tells its ranges and multipliers, and its motions over a slider") {
+  Mechanism m = load_scene(std::string(FLYBALL_ASSETS) + "/scenes/horizontal_rotor.json");
+  m.sliders.resize(1);
+  m.sliders[0].from = 60;
+  ReportOptions options;
+  options.plotted = {"whirl", "up"};
+  const ReportContents contents = report_contents(std::make_shared<const Mechanism>(m), options);
+  REQUIRE(moves(contents));
+  REQUIRE(contents.curves.size() == 1);
+  REQUIRE(contents.curves[0].plots.size() == 2);
+  const Plot& whirl = contents.curves[0].plots[0];
+  CHECK(whirl.y.label == "whirl");
+  CHECK_FALSE(whirl.marker); // it turns at 30 rad/s
+  REQUIRE(whirl.bands.size() == 1);
+  REQUIRE(whirl.curves.size() == 1);
+  CHECK(whirl.curves[0].points.size() >= 25);
+  const std::string page = report_page(contents);
+  check_page(page);
+  CHECK(section(page, "response").find("least to most") != std::string::npos);
+  CHECK(section(page, "response").find("Periodic motions as one number moves") != std::string::npos);
+  CHECK(contents.periodic->stable == true);
+  const std::string told = section(page, "periodic-motion");
+  CHECK(told.find("across") != std::string::npos);
+  CHECK(told.find("bearing") != std::string::npos);
+  CHECK(told.find("Floquet multipliers") != std::string::npos);
+  CHECK_FALSE(contents_of("pendulum").periodic);
+}
+
 TEST_CASE("springs in a report balance what they hold") {
   const ReportContents contents = contents_of("governor");
   REQUIRE(contents.springs.size() == 1);
@@ -184,19 +213,6 @@ TEST_CASE("a report without a steady state says why") {
   CHECK(page.find(Html(contents.solution.message).text()) != std::string::npos);
   CHECK(section(page, "loads").empty());
   CHECK(section(page, "stability").empty());
-}
-
-TEST_CASE("a report of what moves periodically tells its ranges and multipliers") {
-  const ReportContents contents = contents_of("horizontal_rotor");
-  REQUIRE(contents.periodic);
-  CHECK(contents.periodic->stable == true);
-  const std::string page = report_page(contents);
-  check_page(page);
-  const std::string told = section(page, "periodic-motion");
-  CHECK(told.find("across") != std::string::npos);
-  CHECK(told.find("bearing") != std::string::npos);
-  CHECK(told.find("Floquet multipliers") != std::string::npos);
-  CHECK_FALSE(contents_of("pendulum").periodic);
 }
 
 TEST_CASE("a report tells of dry friction where there is some") {

@@ -2,6 +2,7 @@
 
 #include "app/render/imgui_compat.hpp"
 
+#include "app/ui/camera_glide.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -25,13 +26,13 @@ Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
            .scenes = FLYBALL_ASSETS "/scenes",
            .theme = Theme::light,
            .numbers = numbers}),
-      stage(app, 1, &fonts()), size(wanted) {
+      stage(app.ui, 1, &fonts()), size(wanted) {
   app.view.samples = 1;
   imgui_compat::map_key(ImGuiKey_Enter, key_enter);
   imgui_compat::map_key(ImGuiKey_Escape, key_escape);
   imgui_compat::map_key(ImGuiKey_A, 'A');
   imgui_compat::take_events_at_once();
-  open_scene(app, shipped_file("governor"));
+  open_scene(app.session, shipped_file("governor"));
   frames(3);
 }
 
@@ -41,9 +42,9 @@ void Robot::frames(int count, double seconds) {
 }
 
 const WidgetRect& Robot::widget(const std::string& name) {
-  const auto found = app.widgets.find(name);
+  const auto found = app.ui.widgets.find(name);
   INFO("widget " << name);
-  REQUIRE(found != app.widgets.end());
+  REQUIRE(found != app.ui.widgets.end());
   return found->second;
 }
 
@@ -118,7 +119,7 @@ void Robot::wheel(const std::string& name, float notches) {
 void Robot::key(int code, bool ctrl, bool shift) {
   imgui_compat::set_modifiers(ctrl, shift);
   imgui_compat::set_key(code, true);
-  app.keys.push_back({code, ctrl, shift});
+  app.ui.keys.push_back({code, ctrl, shift});
   frames(1);
   imgui_compat::set_modifiers(ctrl_, shift_);
   imgui_compat::set_key(code, false);
@@ -126,7 +127,7 @@ void Robot::key(int code, bool ctrl, bool shift) {
 }
 
 void Robot::alt(int code) {
-  app.keys.push_back({code, false, false, code != 342});
+  app.ui.keys.push_back({code, false, false, code != 342});
   frames(3);
 }
 
@@ -161,7 +162,7 @@ void Robot::click_at(const Vec3& world) {
 }
 
 void Robot::begin_empty(double height) {
-  open_document(app, Document());
+  open_document(app.session, Document());
   look_from(app.view, 0, 0);
   frames(3);
   app.view.fit = false;
@@ -177,7 +178,7 @@ void Robot::type(const std::string& text) {
 
 Image Robot::picture() {
   Framebuffer target(size.width, size.height, 1);
-  stage.render(app, target);
+  stage.render(app.ui, target);
   return target.read();
 }
 

@@ -69,7 +69,7 @@ TEST_CASE("Session: the motion begins in the periodic one and stays there") {
   RotorSession session;
   const PeriodicState* motion = periodic_motion(session);
   REQUIRE(motion);
-  show_periodic_motion(session);
+  show_periodic_motion(session, *motion);
   session.frames(5);
   const MotionRun* shown = shown_motion(session);
   REQUIRE(shown);

@@ -4,6 +4,7 @@
 // costs while a body is pulled by hand.
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/app.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
@@ -44,21 +45,21 @@ void move_in_large_net() {
   net.sliders = {{.parameter = "joints.spin.drive.speed", .from = 0, .to = 2 * speed, .description = {}}};
   for (const LiveSolver::Mode mode : {LiveSolver::Mode::background, LiveSolver::Mode::immediate}) {
     App app({.mode = mode, .on_news = {}, .scenes = {}, .numbers = {}});
-    open_document(app, Document(net));
-    app.mode = ::flyball::Mode::explore;
+    open_document(app.session, Document(net));
+    app.session.mode = ::flyball::Mode::explore;
     for (int i = 0; i < moves; ++i) {
-      while (solving(app)) {
+      while (solving(app.session)) {
         update(app, 0, {600, 400});
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
       const auto begin = Clock::now();
-      change_parameter(app, "joints.spin.drive.speed", speed + 1e-3 * (i + 1));
+      change_parameter(app.session, "joints.spin.drive.speed", speed + 1e-3 * (i + 1));
       const double spent = seconds_since(begin);
       update(app, 0, {600, 400});
       if (mode == LiveSolver::Mode::background)
         window.push_back(1e3 * spent);
       else
-        beside.push_back(1e3 * (spent - app.answer.solution.run_time_s));
+        beside.push_back(1e3 * (spent - app.session.answer.solution.run_time_s));
     }
   }
   std::ranges::sort(window);
@@ -81,12 +82,12 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
   constexpr int events = 60;
   constexpr float radius = 40; // pixels
   const auto b = static_cast<std::size_t>(body_index(m, body));
-  open_document(app, Document(m));
-  set_mode(app, mode);
+  open_document(app.session, Document(m));
+  set_mode(app.session, mode);
   look_from(app.view, 0, 0);
   const auto settle = [&] {
     frame(1 / wanted);
-    while (solving(app)) {
+    while (solving(app.session)) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       update(app, 0, {600, 400});
     }
@@ -95,8 +96,8 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
   for (int i = 0; i < 5; ++i) // until the camera has all in view
     settle();
   ImGuiIO& io = ImGui::GetIO();
-  const WidgetRect view = app.widgets.at("view");
-  const Vec3 at = mode == ::flyball::Mode::build ? m.bodies[b].position : app.poses.at(b).position;
+  const WidgetRect view = app.ui.widgets.at("view");
+  const Vec3 at = mode == ::flyball::Mode::build ? m.bodies[b].position : app.session.poses.at(b).position;
   const auto pixel = app.view.camera.project(
       at, {static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)});
   const ImVec2 from(view.from.x + static_cast<float>(pixel->x()),
@@ -113,7 +114,7 @@ void pull_by_hand(App& app, const Frame& frame, const char* title, const Mechani
     const auto begin = Clock::now();
     frame(1 / wanted);
     event.push_back(1e3 * seconds_since(begin));
-    while (solving(app) || app.goals.seeking.running()) {
+    while (solving(app.session) || app.session.goals.seeking.running()) {
       std::this_thread::sleep_for(std::chrono::microseconds(50));
       update(app, 0, {600, 400});
     }
@@ -203,10 +204,10 @@ int main() {
   io.IniFilename = nullptr;
   io.DisplaySize = {width, height};
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
-  app.fonts = load_fonts(*io.Fonts, 16, 1);
-  io.FontDefault = app.fonts.text;
+  app.ui.fonts = load_fonts(*io.Fonts, 16, 1);
+  io.FontDefault = app.ui.fonts.text;
   io.Fonts->Build();
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app.session, FLYBALL_ASSETS "/scenes/governor.json");
   const auto frame = [&](double seconds) {
     update(app, seconds, {600, 400});
     io.DeltaTime = static_cast<float>(seconds);
@@ -215,7 +216,7 @@ int main() {
     ImGui::Render();
   };
   frame(1 / wanted);
-  open_study(app, StudyKind::response);
+  open_study(app.session, StudyKind::response);
   for (int i = 0; i < 30; ++i) {
     frame(1 / wanted);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -223,21 +224,21 @@ int main() {
 
   std::vector<double> spent; // s, by frame
   std::size_t late = 0, curves = 0;
-  const std::uint64_t first_answer = app.answer.ticket;
+  const std::uint64_t first_answer = app.session.answer.ticket;
   std::uint64_t answers = 0, ticket = first_answer;
-  auto curve = app.study.response.curve.found;
+  auto curve = app.session.study.response.curve.found;
   const auto start = Clock::now();
   auto due = start;
   while (seconds_since(start) < duration) {
     const auto begin = Clock::now();
-    change_parameter(app, "joints.slide.spring.stiffness",
+    change_parameter(app.session, "joints.slide.spring.stiffness",
                      1000 * std::exp(std::sin(3 * seconds_since(start))));
     frame(1 / wanted);
     spent.push_back(seconds_since(begin));
-    answers += app.answer.ticket != ticket;
-    ticket = app.answer.ticket;
-    curves += app.study.response.curve.found != curve;
-    curve = app.study.response.curve.found;
+    answers += app.session.answer.ticket != ticket;
+    ticket = app.session.answer.ticket;
+    curves += app.session.study.response.curve.found != curve;
+    curve = app.session.study.response.curve.found;
     due += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / wanted));
     if (Clock::now() > due) {
       ++late;

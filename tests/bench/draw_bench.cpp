@@ -74,8 +74,8 @@ void use_window(const Mechanism& m) {
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
   const auto file = std::filesystem::temp_directory_path() / "flyball-draw-bench.json";
   write_bytes(file, write_scene(unsolved(m)));
-  Stage stage(app, 1);
-  const double opening = fastest(2, [&] { open_scene(app, file); });
+  Stage stage(app.ui, 1);
+  const double opening = fastest(2, [&] { open_scene(app.session, file); });
   std::filesystem::remove(file);
   answer_as_drawn(app);
   const auto frame = [&] { stage.frame(app, window, 0.01); };
@@ -84,23 +84,23 @@ void use_window(const Mechanism& m) {
   const int drawn = stage.views_changed();
   const double still = fastest(5, frame);
   const bool drew = stage.views_changed() != drawn;
-  set_mode(app, Mode::build);
+  set_mode(app.session, Mode::build);
   for (int i = 0; i < 4; ++i)
     frame();
   const double building = fastest(5, frame);
-  const std::string& body = app.mechanism().bodies.back().name;
+  const std::string& body = app.session.mechanism().bodies.back().name;
   const double editing = fastest(3, [&] {
-    edit(app, "Mass", [&](Mechanism& changed, Selection&) { changed.bodies.back().mass += 1; });
+    edit(app.session, "Mass", [&](Mechanism& changed, Selection&) { changed.bodies.back().mass += 1; });
     answer_as_drawn(app);
   });
   const double selecting = fastest(3, [&] {
     Selection all;
-    for (const Body& each : app.mechanism().bodies)
+    for (const Body& each : app.session.mechanism().bodies)
       all.parts.push_back({PartKind::body, each.name});
-    select(app, std::move(all));
+    select(app.session, std::move(all));
   });
-  select(app, {{{PartKind::body, body}}});
-  const double undoing = fastest(2, [&] { undo(app); });
+  select(app.session, {{{PartKind::body, body}}});
+  const double undoing = fastest(2, [&] { undo(app.session); });
   std::printf("%12zu %10.1f %12.2f%s %12.2f %12.2f %12.2f %12.2f\n", m.bodies.size(), opening, still,
               drew ? "!" : " ", building, editing, undoing, selecting);
 }

@@ -7,6 +7,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/tools/tools.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -23,16 +24,16 @@ class Hand : public Robot {
  public:
   explicit Hand(const char* scene = nullptr) : Robot(window, steady_options().numbers) {
     if (scene)
-      open_scene(app, std::filesystem::path(FLYBALL_ASSETS "/scenes") / scene);
+      open_scene(app.session, std::filesystem::path(FLYBALL_ASSETS "/scenes") / scene);
     else
-      open_document(app, Document());
-    set_mode(app, Mode::build);
+      open_document(app.session, Document());
+    set_mode(app.session, Mode::build);
     frames(3);
   }
   void choose(PartKind kind, const char* name) {
     Selection selection;
     selection.set({kind, name});
-    select(app, selection);
+    select(app.session, selection);
     frames(3);
   }
   void check(const std::string& name) {
@@ -64,7 +65,7 @@ TEST_CASE("a named point is picked for a joint") {
   Hand hand("governor_parametric.json");
   hand.key('1');
   hand.choose(PartKind::joint, "slide");
-  set_tool(hand.app, Tool::point);
+  set_tool(hand.app.session, hand.app.ui, hand.app.tool, Tool::point);
   hand.app.tool.standing = "joints.slide.at";
   hand.frames(3);
   hand.check("editor-picking-point");
@@ -92,7 +93,7 @@ TEST_CASE("each kind of part has its inspector") {
     hand.key('S');
     hand.click_at({1, 0, 0});
     hand.click_at({1, -1, 0});
-    REQUIRE(hand.app.mechanism().forces.size() == 1);
+    REQUIRE(hand.app.session.mechanism().forces.size() == 1);
     hand.check("inspector-spring");
   }
   SECTION("scene") {
@@ -110,12 +111,12 @@ TEST_CASE("each kind of part has its inspector") {
   }
   SECTION("a body that expressions give") {
     Hand hand("governor_parametric.json");
-    edit(hand.app, "Turn", [](Mechanism& next, Selection&) {
+    edit(hand.app.session, "Turn", [](Mechanism& next, Selection&) {
       set_expression(next, "bodies.ball1.turn.2", "20 deg");
       name_number(next, "bodies.ball1.shapes.1.radius", "rod");
     });
-    hand.app.panels.inspector_share = 0.9f;
-    hand.app.sections.open["inspector/mass section"] = false;
+    hand.app.sizes.inspector_share = 0.9f;
+    hand.app.ui.sections.open["inspector/mass section"] = false;
     hand.choose(PartKind::body, "ball1");
     hand.check("inspector-shapes");
   }
@@ -130,11 +131,11 @@ TEST_CASE("a collar is dragged to where it should settle, and the sliders follow
   Hand hand("governor_parametric.json");
   // Its read-outs would fill the panel, whose rows are a pixel higher with some versions of ImGui than with
   // others.
-  edit(hand.app, "Clear", [](Mechanism& next, Selection&) { next.measures.clear(); });
-  set_mode(hand.app, Mode::explore);
+  edit(hand.app.session, "Clear", [](Mechanism& next, Selection&) { next.measures.clear(); });
+  set_mode(hand.app.session, Mode::explore);
   hand.frames(4);
-  const auto collar = static_cast<std::size_t>(body_index(hand.app.mechanism(), "collar"));
-  const Vec3 from = hand.app.poses.at(collar).position;
+  const auto collar = static_cast<std::size_t>(body_index(hand.app.session.mechanism(), "collar"));
+  const Vec3 from = hand.app.session.poses.at(collar).position;
   hand.hold(false, true, true);
   hand.point(hand.pixel(from));
   hand.press();
@@ -153,7 +154,7 @@ TEST_CASE("an unfinished mechanism says what is missing") {
   Hand hand("governor.json");
   hand.choose(PartKind::joint, "spin");
   hand.key(keys::del);
-  REQUIRE_FALSE(hand.app.mistakes.empty());
+  REQUIRE_FALSE(hand.app.session.mistakes.empty());
   hand.check("editor-unfinished");
 }
 
@@ -173,7 +174,7 @@ TEST_CASE("the sheet of shortcuts lists every key") {
 
 TEST_CASE("the examples have pictures") {
   Hand hand;
-  show_gallery(hand.app);
+  hand.app.commands.run("file.examples");
   hand.frames(30);
   hand.check("gallery");
 }
@@ -187,47 +188,63 @@ TEST_CASE("parts are turned with rings") {
 
 TEST_CASE("the motion stands beside the steady state, with its plots", "[egl]") {
   Hand hand("governor.json");
-  set_mode(hand.app, Mode::explore);
-  open_study(hand.app, StudyKind::motion);
+  set_mode(hand.app.session, Mode::explore);
+  open_study(hand.app.session, StudyKind::motion);
   hand.frames(2);
-  hand.app.playback.playing = false;
-  seek_motion(hand.app, 0.55);
+  hand.app.session.playback.playing = false;
+  seek_motion(hand.app.session, 0.55);
   SECTION("in amber") {
     hand.check("study-motion");
   }
   SECTION("in a view of its own") {
-    hand.app.motion.beside = true;
+    hand.app.session.motion.beside = true;
     hand.check("study-motion-beside");
   }
 }
 
 TEST_CASE("the landscape is drawn below the view") {
   Hand hand("conical_pendulum.json");
-  set_mode(hand.app, Mode::explore);
+  set_mode(hand.app.session, Mode::explore);
   SECTION("response") {
-    open_study(hand.app, StudyKind::response);
+    open_study(hand.app.session, StudyKind::response);
     hand.check("study-response");
   }
   SECTION("states") {
-    open_study(hand.app, StudyKind::states);
+    open_study(hand.app.session, StudyKind::states);
     hand.check("study-states");
   }
   SECTION("modes") {
-    open_study(hand.app, StudyKind::modes);
+    open_study(hand.app.session, StudyKind::modes);
     hand.check("study-modes");
   }
   SECTION("map") {
-    open_study(hand.app, StudyKind::map);
+    open_study(hand.app.session, StudyKind::map);
     hand.check("study-map");
   }
 }
 
+TEST_CASE("periodic motions are drawn over a number where the balance turns") {
+  Hand hand("horizontal_rotor.json");
+  set_mode(hand.app.session, Mode::explore);
+  open_study(hand.app.session, StudyKind::response);
+  hand.app.session.study.response.choice.quantity = "value up";
+  hand.check("study-resonance");
+}
+
+TEST_CASE("the limit cycle is told beside the steady state that hunts") {
+  Hand hand("governor_engine.json");
+  set_mode(hand.app.session, Mode::explore);
+  change_parameter(hand.app.session, "joints.slide.damping", 15);
+  find_cycle(hand.app.session, true);
+  hand.check("limit-cycle");
+}
+
 TEST_CASE("the boundary of hunting is drawn in the map: Vyshnegradsky's diagram") {
   Hand hand("governor_engine.json");
-  set_mode(hand.app, Mode::explore);
-  open_study(hand.app, StudyKind::map);
+  set_mode(hand.app.session, Mode::explore);
+  open_study(hand.app.session, StudyKind::map);
   hand.frames(2);
-  MapChoice& choice = hand.app.study.map.choice;
+  MapChoice& choice = hand.app.session.study.map.choice;
   choice.hunting = true;
   choice.axes = {MapAxis{"joints.slide.damping", 5, 60, 23}, MapAxis{"parameters.gain", 1000, 20000, 23}};
   choice.shown = "spin.speed";
@@ -236,31 +253,31 @@ TEST_CASE("the boundary of hunting is drawn in the map: Vyshnegradsky's diagram"
 
 TEST_CASE("how the governor scatters is drawn below the view, and around its response") {
   Hand hand("governor_parametric.json");
-  set_mode(hand.app, Mode::explore);
-  hand.app.study.spread.begun = true;
-  hand.app.study.spread.choice.tolerances = {{"parameters.w", Distribution::normal, 2},
-                                             {"parameters.L", Distribution::uniform, 0.003, false},
-                                             {"parameters.m", Distribution::triangular, 20},
-                                             {"parameters.k", Distribution::normal, 3}};
+  set_mode(hand.app.session, Mode::explore);
+  hand.app.session.study.spread.begun = true;
+  hand.app.session.study.spread.choice.tolerances = {{"parameters.w", Distribution::normal, 2},
+                                                     {"parameters.L", Distribution::uniform, 0.003, false},
+                                                     {"parameters.m", Distribution::triangular, 20},
+                                                     {"parameters.k", Distribution::normal, 3}};
   SECTION("histogram") {
-    open_study(hand.app, StudyKind::spread);
+    open_study(hand.app.session, StudyKind::spread);
     hand.check("study-spread");
   }
   SECTION("band") {
-    open_study(hand.app, StudyKind::response);
-    hand.app.study.band.wanted = true;
+    open_study(hand.app.session, StudyKind::response);
+    hand.app.session.study.band.wanted = true;
     hand.check("study-band");
   }
 }
 
 TEST_CASE("what friction holds is told, and drawn around the response") {
   Hand hand("governor_friction.json");
-  set_mode(hand.app, Mode::explore);
-  open_study(hand.app, StudyKind::response);
+  set_mode(hand.app.session, Mode::explore);
+  open_study(hand.app.session, StudyKind::response);
   hand.frames(2);
-  choose_response_end(hand.app, &ResponseChoice::from, 14);
-  choose_response_end(hand.app, &ResponseChoice::to, 20);
-  hand.app.study.response.choice.quantity = "value lift";
+  choose_response_end(hand.app.session, &ResponseChoice::from, 14);
+  choose_response_end(hand.app.session, &ResponseChoice::to, 20);
+  hand.app.session.study.response.choice.quantity = "value lift";
   hand.check("study-friction");
 }
 
@@ -285,7 +302,7 @@ TEST_CASE("the tutorial's pictures are what its steps lead to") {
 
 TEST_CASE("what acts on the governor is drawn, and on one ball of it") {
   Hand hand("governor.json");
-  set_mode(hand.app, Mode::explore);
+  set_mode(hand.app.session, Mode::explore);
   hand.frames(2);
   hand.key('A');
   hand.check("governor-loads");
@@ -296,15 +313,15 @@ TEST_CASE("what acts on the governor is drawn, and on one ball of it") {
 TEST_CASE("the context menu of a body") {
   Hand hand("governor.json");
   hand.choose(PartKind::body, "ball1");
-  run_command(hand.app, "view.menu");
+  hand.app.commands.run("view.menu");
   hand.frames(2);
   hand.check("context-menu");
 }
 
 TEST_CASE("the governor's transfer function is drawn below the view") {
   Hand hand("governor.json");
-  set_mode(hand.app, Mode::explore);
-  hand.app.study.transfer.choice = {"torque(slide)", "slide"};
-  open_study(hand.app, StudyKind::transfer);
+  set_mode(hand.app.session, Mode::explore);
+  hand.app.session.study.transfer.choice = {"torque(slide)", "slide"};
+  open_study(hand.app.session, StudyKind::transfer);
   hand.check("study-transfer");
 }

@@ -2,6 +2,7 @@
 #include "stored_picture.hpp"
 
 #include "app/render/offscreen.hpp"
+#include "app/ui/view_frame.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
 
@@ -17,9 +18,9 @@ template <class Change>
 Image changed_governor(const Change& change) {
   App app(steady_options());
   app.view.samples = 1;
-  open_scene(app, FLYBALL_ASSETS "/scenes/governor.json");
+  open_scene(app.session, FLYBALL_ASSETS "/scenes/governor.json");
   view_picture(app, view_size); // places the camera
-  ViewFrame frame = view_frame(app);
+  ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   Mechanism mechanism = *frame.mechanism;
   std::vector<Pose> poses(frame.poses.begin(), frame.poses.end()),
       ghost(frame.ghost.begin(), frame.ghost.end());

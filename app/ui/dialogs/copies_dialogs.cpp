@@ -1,8 +1,9 @@
-// What Mirror and Circular copy ask for.
+#include "app/ui/dialogs/copies_dialogs.hpp"
+
 #include "app/document/copies.hpp"
 #include "app/document/transform.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/edit_commands.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/dialog_state.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
@@ -69,56 +70,58 @@ bool accepted(Ui& ui, const std::string& name, const char* text) {
 
 } // namespace
 
-void show_mirror_dialog(App& app) {
-  if (app.selection().empty()) return;
-  const Spin spin = spin_of(app.mechanism());
-  CopyChoice& choice = app.commands.copy;
-  choice.point = spin.point;
+void CopiesDialogs::open_mirror(const Session& session, DialogState& dialog) {
+  if (session.selection().empty()) return;
+  const Spin spin = spin_of(session.mechanism());
+  choice_.point = spin.point;
   // The plane through the spin axis from which the selected parts stand off most.
-  Vec3 off = centre_of(app.mechanism(), app.selection()).value_or(spin.point) - spin.point;
+  Vec3 off = centre_of(session.mechanism(), session.selection()).value_or(spin.point) - spin.point;
   off[main_axis(spin.axis)] = 0;
-  choice.axis = off.isZero(1e-12) ? (main_axis(spin.axis) + 1) % 3 : main_axis(off);
-  app.dialog.wanted = Dialog::mirror;
+  choice_.axis = off.isZero(1e-12) ? (main_axis(spin.axis) + 1) % 3 : main_axis(off);
+  dialog.wanted = Dialog::mirror;
 }
 
-void show_circular_dialog(App& app) {
-  if (app.selection().empty()) return;
-  const Spin spin = spin_of(app.mechanism());
-  app.commands.copy.point = spin.point;
-  app.commands.copy.axis = main_axis(spin.axis);
-  app.dialog.wanted = Dialog::circular;
+void CopiesDialogs::open_circular(const Session& session, DialogState& dialog) {
+  if (session.selection().empty()) return;
+  const Spin spin = spin_of(session.mechanism());
+  choice_.point = spin.point;
+  choice_.axis = main_axis(spin.axis);
+  dialog.wanted = Dialog::circular;
 }
 
-void mirror_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::mirror, "Mirror the selected parts", 420)) return;
-  CopyChoice& choice = app.commands.copy;
-  paragraph("At the plane through this point, at right angles to", colors_of(app).dim);
-  axis_choice(app, "mirror/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, app, "mirror/point", choice.point);
-  if (accepted(app, "mirror", "Mirror"))
-    edit(app, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
-      selection = mirror_parts(mechanism, selection, choice.point, unit(choice.axis));
+void CopiesDialogs::draw(Session& session, Ui& ui, DialogState& dialog) {
+  draw_mirror(session, ui, dialog);
+  draw_circular(session, ui, dialog);
+}
+
+void CopiesDialogs::draw_mirror(Session& session, Ui& ui, DialogState& dialog) {
+  if (!begin_dialog(ui, dialog, Dialog::mirror, "Mirror the selected parts", 420)) return;
+  paragraph("At the plane through this point, at right angles to", colors_of(ui).dim);
+  axis_choice(ui, "mirror/axis", {"x", "y", "z"}, choice_.axis);
+  point_fields(session, ui, "mirror/point", choice_.point);
+  if (accepted(ui, "mirror", "Mirror"))
+    edit(session, "Mirror", [&](Mechanism& mechanism, Selection& selection) {
+      selection = mirror_parts(mechanism, selection, choice_.point, unit(choice_.axis));
     });
   end_dialog();
 }
 
-void circular_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
-  CopyChoice& choice = app.commands.copy;
-  paragraph("Evenly round the axis through this point along", colors_of(app).dim);
-  axis_choice(app, "circular/axis", {"x", "y", "z"}, choice.axis);
-  point_fields(app, app, "circular/point", choice.point);
+void CopiesDialogs::draw_circular(Session& session, Ui& ui, DialogState& dialog) {
+  if (!begin_dialog(ui, dialog, Dialog::circular, "Copy the selected parts round an axis", 420)) return;
+  paragraph("Evenly round the axis through this point along", colors_of(ui).dim);
+  axis_choice(ui, "circular/axis", {"x", "y", "z"}, choice_.axis);
+  point_fields(session, ui, "circular/point", choice_.point);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("In all");
-  ImGui::SameLine(90 * app.scale);
-  ImGui::SetNextItemWidth(120 * app.scale);
-  ImGui::InputInt("##count", &choice.count, 0);
-  choice.count = std::clamp(choice.count, 2, 100);
-  note_widget(app.widgets, "circular/count", KeyUse::type);
+  ImGui::SameLine(90 * ui.scale);
+  ImGui::SetNextItemWidth(120 * ui.scale);
+  ImGui::InputInt("##count", &choice_.count, 0);
+  choice_.count = std::clamp(choice_.count, 2, 100);
+  note_widget(ui.widgets, "circular/count", KeyUse::type);
   help_on_hover("How many there are then, the selected one included.");
-  if (accepted(app, "circular", "Copy"))
-    edit(app, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
-      selection = circular_copy(mechanism, selection, choice.point, unit(choice.axis), choice.count);
+  if (accepted(ui, "circular", "Copy"))
+    edit(session, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
+      selection = circular_copy(mechanism, selection, choice_.point, unit(choice_.axis), choice_.count);
     });
   end_dialog();
 }

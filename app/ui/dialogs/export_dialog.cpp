@@ -1,6 +1,6 @@
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/dialogs/export_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/size_fields.hpp"
@@ -19,55 +19,50 @@ constexpr std::array picture_sizes{PictureSize{"720p", "1280 × 720", 1280, 720}
                                    PictureSize{"1080p", "1920 × 1080", 1920, 1080},
                                    PictureSize{"4k", "3840 × 2160", 3840, 2160}};
 
-void save_picture(App& app) {
-  DialogState& dialog = app.dialog;
-  const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
-  if (!may_replace(app, app.file_dialogs, file)) return;
-  app.export_request = ExportRequest{file, std::clamp(dialog.width, smallest_picture, largest_picture),
-                                     std::clamp(dialog.height, smallest_picture, largest_picture),
-                                     dialog.panels, dialog.loads};
-  close_dialog();
-}
-
 } // namespace
 
-void show_export_dialog(App& app) {
-  app.dialog.wanted = Dialog::export_picture;
-  app.dialog.loads = app.view.loads;
-  show_folder(app.file_dialogs, usual_folder(app));
-  app.file_dialogs.replacing.clear();
-  const std::filesystem::path& file = app.document.file();
-  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
-  app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + ".png")).string();
+void ExportDialog::open(const Session& session, DialogState& dialog, bool loads) {
+  dialog.wanted = Dialog::export_picture;
+  loads_ = loads;
+  show_folder(query_, usual_folder(session));
+  query_.replacing.clear();
+  const std::filesystem::path& file = session.document.file();
+  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
+  query_.path = (query_.list.shown / ("flyball-" + stem + ".png")).string();
 }
 
-void export_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::export_picture, "Save a picture", 480)) return;
-  DialogState& dialog = app.dialog;
-  bool accepted = path_field(app, app.file_dialogs, "export", "Name");
+std::optional<ExportRequest> ExportDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  std::optional<ExportRequest> picture;
+  if (!begin_dialog(ui, dialog, Dialog::export_picture, "Save a picture", 480)) return picture;
+  bool accepted = path_field(ui, query_, "export", "Name");
 
-  size_fields(app, "export", picture_sizes, 80, dialog.width, dialog.height);
-  ImGui::SetCursorPosX(80 * app.scale);
-  ImGui::Checkbox("With the panels", &dialog.panels);
-  note_widget(app.widgets, "export/panels");
-  ImGui::SameLine(0, 20 * app.scale);
-  ImGui::Checkbox("With forces", &dialog.loads);
-  note_widget(app.widgets, "export/loads");
+  size_fields(ui, "export", picture_sizes, 80, width_, height_);
+  ImGui::SetCursorPosX(80 * ui.scale);
+  ImGui::Checkbox("With the panels", &panels_);
+  note_widget(ui.widgets, "export/panels");
+  ImGui::SameLine(0, 20 * ui.scale);
+  ImGui::Checkbox("With forces", &loads_);
+  note_widget(ui.widgets, "export/loads");
   help_on_hover("Arrows of what acts, and their legend; with one body selected, its free-body diagram.");
 
-  const bool fits = std::min(dialog.width, dialog.height) >= smallest_picture &&
-                    std::max(dialog.width, dialog.height) <= largest_picture;
-  if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(app).bad);
-  const std::filesystem::path file = typed_file(app.file_dialogs, ".png");
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  ImGui::Dummy({0, 2 * app.scale});
-  ImGui::BeginDisabled(!fits || app.file_dialogs.path.empty());
-  accepted = text_button(app, "export/save", replaces ? "Replace" : "Save", true) || accepted;
+  const bool fits =
+      std::min(width_, height_) >= smallest_picture && std::max(width_, height_) <= largest_picture;
+  if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(ui).bad);
+  const std::filesystem::path file = typed_file(query_, ".png");
+  const bool replaces = asks_to_replace(ui, query_, file);
+  ImGui::Dummy({0, 2 * ui.scale});
+  ImGui::BeginDisabled(!fits || query_.path.empty());
+  accepted = text_button(ui, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && fits && !app.file_dialogs.path.empty()) save_picture(app);
+  if (accepted && fits && !query_.path.empty() && may_replace(session, query_, file)) {
+    picture = ExportRequest{file, std::clamp(width_, smallest_picture, largest_picture),
+                            std::clamp(height_, smallest_picture, largest_picture), panels_, loads_};
+    close_dialog();
+  }
   ImGui::SameLine();
-  if (text_button(app, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (text_button(ui, "export/cancel", "Cancel") || escape_pressed()) close_dialog();
   end_dialog();
+  return picture;
 }
 
 } // namespace flyball

@@ -1,8 +1,7 @@
-// The shipped scenes with pictures.
+#include "app/ui/dialogs/gallery_dialog.hpp"
+
 #include "app/render/imgui_compat.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/scene_pictures.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -69,9 +68,7 @@ std::string fitting(const Ui& ui, const std::string& text, float size, float wid
 }
 
 // Returns whether it was clicked.
-bool show_card(Ui& ui, FileDialogState& file_dialogs, int i, float width) {
-  GalleryState& gallery = file_dialogs.gallery;
-  const SceneCard& card = gallery.cards[static_cast<std::size_t>(i)];
+bool show_card(Ui& ui, const SceneCard& card, int i, int& chosen_card, float width) {
   const UiColors& colors = colors_of(ui);
   const float s = ui.scale;
   const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -80,8 +77,8 @@ bool show_card(Ui& ui, FileDialogState& file_dialogs, int i, float width) {
   const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, to.y - from.y});
   note_widget(ui.widgets, name, KeyUse::none); // has its own arrows and Enter, see below
   const bool hovered = ImGui::IsItemHovered();
-  if (hovered && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0)) gallery.chosen = i;
-  const bool chosen = i == gallery.chosen;
+  if (hovered && (ImGui::GetIO().MouseDelta.x != 0 || ImGui::GetIO().MouseDelta.y != 0)) chosen_card = i;
+  const bool chosen = i == chosen_card;
 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float bottom = from.y + scene_picture_height * s * width / (scene_picture_width * s);
@@ -107,34 +104,32 @@ bool show_card(Ui& ui, FileDialogState& file_dialogs, int i, float width) {
 }
 
 // The arrow keys move from card to card; returns whether they did.
-bool move_by_keys(FileDialogState& file_dialogs, int columns) {
-  const int count = static_cast<int>(file_dialogs.gallery.cards.size());
+bool move_by_keys(int count, int columns, int& chosen) {
   const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
   const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
                    columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
-  const int wanted = file_dialogs.gallery.chosen + step;
+  const int wanted = chosen + step;
   if (step == 0 || wanted < 0 || wanted >= count) return false;
-  file_dialogs.gallery.chosen = wanted;
+  chosen = wanted;
   return true;
 }
 
 } // namespace
 
-void show_gallery(App& app) {
-  app.file_dialogs.gallery.cards = read_cards(app.options.scenes);
-  app.file_dialogs.gallery.chosen = 0;
-  app.dialog.wanted = Dialog::gallery;
+void GalleryDialog::open(const Session& session, DialogState& dialog) {
+  cards_ = read_cards(session.options.scenes);
+  chosen_ = 0;
+  dialog.wanted = Dialog::gallery;
 }
 
-void gallery_dialog(App& app) {
-  GalleryState& gallery = app.file_dialogs.gallery;
-  const float s = app.scale;
-  gallery.showing = false;
-  if (!begin_dialog(app, app.dialog, Dialog::gallery, "Examples",
-                    3 * scene_picture_width + 2 * card_gap + 47))
-    return;
-  gallery.showing = true;
-  const int count = static_cast<int>(gallery.cards.size());
+GalleryDialog::Answer GalleryDialog::draw(Ui& ui, DialogState& dialog) {
+  Answer answer;
+  const float s = ui.scale;
+  showing_ = false;
+  if (!begin_dialog(ui, dialog, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * card_gap + 47))
+    return answer;
+  showing_ = true;
+  const int count = static_cast<int>(cards_.size());
   const float between = card_gap * s;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns =
@@ -143,28 +138,30 @@ void gallery_dialog(App& app) {
       std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
   const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
   const float height =
-      std::min(rows * (card_height(app) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
-  const bool moved = move_by_keys(app.file_dialogs, columns);
+      std::min(rows * (card_height(ui) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
+  const bool moved = move_by_keys(count, columns, chosen_);
   fs::path opened;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
   ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
-  if (count == 0) paragraph("There are no examples beside this program.", colors_of(app).dim);
+  if (count == 0) paragraph("There are no examples beside this program.", colors_of(ui).dim);
   for (int i = 0; i < count; ++i) {
     if (i % columns != 0) ImGui::SameLine();
-    if (show_card(app, app.file_dialogs, i, width)) opened = gallery.cards[static_cast<std::size_t>(i)].file;
-    if (moved && i == gallery.chosen) ImGui::SetScrollHereY();
+    if (show_card(ui, cards_[static_cast<std::size_t>(i)], i, chosen_, width))
+      opened = cards_[static_cast<std::size_t>(i)].file;
+    if (moved && i == chosen_) ImGui::SetScrollHereY();
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
-  if (count > 0 && enter_pressed(app)) opened = gallery.cards[static_cast<std::size_t>(gallery.chosen)].file;
-  if (text_button(app, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
+  if (count > 0 && enter_pressed(ui)) opened = cards_[static_cast<std::size_t>(chosen_)].file;
+  if (text_button(ui, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
   ImGui::SameLine();
-  if (text_button(app, "gallery/open", "Open a file…")) {
+  if (text_button(ui, "gallery/open", "Open a file…")) {
     close_dialog();
-    show_open_dialog(app);
+    answer.other = true;
   }
-  if (!opened.empty()) open_file(app, opened);
+  answer.file = opened;
   end_dialog();
+  return answer;
 }
 
 } // namespace flyball

@@ -1,7 +1,6 @@
+#include "app/ui/dialogs/model_dialog.hpp"
+
 #include "app/report/linear_model_file.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -9,48 +8,46 @@
 
 namespace flyball {
 
-void show_model_dialog(App& app) {
-  app.dialog.wanted = Dialog::export_model;
-  show_folder(app.file_dialogs, usual_folder(app));
-  app.file_dialogs.replacing.clear();
-  const std::filesystem::path& file = app.document.file();
-  app.file_dialogs.path =
-      (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-model.m";
+void ModelDialog::open(const Session& session, DialogState& dialog) {
+  dialog.wanted = Dialog::export_model;
+  show_folder(query_, usual_folder(session));
+  query_.replacing.clear();
+  const std::filesystem::path& file = session.document.file();
+  query_.path = (file.empty() ? file_stem(session.mechanism().name) : file.stem().string()) + "-model.m";
 }
 
-void model_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::export_model, "Export the linear model", 520)) return;
-  bool accepted = path_field(app, app.file_dialogs, "model", "Name");
-  folder_line(app, app.file_dialogs, "model");
-  const auto& found = app.study.transfer.found.found;
-  const std::string ending = typed_path(app.file_dialogs).extension().string();
-  const std::filesystem::path file =
-      typed_file(app.file_dialogs, linear_model_format(ending) ? ending : ".m");
+void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  if (!begin_dialog(ui, dialog, Dialog::export_model, "Export the linear model", 520)) return;
+  bool accepted = path_field(ui, query_, "model", "Name");
+  folder_line(ui, query_, "model");
+  const auto& found = session.study.transfer.found.found;
+  const std::string ending = typed_path(query_).extension().string();
+  const std::filesystem::path file = typed_file(query_, linear_model_format(ending) ? ending : ".m");
   const auto format = linear_model_format(file.extension().string());
   paragraph(
       "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
-      format ? colors_of(app).dim : colors_of(app).bad);
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = has_transfer(app) && format && !app.file_dialogs.path.empty();
+      format ? colors_of(ui).dim : colors_of(ui).bad);
+  const bool replaces = asks_to_replace(ui, query_, file);
+  if (!replaces && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
+  ImGui::Dummy({0, 2 * ui.scale});
+  const bool usable = has_transfer(session) && format && !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(app, "model/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "model/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
   std::error_code ignored;
-  if (text_button(app, "model/cancel", "Cancel") || escape_pressed()) {
+  if (text_button(ui, "model/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored)) {
-    entered_file(app.file_dialogs, false); // goes there
-  } else if (accepted && usable && may_replace(app, app.file_dialogs, file)) {
+  } else if (accepted && usable && std::filesystem::is_directory(typed_path(query_), ignored)) {
+    entered_file(query_, false); // goes there
+  } else if (accepted && usable && may_replace(session, query_, file)) {
     try {
       replace_file(file, linear_model_file(*found->of.mechanism, found->result.model, *format));
-      app.notice = "Saved " + file.string();
+      session.notice = "Saved " + file.string();
       close_dialog();
     } catch (const SceneError& error) {
-      app.file_dialogs.message = error.what();
-      app.file_dialogs.replacing.clear();
+      query_.message = error.what();
+      query_.replacing.clear();
     }
   }
   end_dialog();

@@ -1,7 +1,6 @@
+#include "app/ui/dialogs/open_dialog.hpp"
+
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -15,17 +14,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float list_height = 250, recent_width = 210; // points
-
-void choose(App& app, const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) {
-    app.file_dialogs.message = "There is no " + file.string() + ".";
-    return;
-  }
-  close_dialog();
-  // Where it cannot be read the view says why.
-  open_file(app, file);
-}
 
 // Returns the one that was clicked.
 fs::path recent_list(const Session& session, Ui& ui) {
@@ -47,44 +35,56 @@ fs::path recent_list(const Session& session, Ui& ui) {
 
 } // namespace
 
-void show_open_dialog(App& app) {
-  const fs::path& file = app.document.file();
-  show_folder(app.file_dialogs, !file.empty() ? file.parent_path() : usual_folder(app));
-  app.dialog.wanted = Dialog::open;
-  app.file_dialogs.path.clear();
+bool OpenDialog::may_open(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored)) return true;
+  query_.message = "There is no " + file.string() + ".";
+  return false;
 }
 
-void open_dialog(App& app) {
-  const bool with_recent = !app.files.recent.empty();
-  if (!begin_dialog(app, app.dialog, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return;
-  const bool entered = path_field(app, app.file_dialogs, "open", "Name, or part of it, or a path");
+void OpenDialog::open(const Session& session, DialogState& dialog) {
+  const fs::path& file = session.document.file();
+  show_folder(query_, !file.empty() ? file.parent_path() : usual_folder(session));
+  dialog.wanted = Dialog::open;
+  query_.path.clear();
+}
+
+OpenDialog::Answer OpenDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  Answer answer;
+  const bool with_recent = !session.files.recent.empty();
+  if (!begin_dialog(ui, dialog, Dialog::open, "Open a scene", with_recent ? 720 : 560)) return answer;
+  const bool entered = path_field(ui, query_, "open", "Name, or part of it, or a path");
   std::optional<fs::path> file;
   if (with_recent) {
-    if (const fs::path recent = recent_list(app, app); !recent.empty()) file = recent;
-    ImGui::SameLine(0, 16 * app.scale);
+    if (const fs::path recent = recent_list(session, ui); !recent.empty()) file = recent;
+    ImGui::SameLine(0, 16 * ui.scale);
     ImGui::BeginGroup();
   }
-  folder_line(app, app.file_dialogs, "open");
-  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * app.scale;
-  if (auto clicked = file_list(app, app.file_dialogs, "open", ".json", true, list_height * app.scale - line))
+  folder_line(ui, query_, "open");
+  const float line = ImGui::GetFrameHeightWithSpacing() + 2 * ui.scale;
+  if (auto clicked = file_list(ui, query_, "open", ".json", true, list_height * ui.scale - line))
     file = clicked;
   if (with_recent) ImGui::EndGroup();
-  if (!app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool pressed = text_button(app, "open/open", "Open", true);
+  if (!query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
+  ImGui::Dummy({0, 2 * ui.scale});
+  const bool pressed = text_button(ui, "open/open", "Open", true);
   if (entered || pressed)
-    if (auto typed = entered_file(app.file_dialogs, true)) file = typed;
+    if (auto typed = entered_file(query_, true)) file = typed;
   ImGui::SameLine();
-  if (text_button(app, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
-  if (!app.options.scenes.empty()) {
+  if (text_button(ui, "open/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (!session.options.scenes.empty()) {
     ImGui::SameLine();
-    if (text_button(app, "open/examples", "Examples…")) {
+    if (text_button(ui, "open/examples", "Examples…")) {
       close_dialog();
-      show_gallery(app);
+      answer.examples = true;
     }
   }
-  if (file) choose(app, *file);
+  if (file && may_open(*file)) {
+    close_dialog();
+    answer.file = *file; // where it cannot be read the view says why
+  }
   end_dialog();
+  return answer;
 }
 
 } // namespace flyball

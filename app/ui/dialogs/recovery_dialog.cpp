@@ -1,6 +1,6 @@
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/dialogs/recovery_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -31,16 +31,16 @@ std::string title(const Leftover& leftover) {
   return file.empty() ? leftover.autosave.name + " (no file yet)" : file.filename().string();
 }
 
-void row(Session& session, Ui& ui, FileDialogState& file_dialogs, int i) {
+void leftover_row(Session& session, Ui& ui, int i, int& chosen) {
   const Leftover& leftover = session.files.leftovers[static_cast<std::size_t>(i)];
   const UiColors& colors = colors_of(ui);
   ImGui::PushID(i);
   const float left = ImGui::GetCursorPosX();
-  if (ImGui::Selectable("##leftover", file_dialogs.chosen_leftover == i, ImGuiSelectableFlags_DontClosePopups,
+  if (ImGui::Selectable("##leftover", chosen == i, ImGuiSelectableFlags_DontClosePopups,
                         {0, ImGui::GetTextLineHeight()}))
-    file_dialogs.chosen_leftover = i;
+    chosen = i;
   note_widget(ui.widgets, "recover/" + std::to_string(i), KeyUse::row);
-  if (file_dialogs.chosen_leftover == i) mark_chosen(ui.widgets);
+  if (chosen == i) mark_chosen(ui.widgets);
   help_on_hover(leftover.autosave.file.c_str());
   ImGui::SameLine(left + 4 * ui.scale);
   clipped_text(title(leftover), 260 * ui.scale);
@@ -51,36 +51,38 @@ void row(Session& session, Ui& ui, FileDialogState& file_dialogs, int i) {
 
 } // namespace
 
-void recovery_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::recover, "Unsaved work was found", 500)) return;
-  FileState& files = app.files;
-  const UiColors& colors = colors_of(app);
+std::optional<Leftover> RecoveryDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  std::optional<Leftover> wanted;
+  if (!begin_dialog(ui, dialog, Dialog::recover, "Unsaved work was found", 500)) return wanted;
+  FileState& files = session.files;
+  const UiColors& colors = colors_of(ui);
   const int count = static_cast<int>(files.leftovers.size());
-  if (ImGui::IsWindowAppearing()) app.file_dialogs.chosen_leftover = 0;
+  if (ImGui::IsWindowAppearing()) chosen_ = 0;
   paragraph("The program ended before this was saved:", colors.dim);
   ImGui::PushStyleColor(ImGuiCol_Header, colors.raised);
   for (int i = 0; i < count; ++i)
-    row(app, app, app.file_dialogs, i);
+    leftover_row(session, ui, i, chosen_);
   ImGui::PopStyleColor();
-  const auto chosen = static_cast<std::size_t>(app.file_dialogs.chosen_leftover);
+  const auto chosen = static_cast<std::size_t>(chosen_);
   if (chosen < files.leftovers.size() && files.leftovers[chosen].outdated)
     paragraph("Its file has changed since. Recovering does not touch the file, and Undo goes back to what it "
               "says.",
               colors.warn);
-  const int answer = choice_buttons(app, answers, app.file_dialogs.choice);
+  const int answer = choice_buttons(ui, answers, answer_);
   const bool escaped = escape_pressed();
   if (chosen < files.leftovers.size() && (answer == 0 || answer == 1)) {
     const Leftover leftover = files.leftovers[chosen];
     if (answer == 0) {
       files.leftovers.clear();
-      recover(app, leftover);
+      wanted = leftover;
     } else {
-      discard(app, leftover);
-      app.file_dialogs.chosen_leftover = 0;
+      discard(session, leftover);
+      chosen_ = 0;
     }
   }
   if (answer == 2 || escaped || files.leftovers.empty()) close_dialog();
   end_dialog();
+  return wanted;
 }
 
 } // namespace flyball

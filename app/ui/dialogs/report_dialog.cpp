@@ -1,47 +1,48 @@
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/dialogs/report_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 namespace flyball {
 
-void show_report_dialog(App& app) {
-  app.dialog.wanted = Dialog::export_report;
-  show_folder(app.file_dialogs, usual_folder(app));
-  app.file_dialogs.replacing.clear();
-  const std::filesystem::path& file = app.document.file();
-  app.file_dialogs.path =
-      (file.empty() ? file_stem(app.mechanism().name) : file.stem().string()) + "-report.html";
+void ReportDialog::open(const Session& session, DialogState& dialog) {
+  dialog.wanted = Dialog::export_report;
+  show_folder(query_, usual_folder(session));
+  query_.replacing.clear();
+  const std::filesystem::path& file = session.document.file();
+  query_.path = (file.empty() ? file_stem(session.mechanism().name) : file.stem().string()) + "-report.html";
 }
 
-void report_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::export_report, "Export a report", 520)) return;
-  bool accepted = path_field(app, app.file_dialogs, "report", "Name");
-  folder_line(app, app.file_dialogs, "report");
+std::optional<ExportRequest> ReportDialog::draw(Session& session, Ui& ui, DialogState& dialog, bool writing) {
+  std::optional<ExportRequest> report;
+  if (!begin_dialog(ui, dialog, Dialog::export_report, "Export a report", 520)) return report;
+  bool accepted = path_field(ui, query_, "report", "Name");
+  folder_line(ui, query_, "report");
   paragraph("One page for a browser or printer: picture, steady state, stability and modes, loads, response "
             "curves, "
             "parameters and assumptions.",
-            colors_of(app).dim);
-  const std::filesystem::path file = typed_file(app.file_dialogs, ".html");
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = !app.file_dialogs.path.empty() && !writing_report(app.report);
+            colors_of(ui).dim);
+  const std::filesystem::path file = typed_file(query_, ".html");
+  const bool replaces = asks_to_replace(ui, query_, file);
+  ImGui::Dummy({0, 2 * ui.scale});
+  const bool usable = !query_.path.empty() && !writing;
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(app, "report/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "report/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
   std::error_code ignored;
-  if (text_button(app, "report/cancel", "Cancel") || escape_pressed()) {
+  if (text_button(ui, "report/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-  } else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored)) {
-    entered_file(app.file_dialogs, false); // goes there
-  } else if (accepted && usable && may_replace(app, app.file_dialogs, file)) {
-    app.export_request = ExportRequest{.file = file, .width = 1440, .height = 900, .report = true};
+  } else if (accepted && usable && std::filesystem::is_directory(typed_path(query_), ignored)) {
+    entered_file(query_, false); // goes there
+  } else if (accepted && usable && may_replace(session, query_, file)) {
+    report = ExportRequest{.file = file, .width = 1440, .height = 900, .report = true};
     close_dialog();
   }
   end_dialog();
+  return report;
 }
 
 } // namespace flyball

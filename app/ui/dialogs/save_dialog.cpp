@@ -1,6 +1,6 @@
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/dialogs/save_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -19,61 +19,63 @@ std::string words_of(std::string stem) {
   return stem;
 }
 
-void save(App& app) {
-  const fs::path file = typed_file(app.file_dialogs, ".json");
-  if (!may_replace(app, app.file_dialogs, file)) return;
-  // A mechanism that nobody has named is called as its file is.
-  if (app.document.file().empty() && app.mechanism().name == Document::empty_mechanism().name)
-    edit(app, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
-  app.file_dialogs.message = save_to(app, file);
-  app.file_dialogs.replacing.clear();
-  if (!app.file_dialogs.message.empty()) return;
-  close_dialog();
-  leave_now(app);
-}
-
 } // namespace
 
-void ask_where_to_save(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
-                       std::string why) {
-  const fs::path& file = session.document.file();
-  std::error_code ignored;
-  show_folder(file_dialogs, is_example(session) ? fs::current_path(ignored) : usual_folder(session));
-  file_dialogs.message = std::move(why);
-  file_dialogs.replacing.clear();
-  dialog.wanted = Dialog::save;
-  file_dialogs.path = file.empty() ? file_stem(session.mechanism().name) + ".json" : file.filename().string();
+// Whether it is saved.
+bool SaveDialog::save(Session& session) {
+  const fs::path file = typed_file(query_, ".json");
+  if (!may_replace(session, query_, file)) return false;
+  // A mechanism that nobody has named is called as its file is.
+  if (session.document.file().empty() && session.mechanism().name == Document::empty_mechanism().name)
+    edit(session, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
+  query_.message = save_to(session, file);
+  query_.replacing.clear();
+  if (!query_.message.empty()) return false;
+  close_dialog();
+  return true;
 }
 
-void save_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::save, "Save as", 560)) return;
-  const bool entered = path_field(app, app.file_dialogs, "save", "Name");
-  folder_line(app, app.file_dialogs, "save");
-  if (const auto clicked = file_list(app, app.file_dialogs, "save", ".json", false, 220 * app.scale))
-    app.file_dialogs.path = clicked->filename().string();
-  const fs::path file = typed_file(app.file_dialogs, ".json");
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  if (!replaces && !app.file_dialogs.message.empty())
-    paragraph(app.file_dialogs.message, colors_of(app).bad);
-  else if (!replaces && is_example(app))
-    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(app).dim);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = !app.file_dialogs.path.empty();
+void SaveDialog::open(const Session& session, DialogState& dialog, std::string why) {
+  const fs::path& file = session.document.file();
+  std::error_code ignored;
+  show_folder(query_, is_example(session) ? fs::current_path(ignored) : usual_folder(session));
+  query_.message = std::move(why);
+  query_.replacing.clear();
+  dialog.wanted = Dialog::save;
+  query_.path = file.empty() ? file_stem(session.mechanism().name) + ".json" : file.filename().string();
+}
+
+SaveDialog::Answer SaveDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  if (!begin_dialog(ui, dialog, Dialog::save, "Save as", 560)) return Answer::none;
+  Answer answer = Answer::none;
+  const bool entered = path_field(ui, query_, "save", "Name");
+  folder_line(ui, query_, "save");
+  if (const auto clicked = file_list(ui, query_, "save", ".json", false, 220 * ui.scale))
+    query_.path = clicked->filename().string();
+  const fs::path file = typed_file(query_, ".json");
+  const bool replaces = asks_to_replace(ui, query_, file);
+  if (!replaces && !query_.message.empty())
+    paragraph(query_.message, colors_of(ui).bad);
+  else if (!replaces && is_example(session))
+    paragraph("Examples stay as they are; this will be a file of your own.", colors_of(ui).dim);
+  ImGui::Dummy({0, 2 * ui.scale});
+  const bool usable = !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  const bool pressed = text_button(app, "save/save", replaces ? "Replace" : "Save", true);
+  const bool pressed = text_button(ui, "save/save", replaces ? "Replace" : "Save", true);
   ImGui::EndDisabled();
   ImGui::SameLine();
-  if (text_button(app, "save/cancel", "Cancel") || escape_pressed()) {
+  if (text_button(ui, "save/cancel", "Cancel") || escape_pressed()) {
     close_dialog();
-    app.file_dialogs.then = {};
+    answer = Answer::cancelled;
   } else if (usable && (entered || pressed)) {
     std::error_code ignored;
-    if (fs::is_directory(typed_path(app.file_dialogs), ignored))
-      entered_file(app.file_dialogs, false); // goes there
-    else
-      save(app);
+    if (fs::is_directory(typed_path(query_), ignored))
+      entered_file(query_, false); // goes there
+    else if (save(session))
+      answer = Answer::saved;
   }
   end_dialog();
+  return answer;
 }
 
 } // namespace flyball

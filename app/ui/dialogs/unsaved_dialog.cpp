@@ -1,6 +1,6 @@
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/dialogs/unsaved_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -19,32 +19,26 @@ std::string question(const Session& session) {
   return name + " has changes that are not saved.";
 }
 
-void save_first(App& app) {
-  if (app.document.file().empty() || is_example(app))
-    return ask_where_to_save(app, app.dialog, app.file_dialogs, {});
-  if (std::string why = save_to(app, app.document.file()); !why.empty())
-    return ask_where_to_save(app, app.dialog, app.file_dialogs, std::move(why));
-  leave_now(app);
-}
-
 } // namespace
 
-void unsaved_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::unsaved, "Save the changes?", 440)) return;
-  const UiColors& colors = colors_of(app);
-  if (ImGui::IsWindowAppearing() && app.files.watch.differs()) app.files.conflict = true;
-  paragraph(question(app), colors.text);
-  if (app.files.conflict)
+std::optional<UnsavedDialog::Answer> UnsavedDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  if (!begin_dialog(ui, dialog, Dialog::unsaved, "Save the changes?", 440)) return std::nullopt;
+  const UiColors& colors = colors_of(ui);
+  if (ImGui::IsWindowAppearing() && session.files.watch.differs()) session.files.conflict = true;
+  paragraph(question(session), colors.text);
+  if (session.files.conflict)
     paragraph("The file has changed on disk meanwhile; saving replaces what is there.", colors.warn);
-  const int answer = choice_buttons(app, unsaved_answers, app.file_dialogs.choice);
+  const int answer = choice_buttons(ui, unsaved_answers, answer_);
   if (answer >= 0 || escape_pressed()) close_dialog();
+  std::optional<Answer> given;
   if (answer == 0)
-    save_first(app);
+    given = Answer::save;
   else if (answer == 1)
-    leave_now(app);
+    given = Answer::discard;
   else if (answer == 2 || escape_pressed())
-    app.file_dialogs.then = {};
+    given = Answer::cancel;
   end_dialog();
+  return given;
 }
 
 } // namespace flyball

@@ -34,7 +34,8 @@ Turns shown_turns(const Session& session, InspectorState& inspector, const Body&
   return {state.turns, {}};
 }
 
-void turn_body(Session& session, InspectorState& inspector, const std::string& name, int axis, double angle) {
+void turn_body(Session& session, InspectorState& inspector, const ToolState& tool, const std::string& name,
+               int axis, double angle) {
   const int index = body_index(session.mechanism(), name);
   if (index < 0) return;
   Turns turns = shown_turns(session, inspector, session.mechanism().bodies[static_cast<std::size_t>(index)]);
@@ -45,21 +46,21 @@ void turn_body(Session& session, InspectorState& inspector, const std::string& n
     const Quat to = rotation_by(turns.angles);
     if (!inspector.mass_alone)
       rotate_parts(mechanism, only(body), body.position, to * body.rotation.normalized().conjugate(),
-                   joints_of_moved(inspector, false));
+                   joints_of_moved(tool, false));
     if (given)
       body.rotation = to; // what the expression rests on changes
     else
       set_turns(body, turns);
   });
   if (!inspector.mass_alone)
-    tell_joints(session, inspector, only(session.mechanism().bodies[static_cast<std::size_t>(index)]), false);
+    tell_joints(session, tool, only(session.mechanism().bodies[static_cast<std::size_t>(index)]), false);
   inspector.turned_to = session.mechanism().bodies[static_cast<std::size_t>(index)].rotation;
   inspector.turns = turns.angles;
 }
 
 // What is on the body turns with it when an expression is typed, as when a number is.
-void turn_along(const InspectorState& inspector, const std::string& name, const Mechanism& before,
-                Mechanism& next) {
+void turn_along(const InspectorState& inspector, const ToolState& tool, const std::string& name,
+                const Mechanism& before, Mechanism& next) {
   const int index = body_index(next, name);
   if (index < 0 || inspector.mass_alone) return;
   const auto i = static_cast<std::size_t>(index);
@@ -67,12 +68,13 @@ void turn_along(const InspectorState& inspector, const std::string& name, const 
   const Quat from = before.bodies[i].rotation;
   next.bodies[i].rotation = from;
   rotate_parts(next, only(given), given.position, given.rotation.normalized() * from.normalized().conjugate(),
-               joints_of_moved(inspector, false));
+               joints_of_moved(tool, false));
   next.bodies[i].rotation = given.rotation;
   next.bodies[i].formulas = given.formulas;
 }
 
-void move_body(Session& session, InspectorState& inspector, const std::string& name, int axis, double to) {
+void move_body(Session& session, const InspectorState& inspector, const ToolState& tool,
+               const std::string& name, int axis, double to) {
   const int index = body_index(session.mechanism(), name);
   if (index < 0) return;
   edit(session, "Move " + name, [&](Mechanism& mechanism, Selection&) {
@@ -82,10 +84,10 @@ void move_body(Session& session, InspectorState& inspector, const std::string& n
     if (inspector.mass_alone)
       body.position = position;
     else
-      set_point(mechanism, {{PartKind::body, name}, 0}, position, joints_of_moved(inspector, false));
+      set_point(mechanism, {{PartKind::body, name}, 0}, position, joints_of_moved(tool, false));
   });
   if (!inspector.mass_alone)
-    tell_joints(session, inspector, only(session.mechanism().bodies[static_cast<std::size_t>(index)]), false);
+    tell_joints(session, tool, only(session.mechanism().bodies[static_cast<std::size_t>(index)]), false);
 }
 
 void inertia_rows(Session& session, Ui& ui, const Body& body) {
@@ -245,28 +247,29 @@ void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Bod
   density_tick(session, ui, body);
 }
 
-void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
+void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const ToolState& tool,
+                      const Body& body) {
   const bool turned = body.rotation.coeffs() != Quat::Identity().coeffs();
   if (!inspector_section(session, ui, "inspector/rotation section", "Rotation as drawn", turned)) return;
-  vector_rows(session, ui, "Turned",
-              {.name = "inspector/rotation",
-               .value = shown_turns(session, inspector, body).angles,
-               .unit = "deg",
-               .help =
-                   "The body is turned about the world's x, then y, then z axis, and what is on it with it. "
-                   "Where an expression gives a turn, a change of what this rests on turns the axes alone, "
-                   "those of its inertia and boxes; in it angles are in radians unless they have a unit: "
-                   "=30 deg.",
-               .expression = "bodies." + body.name + ".turn",
-               .set = [&session, &inspector, name = body.name](
-                          int axis, double angle) { turn_body(session, inspector, name, axis, angle); },
-               .follow = [&inspector,
-                          name = body.name](const Mechanism& before,
-                                            Mechanism& next) { turn_along(inspector, name, before, next); }});
+  vector_rows(
+      session, ui, "Turned",
+      {.name = "inspector/rotation",
+       .value = shown_turns(session, inspector, body).angles,
+       .unit = "deg",
+       .help = "The body is turned about the world's x, then y, then z axis, and what is on it with it. "
+               "Where an expression gives a turn, a change of what this rests on turns the axes alone, "
+               "those of its inertia and boxes; in it angles are in radians unless they have a unit: "
+               "=30 deg.",
+       .expression = "bodies." + body.name + ".turn",
+       .set = [&session, &inspector, &tool, name = body.name](
+                  int axis, double angle) { turn_body(session, inspector, tool, name, axis, angle); },
+       .follow = [&inspector, &tool,
+                  name = body.name](const Mechanism& before,
+                                    Mechanism& next) { turn_along(inspector, tool, name, before, next); }});
   if (is_rotation_given(body) && !given_turns(session.mechanism(), body)) quaternion_rows(session, ui, body);
 }
 
-void body_inspector(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
+void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool, const Body& body) {
   name_row(session, ui, {PartKind::body, body.name});
   text_row(session, ui, "inspector/description", "Note", body.description,
            "A note for whoever reads the scene.", [&session, &ui, name = body.name](const std::string& text) {
@@ -281,8 +284,8 @@ void body_inspector(Session& session, Ui& ui, InspectorState& inspector, const B
                            ? "The mass centre in the world, as drawn; it moves alone."
                            : "The mass centre in the world, as drawn; what is on the body moves along.",
                .address = "bodies." + body.name + ".position",
-               .set = [&session, &inspector, name = body.name](int axis, double value) {
-                 move_body(session, inspector, name, axis, value);
+               .set = [&session, &inspector, &tool, name = body.name](int axis, double value) {
+                 move_body(session, inspector, tool, name, axis, value);
                }});
   if (check_row(
           ui, "inspector/mass alone", "Move mass centre alone", inspector.mass_alone,
@@ -290,13 +293,13 @@ void body_inspector(Session& session, Ui& ui, InspectorState& inspector, const B
           "joints and ends of springs where they are."))
     inspector.mass_alone = !inspector.mass_alone;
   if (check_row(
-          ui, "inspector/leave joints", "Leave joints behind", inspector.leave_joints,
+          ui, "inspector/leave joints", "Leave joints behind", tool.leave_joints,
           "A body that is moved or turned, here or in the view, leaves its joints where they are in the "
           "world; otherwise they go with it. In the view Shift does the opposite.",
           inspector.mass_alone ? "A mass centre that moves alone leaves everything." : nullptr))
-    inspector.leave_joints = !inspector.leave_joints;
+    tool.leave_joints = !tool.leave_joints;
   mass_section(session, ui, inspector, body);
-  rotation_section(session, ui, inspector, body);
+  rotation_section(session, ui, inspector, tool, body);
   shapes_section(session, ui, inspector, body);
 }
 

@@ -1,10 +1,9 @@
-// What is known of the selected part, to be read and edited.
+#include "app/ui/inspector/inspector_panel.hpp"
+
 #include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
-#include "app/ui/panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -28,40 +27,43 @@ std::string title_of(const Session& session) {
 }
 
 // The title, and at the right a way to be rid of what it names.
-void panel_title(App& app) {
+void panel_title(const Session& session, Ui& ui, const CommandRunner& commands) {
   const float start = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
-  ImGui::PushFont(app.fonts.strong);
-  ImGui::TextUnformatted(title_of(app).c_str());
+  ImGui::PushFont(ui.fonts.strong);
+  ImGui::TextUnformatted(title_of(session).c_str());
   ImGui::PopFont();
-  note_widget(app.widgets, "inspector/title");
-  if (app.selection().parts.size() != 1) return;
-  const float side = ImGui::GetFrameHeight() + 2 * app.scale;
+  note_widget(ui.widgets, "inspector/title");
+  if (session.selection().parts.size() != 1) return;
+  const float side = ImGui::GetFrameHeight() + 2 * ui.scale;
   ImGui::SameLine();
   ImGui::SetCursorPosX(start + width - side);
-  if (icon_button(app, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
-    later(app, [&app] { run_command(app, "edit.delete"); });
+  if (icon_button(ui, "inspector/delete", icon::trash, "Delete it, with what hangs on it."))
+    later(ui, [commands] { commands.run("edit.delete"); });
 }
 
-void contents(App& app) {
-  const Selection& selection = app.selection();
-  if (selection.empty()) return scene_inspector(app, app, app.tool);
-  if (selection.parts.size() > 1) return several_inspector(app);
-  const PartId id = find_part(app.mechanism(), selection.parts.front());
+void inspector_contents(Session& session, Ui& ui, InspectorState& state, ToolState& tool,
+                        const CommandRunner& commands) {
+  const Selection& selection = session.selection();
+  if (selection.empty()) return scene_inspector(session, ui, tool);
+  if (selection.parts.size() > 1) return several_inspector(session, ui, state, commands);
+  const Mechanism& mechanism = session.mechanism();
+  const PartId id = find_part(mechanism, selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
-  if (id.kind == PartKind::body) body_inspector(app, app, app.inspector, app.mechanism().bodies[i]);
-  if (id.kind == PartKind::joint) joint_inspector(app, app, app.mechanism().joints[i]);
-  if (id.kind == PartKind::force) force_inspector(app, app, app.mechanism().forces[i]);
+  if (id.kind == PartKind::body) body_inspector(session, ui, state, tool, mechanism.bodies[i]);
+  if (id.kind == PartKind::joint) joint_inspector(session, ui, mechanism.joints[i]);
+  if (id.kind == PartKind::force) force_inspector(session, ui, mechanism.forces[i]);
 }
 
 } // namespace
 
-void inspector_panel(App& app, const PanelRect& rect) {
+void InspectorPanel::draw(Session& session, Ui& ui, ToolState& tool, const CommandRunner& commands,
+                          const PanelRect& rect) {
   begin_panel("inspector", rect);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
-  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, ImGui::GetStyle().FramePadding.y});
-  panel_title(app);
-  contents(app);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * ui.scale, ImGui::GetStyle().FramePadding.y});
+  panel_title(session, ui, commands);
+  inspector_contents(session, ui, state_, tool, commands);
   ImGui::PopStyleVar(2);
   ImGui::End();
 }

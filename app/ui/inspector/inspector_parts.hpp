@@ -2,25 +2,26 @@
 #pragma once
 
 #include "app/session/session.hpp"
-#include "app/ui/inspector_state.hpp"
+#include "app/ui/inspector/inspector_state.hpp"
 #include "app/ui/tool_state.hpp"
 #include "app/ui/ui.hpp"
 
 namespace flyball {
 
-struct App;
+class CommandRunner;
 
 void scene_inspector(Session& session, Ui& ui, ToolState& tool);
-void body_inspector(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool, const Body& body);
 void joint_inspector(Session& session, Ui& ui, const Joint& joint);
 void force_inspector(Session& session, Ui& ui, const Force& force);
-void several_inspector(App& app);
+void several_inspector(Session& session, Ui& ui, InspectorState& inspector, const CommandRunner& commands);
 
 // Parts of them.
 void named_sections(Session& session, Ui& ui, ToolState& tool);
 void measures_section(Session& session, Ui& ui);
 void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
-void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
+void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const ToolState& tool,
+                      const Body& body);
 void shapes_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body);
 void coordinate_sections(Session& session, Ui& ui, const Joint& joint);
 void distance_rows(Session& session, Ui& ui, const Joint& joint);

@@ -1,5 +1,4 @@
 // Several parts at once: the numbers all of them have, and what is done with them together.
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -51,8 +50,8 @@ const char* list_of(PartKind kind) {
   return kind == PartKind::body ? "bodies." : kind == PartKind::joint ? "joints." : "forces.";
 }
 
-void common_number(App& app, PartKind kind, const std::vector<std::string>& names,
-                   const CommonNumber& number) {
+void common_number(Session& session, Ui& ui, InspectorState& inspector, PartKind kind,
+                   const std::vector<std::string>& names, const CommonNumber& number) {
   std::vector<std::string> addresses;
   std::optional<double> value;
   std::string unit;
@@ -60,8 +59,8 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
   try {
     for (const std::string& name : names) {
       addresses.push_back(list_of(kind) + name + "." + number.key);
-      const double found = get_parameter(app.mechanism(), addresses.back());
-      const std::string its_unit = parameter_unit(app.mechanism(), addresses.back());
+      const double found = get_parameter(session.mechanism(), addresses.back());
+      const std::string its_unit = parameter_unit(session.mechanism(), addresses.back());
       if (value && its_unit != unit) return;
       same = same && value.value_or(found) == found;
       value = found;
@@ -70,19 +69,19 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
   } catch (const SceneError&) {
     return; // not all of them have it
   }
-  quantity_row(app, app, number.label,
+  quantity_row(session, ui, number.label,
                {.name = std::string("inspector/all/") + number.key,
                 .value = value.value_or(0),
                 .unit = unit,
                 .help = number.help,
                 .least = number.least,
                 .set =
-                    [&app, addresses, names, label = std::string(number.label),
+                    [&session, &inspector, addresses, names, label = std::string(number.label),
                      mass = kind == PartKind::body](double typed) {
                       if (mass)
                         for (const std::string& name : names)
-                          app.inspector.given_masses[name] = {true, 0};
-                      edit(app, label + " of " + std::to_string(addresses.size()) + " parts",
+                          inspector.given_masses[name] = {true, 0};
+                      edit(session, label + " of " + std::to_string(addresses.size()) + " parts",
                            [&](Mechanism& mechanism, Selection&) {
                              for (const std::string& address : addresses)
                                set_parameter(mechanism, address, typed);
@@ -91,28 +90,28 @@ void common_number(App& app, PartKind kind, const std::vector<std::string>& name
                 .various = same ? "" : "various"});
 }
 
-void actions(App& app) {
+void actions(Ui& ui, const CommandRunner& commands) {
   constexpr std::array ids{"edit.duplicate", "edit.mirror", "edit.circular", "edit.gear",
                            "edit.belt",      "edit.rack",   "edit.screw",    "edit.delete"};
   const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   bool first = true;
   for (const char* id : ids) {
     const Command& wanted = command(id);
-    if (!is_enabled(app, wanted)) continue;
+    if (!commands.enabled(wanted)) continue;
     const float width = ImGui::CalcTextSize(wanted.title).x + 2 * ImGui::GetStyle().FramePadding.x;
     if (!first && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right)
       ImGui::SameLine();
     first = false;
-    if (text_button(app, std::string("inspector/") + id, wanted.title))
-      later(app, [&app, id] { run_command(app, id); });
+    if (text_button(ui, std::string("inspector/") + id, wanted.title))
+      later(ui, [commands, id] { commands.run(id); });
     help_on_hover(wanted.help);
   }
 }
 
 } // namespace
 
-void several_inspector(App& app) {
-  const Selection& selection = app.selection();
+void several_inspector(Session& session, Ui& ui, InspectorState& inspector, const CommandRunner& commands) {
+  const Selection& selection = session.selection();
   const PartKind kind = selection.parts.front().kind;
   const bool alike =
       std::ranges::all_of(selection.parts, [&](const Part& part) { return part.kind == kind; });
@@ -121,10 +120,10 @@ void several_inspector(App& app) {
     if (kind == PartKind::joint) numbers = joint_numbers;
     if (kind == PartKind::force) numbers = force_numbers;
     for (const CommonNumber& number : numbers)
-      common_number(app, kind, selection.names(kind), number);
-    ImGui::Dummy({0, 3 * app.scale});
+      common_number(session, ui, inspector, kind, selection.names(kind), number);
+    ImGui::Dummy({0, 3 * ui.scale});
   }
-  actions(app);
+  actions(ui, commands);
 }
 
 } // namespace flyball

@@ -1,8 +1,8 @@
 #include "app/ui/keyboard/keyboard.hpp"
 
 #include "app/render/imgui_compat.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/dialog_state.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
 #include "app/ui/keyboard/menu_keys.hpp"
 
@@ -207,36 +207,36 @@ bool take_stop_key(Ui& ui, const KeyStop& stop, const KeyPress& key) {
   return true; // the beginning of a number is no command
 }
 
-bool take_focus_key(App& app, const KeyPress& key) {
-  KeyboardState& state = app.keyboard;
+bool take_focus_key(Ui& ui, const DialogState& dialog, const CommandRunner& commands, const KeyPress& key) {
+  KeyboardState& state = ui.keyboard;
   const KeyStop* stop = focused_stop(state);
   const bool typing = ImGui::GetIO().WantTextInput;
   const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
-  if (key.alt || key.key == keys::alt) return take_alt(app, app.dialog, key);
-  if (key.key == keys::escape) return !typing && step_out(app, app.dialog);
+  if (key.alt || key.key == keys::alt) return take_alt(ui, dialog, key);
+  if (key.key == keys::escape) return !typing && step_out(ui, dialog);
   if (open == 0 && (key.key == keys::f6 || (key.ctrl && key.key == keys::tab))) {
-    go_to_region(app, key.shift ? -1 : 1);
+    go_to_region(ui, key.shift ? -1 : 1);
     return true;
   }
   // A command, but one for the field that is typed in.
-  if (typing && key.ctrl && key.key == 'L' && !focused_address(app).empty()) {
-    run_command(app, "edit.pin");
+  if (typing && key.ctrl && key.key == 'L' && !focused_address(ui).empty()) {
+    commands.run("edit.pin");
     return true;
   }
   if (key.key == keys::tab && !key.ctrl) {
     const bool clicked_row = stop && stop->use == KeyUse::row && !state.ring && open == 0;
     if (open == 0 && !typing && (!stop || clicked_row)) return false; // a command in the view
     const std::string region = stop ? region_of(*stop) : popup_region();
-    if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(app, *next, true);
+    if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(ui, *next, true);
     return true;
   }
   if (typing) return false;
-  if (open > 0 && take_menu_arrow(app, stop, key)) return true;
-  if (open > 0 && !stop && is_arrow(key.key) && !app.dialog.showing) { // dialogs have their own use for them
-    if (const KeyStop* first = tab_stop(state, popup_region(), nullptr, 1)) go(app, *first, false);
+  if (open > 0 && take_menu_arrow(ui, stop, key)) return true;
+  if (open > 0 && !stop && is_arrow(key.key) && !dialog.showing) { // dialogs have their own use for them
+    if (const KeyStop* first = tab_stop(state, popup_region(), nullptr, 1)) go(ui, *first, false);
     return true;
   }
-  return has_keys(state, stop) && take_stop_key(app, *stop, key);
+  return has_keys(state, stop) && take_stop_key(ui, *stop, key);
 }
 
 // A popup that opens has the keys, and gives them back when it goes.
@@ -310,26 +310,25 @@ void find_another(Ui& ui) {
 
 } // namespace
 
-void take_keyboard(App& app) {
-  KeyboardState& state = app.keyboard;
-  state.stops = std::exchange(app.widgets.stops, {});
-  if (const auto view = app.widgets.find("view"); view != app.widgets.end()) state.view = view->second;
+void take_keyboard(Ui& ui, const DialogState& dialog, const CommandRunner& commands, bool taken) {
+  KeyboardState& state = ui.keyboard;
+  state.stops = std::exchange(ui.widgets.stops, {});
+  if (const auto view = ui.widgets.find("view"); view != ui.widgets.end()) state.view = view->second;
   imgui_compat::keep_tab();
   state.nudge = {};
   state.open_menu.clear();
   hold_characters(state);
-  follow_popups(app);
-  follow_clicks(app);
+  follow_popups(ui);
+  follow_clicks(ui);
   if (const KeyStop* typed = typed_stop(state)) {
     state.at = typed->name;
     state.region = region_of(*typed);
     state.was[state.region] = typed->name;
   }
   const KeyStop* stop = focused_stop(state);
-  app.tooltip.keyed = state.ring && state.by_key && stop && !typed_stop(state) ? stop->id : 0;
-  // These two see to their keys themselves.
-  if (app.commands.palette_showing || app.commands.shortcuts || app.tool.grab) return;
-  std::erase_if(app.keys, [&](const KeyPress& key) { return take_focus_key(app, key); });
+  ui.tooltip.keyed = state.ring && state.by_key && stop && !typed_stop(state) ? stop->id : 0;
+  if (taken) return;
+  std::erase_if(ui.keys, [&](const KeyPress& key) { return take_focus_key(ui, dialog, commands, key); });
 }
 
 void settle_keyboard(Ui& ui) {

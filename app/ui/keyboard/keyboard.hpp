@@ -10,14 +10,16 @@
 
 namespace flyball {
 
-struct App;
+class CommandRunner;
+struct DialogState;
+struct ViewContext;
 
-// Takes the keys that move the focus or act on the widget that has it out of app.keys; at the beginning of a
-// frame, before tools and shortcuts look at them.
-void take_keyboard(App& app);
+// Takes the keys that move the focus or act on the widget that has it out of ui.keys; at the beginning of a
+// frame, before tools and shortcuts look at them. `taken`: something that is open sees to the keys itself.
+void take_keyboard(Ui& ui, const DialogState& dialog, const CommandRunner& commands, bool taken);
 // Arrows, plus and minus steer the view while it has the keys, or the cursor of the tool that places; after
 // the tools have had theirs.
-void take_view_keys(App& app);
+void take_view_keys(const ViewContext& context);
 // After everything is drawn: brings the focused widget into sight and draws the ring.
 void settle_keyboard(Ui& ui);
 

@@ -1,10 +1,10 @@
 // The view by keys: arrows turn it, with Shift they move it, plus and minus zoom; while a tool places, they
 // move its cursor instead.
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/tool_cursor.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 
 #include <imgui_internal.h>
 
@@ -38,17 +38,18 @@ bool steer_by_key(const Ui& ui, ViewState& view, const KeyPress& key, ViewSize s
 
 } // namespace
 
-void take_view_keys(App& app) {
-  const WidgetRect& view = app.keyboard.view;
-  if (view.to.x <= view.from.x || !app.keyboard.at.empty() || ImGui::GetIO().WantTextInput ||
-      app.dialog.showing || app.commands.palette_showing || app.commands.shortcuts ||
+void take_view_keys(const ViewContext& context) {
+  const WidgetRect& view = context.ui.keyboard.view;
+  if (view.to.x <= view.from.x || !context.ui.keyboard.at.empty() || ImGui::GetIO().WantTextInput ||
       ImGui::GetCurrentContext()->OpenPopupStack.Size > 0)
     return;
   const ViewSize size{static_cast<double>(view.to.x - view.from.x),
                       static_cast<double>(view.to.y - view.from.y)};
-  std::erase_if(app.keys, [&](const KeyPress& key) {
-    if (app.mode == Mode::build && places(app.tool.tool) && take_cursor_key(app, key, size)) return true;
-    return steer_by_key(app, app.view, key, size);
+  std::erase_if(context.ui.keys, [&](const KeyPress& key) {
+    if (context.session.mode == Mode::build && places(context.tool.tool) &&
+        take_cursor_key(context, key, size))
+      return true;
+    return steer_by_key(context.ui, context.view, key, size);
   });
 }
 

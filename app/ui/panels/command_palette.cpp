@@ -1,7 +1,7 @@
+#include "app/ui/panels/command_palette.hpp"
+
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/commands.hpp"
-#include "app/ui/panels/palette_entries.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -14,6 +14,7 @@ namespace flyball {
 namespace {
 
 constexpr const char* palette_title = "palette";
+constexpr std::size_t most_recent = 20;
 
 // The title with what was typed of it marked; returns its width.
 float draw_title(const Ui& ui, const PaletteEntry& entry, ImVec2 at) {
@@ -63,19 +64,19 @@ bool entry_row(Ui& ui, const PaletteEntry& entry, bool chosen) {
 
 } // namespace
 
-void command_palette(App& app) {
-  CommandState& state = app.commands;
-  const float s = app.scale;
-  const bool appearing = std::exchange(state.palette_wanted, false);
+std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
+                                                 const CommandRunner& commands) {
+  const float s = ui.scale;
+  const bool appearing = std::exchange(wanted_, false);
   if (appearing) {
     ImGui::OpenPopup(palette_title);
-    state.search.clear();
-    state.chosen = 0;
+    search_.clear();
+    chosen_ = 0;
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, 70 * s}, ImGuiCond_Always, {0.5f, 0});
-  if (appearing && state.index) state.index->fresh = false; // what can be done now may be something else
-  const std::vector<PaletteEntry>& found = palette_entries(app);
+  if (appearing) index_.fresh = false; // what can be done now may be something else
+  const std::vector<PaletteEntry>& found = palette_entries(session, commands, index_, search_, recent_);
   const int count = static_cast<int>(found.size());
   // As tall as what is found, up to a dozen rows.
   const float row = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
@@ -84,24 +85,23 @@ void command_palette(App& app) {
   ImGui::SetNextWindowSize({std::min(660 * s, window.x - 20 * s), std::min(height, window.y - 90 * s)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {12 * s, 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  state.palette_showing =
-      ImGui::BeginPopup(palette_title, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+  showing_ = ImGui::BeginPopup(palette_title, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(2);
-  if (!state.palette_showing) return;
+  if (!showing_) return std::nullopt;
 
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint(
-          "##search", "Find a command, a part or a number; a number behind its name sets it", &state.search))
-    state.chosen = 0;
-  note_widget(app.widgets, "palette/search", KeyUse::none);
+          "##search", "Find a command, a part or a number; a number behind its name sets it", &search_))
+    chosen_ = 0;
+  note_widget(ui.widgets, "palette/search", KeyUse::none);
   bool accepted = false, moved = false, left = escape_pressed();
-  for (const KeyPress& key : std::exchange(app.keys, {})) {
+  for (const KeyPress& key : std::exchange(ui.keys, {})) {
     if (key.key == keys::enter) accepted = true;
     if (key.key == keys::escape) left = true;
     if (key.key == keys::down || key.key == keys::up) {
-      state.chosen += key.key == keys::down ? 1 : count - 1;
-      state.chosen = count > 0 ? state.chosen % count : 0;
+      chosen_ += key.key == keys::down ? 1 : count - 1;
+      chosen_ = count > 0 ? chosen_ % count : 0;
       moved = true;
     }
   }
@@ -109,19 +109,21 @@ void command_palette(App& app) {
   ImGui::BeginChild("found");
   for (int i = 0; i < count; ++i) {
     const PaletteEntry& entry = found[static_cast<std::size_t>(i)];
-    if (entry_row(app, entry, i == state.chosen)) wanted = &entry;
-    if (i == state.chosen && moved) ImGui::SetScrollHereY();
+    if (entry_row(ui, entry, i == chosen_)) wanted = &entry;
+    if (i == chosen_ && moved) ImGui::SetScrollHereY();
   }
   if (count == 0) ImGui::TextDisabled("No command, part or number is called that.");
   ImGui::EndChild();
-  if (accepted && state.chosen < count && found[static_cast<std::size_t>(state.chosen)].enabled)
-    wanted = &found[static_cast<std::size_t>(state.chosen)];
+  if (accepted && chosen_ < count && found[static_cast<std::size_t>(chosen_)].enabled)
+    wanted = &found[static_cast<std::size_t>(chosen_)];
   if (wanted || left) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  if (wanted) {
-    state.palette_showing = false;
-    use_palette_entry(app, *wanted);
-  }
+  if (!wanted) return std::nullopt;
+  showing_ = false;
+  std::erase(recent_, wanted->name);
+  recent_.insert(recent_.begin(), wanted->name);
+  if (recent_.size() > most_recent) recent_.resize(most_recent);
+  return *wanted;
 }
 
 } // namespace flyball

@@ -1,11 +1,12 @@
 #include "app/ui/panels/context_menu.hpp"
 
 #include "app/document/gear_kinds.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_frame.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -21,20 +22,20 @@ namespace {
 constexpr const char* context_popup = "view menu";
 
 // What is chosen happens after the frame, as it may change what the rest of it shows.
-void command_item(App& app, const char* id) {
+void command_item(Ui& ui, const CommandRunner& commands, const char* id) {
   const Command& wanted = command(id);
-  const bool on = wanted.checked && wanted.checked(app);
+  const bool on = commands.checked(wanted);
   ImGui::PushID(id);
-  if (ImGui::MenuItem(wanted.title, key_text(wanted.key).c_str(), on, is_enabled(app, wanted)))
-    later(app, [&app, id] { run_command(app, id); });
+  if (ImGui::MenuItem(wanted.title, key_text(wanted.key).c_str(), on, commands.enabled(wanted)))
+    later(ui, [commands, id] { commands.run(id); });
   ImGui::PopID();
-  note_widget(app.widgets, std::string("view/menu/") + id);
+  note_widget(ui.widgets, std::string("view/menu/") + id);
   help_on_hover(wanted.help);
 }
 
-void command_items(App& app, std::initializer_list<const char*> ids) {
+void command_items(Ui& ui, const CommandRunner& commands, std::initializer_list<const char*> ids) {
   for (const char* id : ids)
-    command_item(app, id);
+    command_item(ui, commands, id);
 }
 
 void menu_title(Ui& ui, const std::string& name, const std::string& what) {
@@ -115,61 +116,62 @@ void free_body_item(Session& session, Ui& ui, ViewState& view) {
   help_on_hover("What acts on this body alone in the steady state; it adds up to zero.");
 }
 
-void part_items(App& app) {
-  const Selection selection = app.selection(); // a copy, as what is chosen may change it
-  const Mechanism& mechanism = app.mechanism();
+void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& commands) {
+  const Selection selection = session.selection(); // a copy, as what is chosen may change it
+  const Mechanism& mechanism = session.mechanism();
   const Part& part = selection.parts.back();
   const PartId id = find_part(mechanism, part);
   const bool alone = selection.parts.size() == 1 && id.kind != PartKind::none;
   if (alone)
-    menu_title(app, part.name, menu_kind(mechanism, id));
+    menu_title(ui, part.name, menu_kind(mechanism, id));
   else
-    menu_title(app, std::to_string(selection.parts.size()) + " parts", "");
-  if (alone) command_item(app, "edit.rename");
-  command_items(app, {"edit.duplicate", "edit.copy", "edit.delete"});
-  if (selection.has(PartKind::body)) command_items(app, {"edit.mirror", "edit.circular"});
-  if (selection.names(PartKind::joint).size() >= 2) command_item(app, "edit.gear");
+    menu_title(ui, std::to_string(selection.parts.size()) + " parts", "");
+  if (alone) command_item(ui, commands, "edit.rename");
+  command_items(ui, commands, {"edit.duplicate", "edit.copy", "edit.delete"});
+  if (selection.has(PartKind::body)) command_items(ui, commands, {"edit.mirror", "edit.circular"});
+  if (selection.names(PartKind::joint).size() >= 2) command_item(ui, commands, "edit.gear");
   for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "edit.belt"),
                                          {GearKind::rack, "edit.rack"},
                                          {GearKind::screw, "edit.screw"}})
-    if (can_gear_selected(app, kind)) command_item(app, command_id);
-  if (can_give_backlash(app)) command_item(app, "edit.backlash");
+    if (can_gear_selected(session, kind)) command_item(ui, commands, command_id);
+  if (can_give_backlash(session)) command_item(ui, commands, "edit.backlash");
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
-    drive_items(app, app, mechanism.joints[static_cast<std::size_t>(id.index)]);
-  if (alone) number_items(app, app, part);
-  if (alone && id.kind == PartKind::body) free_body_item(app, app, app.view);
+    drive_items(session, ui, mechanism.joints[static_cast<std::size_t>(id.index)]);
+  if (alone) number_items(session, ui, part);
+  if (alone && id.kind == PartKind::body) free_body_item(session, ui, view);
   ImGui::Separator();
-  command_items(app, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
+  command_items(ui, commands, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
 }
 
-void view_items(App& app) {
-  menu_title(app, "View", "");
-  command_items(app, {"view.fit", "view.front", "view.side", "view.top", "view.iso"});
+void view_items(const Session& session, Ui& ui, const CommandRunner& commands) {
+  menu_title(ui, "View", "");
+  command_items(ui, commands, {"view.fit", "view.front", "view.side", "view.top", "view.iso"});
   ImGui::Separator();
-  command_items(app, {"view.ghost", "view.loads", "view.grid", "view.shadow", "view.show_all"});
+  command_items(ui, commands, {"view.ghost", "view.loads", "view.grid", "view.shadow", "view.show_all"});
   ImGui::Separator();
-  command_item(app, "view.mode");
-  if (app.mode != Mode::build) return command_item(app, "view.play");
+  command_item(ui, commands, "view.mode");
+  if (session.mode != Mode::build) return command_item(ui, commands, "view.play");
   if (ImGui::BeginMenu("Add")) {
-    note_widget(app.widgets, "view/menu/add");
-    for (const Command& each : commands())
+    note_widget(ui.widgets, "view/menu/add");
+    for (const Command& each : flyball::commands())
       if (std::string_view(each.id).starts_with("insert.")) {
         if (each.separated) ImGui::Separator();
-        command_item(app, each.id);
+        command_item(ui, commands, each.id);
       }
     ImGui::EndMenu();
   } else {
-    note_widget(app.widgets, "view/menu/add");
+    note_widget(ui.widgets, "view/menu/add");
   }
-  command_items(app, {"edit.paste", "edit.all"});
+  command_items(ui, commands, {"edit.paste", "edit.all"});
 }
 
 // Where a key has asked for it: at the selected part, else in the middle of the view.
-ImVec2 place_for_key(App& app, const ViewInput& input) {
-  const std::vector<PartId> selected = find_parts(*shown_mechanism(app, app.tool), app.selection());
+ImVec2 place_for_key(const ViewContext& context, const ViewInput& input) {
+  const std::vector<PartId> selected =
+      find_parts(*shown_mechanism(context.session, context.tool), context.session.selection());
   Bounds bounds;
-  for (const Instance& instance : shown_scene(app)->solid.instances)
+  for (const Instance& instance : shown_scene(context)->solid.instances)
     if (!selected.empty() && instance.part == selected.back()) bounds.add(instance_bounds(instance));
   const auto at = bounds.empty ? std::nullopt : input.on_screen(bounds.center());
   return at.value_or(ImVec2(input.rect.x + input.rect.width / 2, input.rect.y + input.rect.height / 2));
@@ -184,35 +186,34 @@ constexpr int frames_to_settle = 2;
 
 } // namespace
 
-void open_context_menu(App& app) {
-  app.view.menu_in = frames_to_settle;
-  app.view.menu_at.reset();
-  app.view.menu_of_part = !app.selection().empty();
+void ContextMenu::open(const Session& session) {
+  in_ = frames_to_settle;
+  at_.reset();
+  of_part_ = !session.selection().empty();
 }
 
-void context_menu(App& app, const ViewInput& input) {
-  if (input.menu && !app.tool.grab) {
-    const auto hit = part_under_cursor(app, input);
+void ContextMenu::draw(const ViewContext& context, const CommandRunner& commands, const ViewInput& input) {
+  if (input.menu && !context.tool.grab) {
+    const auto hit = part_under_cursor(context, input);
     if (hit) {
-      Part part = part_of(*shown_mechanism(app, app.tool), hit->part);
-      if (!app.selection().has(part)) select(app, {{std::move(part)}});
+      Part part = part_of(*shown_mechanism(context.session, context.tool), hit->part);
+      if (!context.session.selection().has(part)) select(context.session, {{std::move(part)}});
     }
     const ImVec2 at = ImGui::GetIO().MousePos;
-    app.view.menu_in = frames_to_settle;
-    app.view.menu_at = Vec2(static_cast<double>(at.x), static_cast<double>(at.y));
-    app.view.menu_of_part = hit.has_value();
-  } else if (app.view.menu_in > 0 && --app.view.menu_in == 0) {
-    const auto& at = app.view.menu_at;
-    ImGui::SetNextWindowPos(at ? ImVec2(static_cast<float>(at->x()), static_cast<float>(at->y()))
-                               : place_for_key(app, input));
+    in_ = frames_to_settle;
+    at_ = Vec2(static_cast<double>(at.x), static_cast<double>(at.y));
+    of_part_ = hit.has_value();
+  } else if (in_ > 0 && --in_ == 0) {
+    ImGui::SetNextWindowPos(at_ ? ImVec2(static_cast<float>(at_->x()), static_cast<float>(at_->y()))
+                                : place_for_key(context, input));
     ImGui::OpenPopup(context_popup);
   }
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * app.scale, 8 * app.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * context.ui.scale, 8 * context.ui.scale});
   if (ImGui::BeginPopup(context_popup)) {
-    if (app.view.menu_of_part && !app.selection().empty())
-      part_items(app);
+    if (of_part_ && !context.session.selection().empty())
+      part_items(context.session, context.ui, context.view, commands);
     else
-      view_items(app);
+      view_items(context.session, context.ui, commands);
     ImGui::EndPopup();
   }
   ImGui::PopStyleVar();

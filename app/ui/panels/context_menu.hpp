@@ -1,15 +1,24 @@
-// What can be done with what is under the hand in the view: the menu of a click with the right button.
+// What a right click in the 3-D view brings: what can be done with the selected parts, or with the view.
 #pragma once
 
 #include "app/ui/panels/view_input.hpp"
+#include "app/ui/view_context.hpp"
 
 namespace flyball {
 
-// Opens the menu where the right button was clicked, or where open_context_menu() asked for it, and shows it
-// while it is open. On a part, which is selected by it, it is that part's, elsewhere the view's.
-void context_menu(App& app, const ViewInput& input);
+class CommandRunner;
 
-// For a key: at the selected part, else in the middle of the view.
-void open_context_menu(App& app);
+class ContextMenu {
+ public:
+  // In the view's window. A part under the cursor is selected first.
+  void draw(const ViewContext& context, const CommandRunner& commands, const ViewInput& input);
+  // As a key asks for it.
+  void open(const Session& session);
+
+ private:
+  int in_ = 0;             // frames until it opens, as panels settle first; 0: it does not
+  std::optional<Vec2> at_; // where, in pixels of the window; none: where its part is
+  bool of_part_ = false;   // it is that of the selected parts
+};
 
 } // namespace flyball

@@ -1,5 +1,4 @@
 // How small disturbances of the steady state behave.
-#include "app/ui/panel_state.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -13,24 +12,6 @@ namespace {
 // In the order of the list: round-off leaves parts that ought to vanish at a tiny fraction of the largest.
 std::string part_text(double value, double largest) {
   return value_text(value, std::max(largest * 1e-5, 1e-12), {6, 1e-16, false});
-}
-
-// Where the linearised motion turns with the drives: what a period makes of a disturbance.
-void multiplier_results(Ui& ui, PanelState& panels, const Floquet& floquet) {
-  if (!section(ui, "results/eigenvalues", "Floquet multipliers", panels.eigenvalues)) return;
-  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
-            "times what it "
-            "was: above 1 in size it grows.",
-            colors_of(ui).dim);
-  row(ui, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
-  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
-    const std::complex<double> mu = floquet.multipliers[i];
-    if (mu.imag() < 0) continue; // its conjugate stands for both
-    const double size = std::abs(floquet.multipliers.front());
-    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
-    row(ui, "Multiplier", part_text(mu.real(), size) + imaginary, "");
-    row(ui, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
-  }
 }
 
 void lines_of(const Ui& ui, const std::vector<std::complex<double>>& eigenvalues) {
@@ -47,16 +28,36 @@ void lines_of(const Ui& ui, const std::vector<std::complex<double>>& eigenvalues
   }
 }
 
+// Where the linearised motion turns with the drives: what a period makes of a disturbance.
+void multiplier_results(Ui& ui, ResultSections& open, const Floquet& floquet) {
+  if (!section(ui, "results/eigenvalues", "Floquet multipliers", open.eigenvalues)) return;
+  paragraph("The linearised motion turns with the drives. In a period a disturbance becomes a multiplier "
+            "times what it was: above 1 in size it grows.",
+            colors_of(ui).dim);
+  row(ui, "Period", value_text(floquet.period, 1e-4 * floquet.period, {6, 1e-16, false}), "s");
+  floquet_rows(ui, floquet);
+}
+
 } // namespace
 
-void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels) {
+void floquet_rows(Ui& ui, const Floquet& floquet) {
+  for (std::size_t i = 0; i < floquet.growth.size(); ++i) {
+    const std::complex<double> mu = floquet.multipliers[i];
+    if (mu.imag() < 0) continue; // its conjugate stands for both
+    const double size = std::abs(floquet.multipliers.front());
+    const std::string imaginary = mu.imag() > 1e-9 * size ? " ± " + part_text(mu.imag(), size) + " i" : "";
+    row(ui, "Multiplier", part_text(mu.real(), size) + imaginary, "");
+    row(ui, "Growth", value_text(floquet.growth[i], 1e-6 / floquet.period, {6, 1e-16, false}), "1/s");
+  }
+}
+
+void eigenvalue_results(const Session& session, Ui& ui, ResultSections& open) {
   if (const PeriodicState* motion = periodic_motion(session); motion && !motion->floquet.multipliers.empty())
-    return multiplier_results(ui, panels, motion->floquet);
-  if (session.answer.solution.floquet)
-    return multiplier_results(ui, panels, *session.answer.solution.floquet);
+    return multiplier_results(ui, open, motion->floquet);
+  if (session.answer.solution.floquet) return multiplier_results(ui, open, *session.answer.solution.floquet);
   const auto& eigenvalues = session.answer.solution.eigenvalues;
   if (!eigenvalues || eigenvalues->empty()) return;
-  if (!section(ui, "results/eigenvalues", "Eigenvalues", panels.eigenvalues)) return;
+  if (!section(ui, "results/eigenvalues", "Eigenvalues", open.eigenvalues)) return;
   paragraph("Disturbances grow or die out with the real part and swing with the imaginary part.",
             colors_of(ui).dim);
   lines_of(ui, *eigenvalues);

@@ -1,5 +1,7 @@
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/dialog_state.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -13,28 +15,29 @@ namespace flyball {
 namespace {
 
 // What is on disk is known now and not wanted.
-void keep_mine(App& app) {
-  const std::filesystem::path file = app.document.file();
+void keep_mine(Session& session, const CommandRunner& commands) {
+  const std::filesystem::path file = session.document.file();
   try {
-    app.files.watch = FileWatch(file, read_bytes(file, 0.));
+    session.files.watch = FileWatch(file, read_bytes(file, 0.));
   } catch (const SceneError&) { // gone: there is nothing to be kept from
   }
-  const bool save_wanted = app.files.save_wanted;
-  app.files.conflict = app.files.save_wanted = false;
-  if (save_wanted) save_document(app);
+  const bool save_wanted = session.files.save_wanted;
+  session.files.conflict = session.files.save_wanted = false;
+  if (save_wanted) commands.run("file.save");
 }
 
-void conflict(App& app) {
-  const UiColors& colors = colors_of(app);
-  const bool saving = app.files.save_wanted;
+void conflict(Session& session, Ui& ui, const CommandRunner& commands) {
+  const UiColors& colors = colors_of(ui);
+  const bool saving = session.files.save_wanted;
   ImGui::AlignTextToFramePadding();
-  paragraph(std::string(icon::warning) + "  " + (saving ? "Not saved yet: " : "") + document_name(app) +
+  paragraph(std::string(icon::warning) + "  " + (saving ? "Not saved yet: " : "") + document_name(session) +
                 " has changed on disk, and there are unsaved changes here.",
             colors.text);
-  if (text_button(app, "banner/reload", "Take the file's")) reload_document(app);
+  if (text_button(ui, "banner/reload", "Take the file's")) reload_document(session);
   help_on_hover("Read the file again. Undo brings the unsaved changes back.");
   ImGui::SameLine();
-  if (text_button(app, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true)) keep_mine(app);
+  if (text_button(ui, "banner/keep", saving ? "Overwrite the file" : "Keep mine", true))
+    keep_mine(session, commands);
 }
 
 void discarded(Session& session, Ui& ui, DialogState& dialog) {
@@ -51,10 +54,11 @@ void discarded(Session& session, Ui& ui, DialogState& dialog) {
 
 } // namespace
 
-void file_banner(App& app, const PanelRect& view) {
-  const bool both_changed = app.files.conflict && !app.document.file().empty();
-  if (app.dialog.showing || (!both_changed && app.files.aside.empty())) return;
-  const float s = app.scale;
+void file_banner(Session& session, Ui& ui, DialogState& dialog, const CommandRunner& commands,
+                 const PanelRect& view) {
+  const bool both_changed = session.files.conflict && !session.document.file().empty();
+  if (dialog.showing || (!both_changed && session.files.aside.empty())) return;
+  const float s = ui.scale;
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
   if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -65,9 +69,9 @@ void file_banner(App& app, const PanelRect& view) {
                    ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::PopStyleVar(2);
   if (both_changed)
-    conflict(app);
+    conflict(session, ui, commands);
   else
-    discarded(app, app, app.dialog);
+    discarded(session, ui, dialog);
   ImGui::End();
 }
 

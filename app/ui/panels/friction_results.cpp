@@ -11,11 +11,11 @@ namespace flyball {
 
 namespace {
 
-constexpr int digits = 5; // an extent is looked at, not copied
+constexpr int extent_digits = 5; // an extent is looked at, not copied
 
 std::string range_words(const ShownUnit& unit, double low, double high) {
   const auto bound = [&](double value, const char* none) {
-    return std::isfinite(value) ? short_text(unit.shown(value), digits) : std::string(none);
+    return std::isfinite(value) ? short_text(unit.shown(value), extent_digits) : std::string(none);
   };
   return bound(low, "-∞") + " … " + bound(high, "∞");
 }
@@ -43,9 +43,9 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
   std::string help = drawn.message;
   for (const HeldJoint& joint : drawn.joints) {
     const ShownUnit unit = shown_unit(joint.angle ? "N m" : "N", session.units);
-    help += "\n" + coordinate_label(joint) + ": at most " + short_text(unit.shown(joint.limit), digits) +
+    help += "\n" + coordinate_label(joint) + ": at most " + short_text(unit.shown(joint.limit), extent_digits) +
             " " + unit.text;
-    if (joint.force) help += ", needed " + short_text(unit.shown(*joint.force), digits) + " " + unit.text;
+    if (joint.force) help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
   }
   row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs", percent_words(*drawn.takes),
       "%", help.c_str());
@@ -55,8 +55,8 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
 void speed_rows(const Session& session, Ui& ui, const std::vector<HeldSpeeds>& all) {
   for (const HeldSpeeds& held : all) {
     const ShownUnit unit = rate_unit(held.angle, session.units);
-    const std::string low = held.lower ? short_text(unit.shown(*held.lower), digits) : "rest",
-                      high = held.upper ? short_text(unit.shown(*held.upper), digits) : "any";
+    const std::string low = held.lower ? short_text(unit.shown(*held.lower), extent_digits) : "rest",
+                      high = held.upper ? short_text(unit.shown(*held.upper), extent_digits) : "any";
     row(ui, "Unmoved by " + coordinate_label(held), low + " … " + high, unit.text.c_str(),
         "Between these speeds friction holds it where it stands.");
     if (const auto part = held.insensitivity())

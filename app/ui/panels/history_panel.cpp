@@ -1,6 +1,8 @@
-// Every step since the document was opened, to go back to.
-#include "app/ui/app.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/panels/history_panel.hpp"
+
+#include "app/session/session.hpp"
+#include "app/ui/layout.hpp"
+#include "app/ui/ui.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -35,26 +37,25 @@ void step_row(Session& session, Ui& ui, std::size_t i, float height) {
 
 } // namespace
 
-void history_panel(App& app) {
-  const float s = app.scale;
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const PanelRect view = layout_of(app, screen.x, screen.y).view;
+void HistoryPanel::draw(Session& session, Ui& ui, const PanelRect& view) {
+  if (!open) return;
+  const float s = ui.scale;
   const float height = ImGui::GetTextLineHeight() + 8 * s, bar = ImGui::GetFrameHeight();
-  const float rows = static_cast<float>(std::min<std::size_t>(app.document.steps().size(), 14));
+  const float rows = static_cast<float>(std::min<std::size_t>(session.document.steps().size(), 14));
   ImGui::SetNextWindowPos({view.x + view.width - 10 * s, view.y + 10 * s}, ImGuiCond_FirstUseEver, {1, 0});
   ImGui::SetNextWindowSize({std::min(250 * s, view.width), bar + rows * height + 12 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {6 * s, 6 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
-  if (ImGui::Begin("History", &app.inspector.history,
+  if (ImGui::Begin("History", &open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
                        ImGuiWindowFlags_NoResize)) {
-    const auto count = static_cast<int>(app.document.steps().size());
-    const auto present = static_cast<int>(app.document.position());
+    const auto count = static_cast<int>(session.document.steps().size());
+    const auto present = static_cast<int>(session.document.position());
     // The present step stays in view.
-    if (present != app.inspector.history_shown) {
-      app.inspector.history_shown = present;
+    if (present != shown_) {
+      shown_ = present;
       const float top = static_cast<float>(present) * height, room = ImGui::GetContentRegionAvail().y;
       if (top < ImGui::GetScrollY() || top + height > ImGui::GetScrollY() + room)
         ImGui::SetScrollY(std::max(top - room / 2, 0.f));
@@ -63,7 +64,7 @@ void history_panel(App& app) {
     clipper.Begin(count, height);
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        step_row(app, app, static_cast<std::size_t>(i), height);
+        step_row(session, ui, static_cast<std::size_t>(i), height);
   }
   ImGui::End();
   ImGui::PopStyleVar(4);

@@ -1,6 +1,5 @@
 #include "app/ui/panels/legend.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -80,14 +79,14 @@ std::vector<LegendRow> pose_rows(const Session& session, const ToolState& tool, 
 
 } // namespace
 
-std::vector<LegendRow> legend_rows(App& app) {
-  std::vector<LegendRow> rows = pose_rows(app, app.tool, app.view);
+std::vector<LegendRow> legend_rows(const ViewContext& context) {
+  std::vector<LegendRow> rows = pose_rows(context.session, context.tool, context.view);
   if (rows.empty()) return rows;
-  if (const std::size_t hidden = app.view.scene.source.hidden.size())
+  if (const std::size_t hidden = context.view.scene.source.hidden.size())
     rows.push_back({.mark = LegendMark::note,
                     .words = std::to_string(hidden) + (hidden == 1 ? " part hidden" : " parts hidden"),
                     .help = "View, Show all brings hidden parts back (Ctrl+Shift+H)."});
-  add_load_rows(app, rows);
+  add_load_rows(context, rows);
   return rows;
 }
 
@@ -111,28 +110,26 @@ int arrows_within(const ViewState& state, const PanelRect& view, ImVec2 from, Im
   return within;
 }
 
+} // namespace
+
 // The corner of the view in which a legend of this size hides the fewest arrows, the upper one where that is
 // all the same. It does not jump while the view is turned.
-float legend_top(const Ui& ui, const ViewState& state, PanelState& panels, const PanelRect& view,
-                 ImVec2 size) {
+float Legend::top(const Ui& ui, const ViewState& state, const PanelRect& view, ImVec2 size) {
   const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
   const float upper = view.y + 10 * s, lower = view.y + view.height - 44 * s - size.y; // above the chips
   const auto hidden = [&](float top) {
     return arrows_within(state, view, {left, top}, {left + size.x, top + size.y});
   };
-  if (!ImGui::IsAnyMouseDown() && panels.legend)
-    panels.legend_low = lower > upper && hidden(lower) < hidden(upper);
-  return panels.legend_low ? lower : upper;
+  if (!ImGui::IsAnyMouseDown() && state.legend) low_ = lower > upper && hidden(lower) < hidden(upper);
+  return low_ ? lower : upper;
 }
 
-} // namespace
-
-void legend(App& app, const PanelRect& view, bool folds) {
-  if (!folds && !app.panels.legend) return;
-  const std::vector<LegendRow> rows = legend_rows(app);
-  if (rows.empty() || view.width < 260 * app.scale || view.height < 160 * app.scale) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds) {
+  if (!folds && !context.view.legend) return;
+  const std::vector<LegendRow> rows = legend_rows(context);
+  if (rows.empty() || view.width < 260 * context.ui.scale || view.height < 160 * context.ui.scale) return;
+  const UiColors& colors = colors_of(context.ui);
+  const float s = context.ui.scale;
   const float line = ImGui::GetTextLineHeight(), side = std::round(0.55f * line);
   const float mark = std::round(1.4f * line);
   float width = mark; // of the widest mark
@@ -151,12 +148,12 @@ void legend(App& app, const PanelRect& view, bool folds) {
   };
   const ImVec2 whole = size_of(rows);
   const bool crowded = whole.x * whole.y > largest_share * view.width * view.height;
-  const bool open = !folds || (crowded ? app.panels.legend_anyway : app.panels.legend);
+  const bool open = !folds || (crowded ? anyway_ : context.view.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
-  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s),
-                           std::round(legend_top(app, app.view, app.panels, view, size))},
-                          ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowPos(
+      {std::round(view.x + view.width - 10 * s), std::round(top(context.ui, context.view, view, size))},
+      ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
@@ -171,11 +168,11 @@ void legend(App& app, const PanelRect& view, bool folds) {
   const ImVec2 from = ImGui::GetCursorScreenPos();
   if (ImGui::InvisibleButton("title", {room, line})) {
     if (crowded)
-      app.panels.legend_anyway = !open;
+      anyway_ = !open;
     else
-      open_legend(app, !open);
+      open_legend(context.session, context.ui, context.view, !open);
   }
-  note_widget(app.widgets, "legend");
+  note_widget(context.ui.widgets, "legend");
   const bool lit = ImGui::IsItemHovered();
   help_on_hover(open ? "Fold the legend" : "What is drawn how");
   const ImU32 ink = packed(lit ? colors.text : colors.dim);
@@ -192,14 +189,14 @@ void legend(App& app, const PanelRect& view, bool folds) {
     const float top = at.y + std::round((line - side) / 2);
     const bool note = shown[i].mark == LegendMark::note;
     if (shown[i].mark == LegendMark::load)
-      draw_load_mark(app, shown[i], {at.x + s, at.y}, line);
+      draw_load_mark(context.ui, shown[i], {at.x + s, at.y}, line);
     else if (!note)
-      draw_mark(app, app, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
+      draw_mark(context.session, context.ui, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
     list.AddText({at.x + (note ? s : width + 7 * s), at.y}, packed(note ? colors.dim : colors.text),
                  shown[i].words.c_str());
     ImGui::Dummy({room, line});
     if (!shown[i].help.empty()) help_on_hover(shown[i].help.c_str());
-    note_widget(app.widgets, "legend/" + std::to_string(i));
+    note_widget(context.ui.widgets, "legend/" + std::to_string(i));
   }
   ImGui::End();
   ImGui::PopStyleVar(5);

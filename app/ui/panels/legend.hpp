@@ -2,7 +2,10 @@
 #pragma once
 
 #include "app/ui/layout.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/viewport/loads.hpp"
+
+#include <imgui.h>
 
 #include <string>
 #include <vector>
@@ -20,10 +23,19 @@ struct LegendRow {
   std::string help{}; // where it is pointed at
 };
 // What is in the view now; nothing for an empty document.
-std::vector<LegendRow> legend_rows(App& app);
+std::vector<LegendRow> legend_rows(const ViewContext& context);
 
 // A small window in a right corner of the view, the upper one unless it hides loads' arrows there, which a
 // click on its title folds.
-void legend(App& app, const PanelRect& view, bool folds = true);
+class Legend {
+ public:
+  void draw(const ViewContext& context, const PanelRect& view, bool folds = true);
+
+ private:
+  float top(const Ui& ui, const ViewState& state, const PanelRect& view, ImVec2 size);
+
+  bool low_ = false;    // in the lower corner, where it hides fewer arrows
+  bool anyway_ = false; // open also where it covers much of the view
+};
 
 } // namespace flyball

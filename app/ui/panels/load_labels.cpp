@@ -1,9 +1,9 @@
 #include "app/ui/panels/load_labels.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/picking.hpp"
 
@@ -151,25 +151,25 @@ void load_labels(Ui& ui, const ViewState& view, const PanelRect& rect) {
   }
 }
 
-bool load_tooltip(App& app, const ViewInput& input) {
-  if (!input.hovered || places(app.tool.tool)) return false;
-  const ShownScene& shown = app.view.scene;
+bool load_tooltip(const ViewContext& context, const ViewInput& input) {
+  if (!input.hovered || places(context.tool.tool)) return false;
+  const ShownScene& shown = context.view.scene;
   if (!shown.scene || shown.scene->arrows.solids.empty()) return false;
   const ViewScene& scene = *shown.scene;
   const auto hit = pick(scene.arrows.solids, input.ray(), 3 * input.point);
   if (!hit) return false;
   const Load& load = scene.loads[scene.arrows.arrows[scene.arrows.arrow_of[hit->instance]].load];
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(context.ui.fonts.strong);
   ImGui::TextUnformatted(long_load_name(*shown.mechanism, load).c_str());
   ImGui::PopFont();
   ImGui::SameLine();
   ImGui::TextUnformatted(load_value_text(load).c_str());
-  note_widget(app.widgets, "load/pointed");
+  note_widget(context.ui.widgets, "load/pointed");
   ImGui::TextDisabled("%s", load_components_text(load).c_str());
-  if (is_one_of_many(app.answer.solution, load_part_name(*shown.mechanism, load), load)) {
+  if (is_one_of_many(context.session.answer.solution, load_part_name(*shown.mechanism, load), load)) {
     ImGui::TextUnformatted("The loops hold more than they need: the smallest of many.");
-    note_widget(app.widgets, "load/nonunique");
+    note_widget(context.ui.widgets, "load/nonunique");
   }
   ImGui::EndTooltip();
   return true;

@@ -8,6 +8,6 @@ namespace flyball {
 // Names and values beside the arrows of a free-body diagram, where there is room for them.
 void load_labels(Ui& ui, const ViewState& view, const PanelRect& rect);
 // What is known of the arrow under the cursor, as a tooltip; false where there is none.
-bool load_tooltip(App& app, const ViewInput& input);
+bool load_tooltip(const ViewContext& context, const ViewInput& input);
 
 } // namespace flyball

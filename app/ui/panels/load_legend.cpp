@@ -1,8 +1,8 @@
 #include "app/ui/panels/load_legend.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/load_view.hpp"
 #include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -83,17 +83,18 @@ const char* load_name(LoadKind kind) {
   return "";
 }
 
-void add_load_rows(App& app, std::vector<LegendRow>& rows) {
+void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   const auto note = [&](std::string words) {
     rows.push_back({.mark = LegendMark::note, .words = std::move(words)});
   };
-  if (const std::string missing = loads_missing(app, app.tool, app.view); !missing.empty())
+  if (const std::string missing = loads_missing(context.session, context.tool, context.view);
+      !missing.empty())
     return note(missing);
-  const ShownScene& shown = app.view.scene;
+  const ShownScene& shown = context.view.scene;
   if (!shown.scene || !shown.source.loads) return;
   const ViewScene& scene = *shown.scene;
   const bool diagram = shown.source.loads_body >= 0;
-  const double pixel = app.view.camera.pixel_size(app.view.size);
+  const double pixel = context.view.camera.pixel_size(context.view.size);
   if (diagram)
     note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
          ", adds up to zero");
@@ -102,7 +103,7 @@ void add_load_rows(App& app, std::vector<LegendRow>& rows) {
                               LoadKind::applied, LoadKind::air, LoadKind::inertia})
     for (const bool moment : {false, true})
       if (scene.arrows.scales.largest(kind, moment) > 0)
-        rows.push_back(load_row(app, scene.arrows.scales, kind, moment, pixel, diagram));
+        rows.push_back(load_row(context.ui, scene.arrows.scales, kind, moment, pixel, diagram));
   if (rows.size() == before)
     note("No forces act");
   else if (!diagram)

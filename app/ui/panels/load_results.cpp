@@ -1,5 +1,4 @@
 // What the drives and joints bear.
-#include "app/ui/panel_state.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
@@ -26,11 +25,11 @@ std::string vector_text(const Vec3& v, double largest) {
   return text;
 }
 
-void drive_torques(const Session& session, Ui& ui, PanelState& panels) {
+void drive_torques(const Session& session, Ui& ui, ResultSections& open) {
   const std::vector<DriveTorque>& torques = session.answer.solution.drive_torques;
   if (torques.empty()) return;
   ImGui::Dummy({0, 2 * ui.scale});
-  if (!section(ui, "results/torques", "Drive torques", panels.torques)) return;
+  if (!section(ui, "results/torques", "Drive torques", open.torques)) return;
   double largest = 0;
   struct Row {
     const DriveTorque* torque;
@@ -93,10 +92,10 @@ void bearing_forces(const Session& session, const Ui& ui, double force, double t
   });
 }
 
-void reactions(const Session& session, Ui& ui, PanelState& panels) {
+void reactions(const Session& session, Ui& ui, ResultSections& open) {
   const Solution& solution = session.answer.solution;
   if (solution.reactions.empty() && solution.bearings.empty()) return;
-  if (!section(ui, "results/reactions", "Reactions", panels.reactions)) return;
+  if (!section(ui, "results/reactions", "Reactions", open.reactions)) return;
   paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
                                            "they need; of those marked ≈ these are the smallest that do it."
                                          : "Parent on child: x, y, z of the world.",
@@ -128,9 +127,9 @@ void reactions(const Session& session, Ui& ui, PanelState& panels) {
 
 } // namespace
 
-void load_results(const Session& session, Ui& ui, PanelState& panels) {
-  drive_torques(session, ui, panels);
-  reactions(session, ui, panels);
+void load_results(const Session& session, Ui& ui, ResultSections& open) {
+  drive_torques(session, ui, open);
+  reactions(session, ui, open);
 }
 
 } // namespace flyball

@@ -1,6 +1,6 @@
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <array>
@@ -17,37 +17,37 @@ constexpr std::array menus{Menu{"File", "file."}, Menu{"Edit", "edit."},   Menu{
                            Menu{"View", "view."}, Menu{"Units", "units."}, Menu{"Study", "study."},
                            Menu{"Help", "help."}};
 
-void recent_menu(App& app) {
-  const auto& files = app.files.recent;
+void recent_menu(const Session& session, Ui& ui, const CommandRunner& commands) {
+  const auto& files = session.files.recent;
   if (files.empty()) return;
   const bool open = ImGui::BeginMenu("Open recent");
-  if (!open) note_widget(app.widgets, "menu/recent");
+  if (!open) note_widget(ui.widgets, "menu/recent");
   if (!open) return;
   std::filesystem::path chosen;
   for (const std::filesystem::path& file : files) {
     ImGui::PushID(file.c_str());
     if (ImGui::MenuItem(file.filename().c_str(), nullptr)) chosen = file;
-    note_widget(app.widgets, "menu/recent/" + file.string());
+    note_widget(ui.widgets, "menu/recent/" + file.string());
     help_on_hover(file.c_str());
     ImGui::PopID();
   }
   ImGui::EndMenu();
-  if (!chosen.empty()) open_file(app, chosen);
+  if (!chosen.empty()) commands.open(chosen);
 }
 
-void items(App& app, const Menu& menu) {
-  for (const Command& command : commands()) {
+void items(const Session& session, Ui& ui, const CommandRunner& commands, const Menu& menu) {
+  for (const Command& command : flyball::commands()) {
     if (!std::string_view(command.id).starts_with(menu.prefix)) continue;
     if (command.separated) ImGui::Separator();
-    const bool on = command.checked && command.checked(app);
+    const bool on = commands.checked(command);
     ImGui::PushID(command.id);
-    if (ImGui::MenuItem(label_of(app, command).c_str(), key_text(command.key).c_str(), on,
-                        is_enabled(app, command)))
-      command.run(app);
+    if (ImGui::MenuItem(commands.label(command).c_str(), key_text(command.key).c_str(), on,
+                        commands.enabled(command)))
+      commands.run(command);
     ImGui::PopID();
-    note_widget(app.widgets, std::string("menu/") + command.id);
+    note_widget(ui.widgets, std::string("menu/") + command.id);
     help_on_hover(command.help);
-    if (command.id == std::string_view("file.open")) recent_menu(app);
+    if (command.id == std::string_view("file.open")) recent_menu(session, ui, commands);
   }
 }
 
@@ -63,14 +63,14 @@ std::span<const char* const> menu_titles() {
   return titles;
 }
 
-void menu_bar(App& app) {
+void menu_bar(const Session& session, Ui& ui, const CommandRunner& commands) {
   if (!ImGui::BeginMenuBar()) return;
   for (const Menu& menu : menus) {
-    if (app.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
+    if (ui.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
     const bool open = ImGui::BeginMenu(menu.title);
-    note_widget(app.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
+    note_widget(ui.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
     if (!open) continue;
-    items(app, menu);
+    items(session, ui, commands, menu);
     ImGui::EndMenu();
   }
   ImGui::EndMenuBar();

@@ -1,7 +1,8 @@
 // What was told before, the latest first; Enter or a click copies a line.
-#include "app/ui/app.hpp"
 #include "app/ui/layout.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/ui.hpp"
+#include "app/ui/widgets/notice.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <array>
@@ -40,22 +41,21 @@ void message_row(Ui& ui, NoticeLog& log, std::size_t i, float wrap) {
 
 } // namespace
 
-void messages_panel(App& app) {
-  const float s = app.scale;
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const PanelRect view = layout_of(app, screen.x, screen.y).view;
+void messages_panel(Ui& ui, NoticeLog& log, const PanelRect& view) {
+  if (!log.showing) return;
+  const float s = ui.scale;
   const ImVec2 size(std::min(460 * s, view.width - 20 * s), std::min(300 * s, view.height - 20 * s));
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 10 * s}, ImGuiCond_FirstUseEver, {0.5f, 0});
   ImGui::SetNextWindowSize(size, ImGuiCond_FirstUseEver);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  if (ImGui::Begin("Messages", &app.notice_log.showing,
+  if (ImGui::Begin("Messages", &log.showing,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     const float wrap = ImGui::GetContentRegionAvail().x;
-    if (app.notice_log.past.empty()) paragraph("Nothing has been told yet.", colors_of(app).dim);
-    for (std::size_t i = app.notice_log.past.size(); i-- > 0;)
-      message_row(app, app.notice_log, i, wrap);
-    note_widget(app.widgets, "messages", KeyUse::none);
+    if (log.past.empty()) paragraph("Nothing has been told yet.", colors_of(ui).dim);
+    for (std::size_t i = log.past.size(); i-- > 0;)
+      message_row(ui, log, i, wrap);
+    note_widget(ui.widgets, "messages", KeyUse::none);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);

@@ -1,10 +1,11 @@
-// The parts of the mechanism as a list in three sections, in step with what is selected in the view.
+#include "app/ui/panels/outline_panel.hpp"
+
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/view_state.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -55,13 +56,17 @@ struct PartOrder {
 
 // What all rows of a frame share.
 struct Outline {
-  App& app;
+  Session& session;
+  Ui& ui;
+  ViewState& view;
+  OutlineState& state;
+  const CommandRunner& commands;
   std::array<bool, 3> open{}; // sections
   std::map<Part, std::size_t, PartOrder> mistakes;
   float height = 0;
 
-  const Mechanism& mechanism() const { return app.mechanism(); }
-  const OutlineRows& kept() const { return app.inspector.rows; }
+  const Mechanism& mechanism() const { return session.mechanism(); }
+  const OutlineRows& kept() const { return state.rows; }
 };
 
 std::size_t count_of(const Mechanism& mechanism, PartKind kind) {
@@ -97,9 +102,9 @@ std::vector<PartId> open_rows(const Outline& outline) {
   return rows;
 }
 
-void keep_rows(const Session& session, const Ui& ui, InspectorState& inspector) {
-  OutlineRows& kept = inspector.rows;
-  const std::string& search = inspector.search;
+void keep_rows(const Session& session, const Ui& ui, OutlineState& state) {
+  OutlineRows& kept = state.rows;
+  const std::string& search = state.search;
   if (kept.revision == session.document.revision() && kept.theme == ui.theme && kept.search == search) return;
   kept.revision = session.document.revision();
   kept.theme = ui.theme;
@@ -116,10 +121,9 @@ void keep_rows(const Session& session, const Ui& ui, InspectorState& inspector) 
 }
 
 void choose(Outline& outline, const Part& part) {
-  App& app = outline.app;
   const ImGuiIO& io = ImGui::GetIO();
-  Selection selection = app.selection();
-  InspectorState& state = app.inspector;
+  Selection selection = outline.session.selection();
+  OutlineState& state = outline.state;
   if (io.KeyShift && state.anchor.kind != PartKind::none) {
     const PartId anchor = find_part(outline.mechanism(), state.anchor);
     const std::vector<PartId> rows = open_rows(outline);
@@ -145,19 +149,19 @@ void choose(Outline& outline, const Part& part) {
     state.anchor = part;
   }
   state.revealed = part; // it is under the hand
-  later(app, [&app, selection] { select(app, selection); });
+  later(outline.ui, [&session = outline.session, selection] { select(session, selection); });
 }
 
-void row_menu(App& app, const Part& part) {
+void row_menu(Session& session, Ui& ui, const CommandRunner& commands, const Part& part) {
   if (!ImGui::BeginPopupContextItem()) return;
-  if (ImGui::IsWindowAppearing() && !app.selection().has(part))
-    later(app, [&app, part] { select(app, {{part}}); });
+  if (ImGui::IsWindowAppearing() && !session.selection().has(part))
+    later(ui, [&session, part] { select(session, {{part}}); });
   for (const char* id : {"edit.rename", "edit.duplicate", "edit.mirror", "edit.circular", "edit.delete"}) {
     const Command& wanted = command(id);
     const std::string keys = key_text(wanted.key);
-    if (ImGui::MenuItem(wanted.title, keys.c_str(), false, is_enabled(app, wanted)))
-      later(app, [&app, id] { run_command(app, id); });
-    note_widget(app.widgets, std::string("outline/menu/") + id);
+    if (ImGui::MenuItem(wanted.title, keys.c_str(), false, commands.enabled(wanted)))
+      later(ui, [commands, id] { commands.run(id); });
+    note_widget(ui.widgets, std::string("outline/menu/") + id);
     help_on_hover(wanted.help);
   }
   ImGui::EndPopup();
@@ -165,10 +169,9 @@ void row_menu(App& app, const Part& part) {
 
 // The body's colour, or what kind of part it is.
 void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
-  const App& app = outline.app;
-  const UiColors& colors = colors_of(app);
+  const UiColors& colors = colors_of(outline.ui);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const float r = 5 * app.scale;
+  const float r = 5 * outline.ui.scale;
   const ImVec2 middle(at.x + r, at.y);
   const auto i = static_cast<std::size_t>(id.index);
   if (id.kind == PartKind::body) {
@@ -183,23 +186,23 @@ void draw_sign(const Outline& outline, PartId id, ImVec2 at) {
     const Joint& joint = outline.mechanism().joints[i];
     const bool driven =
         std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); });
-    list.AddCircle(middle, r - app.scale, packed(driven ? colors.accent : colors.dim), 0, 2 * app.scale);
-    if (driven) list.AddCircleFilled(middle, 2 * app.scale, packed(colors.accent));
+    list.AddCircle(middle, r - outline.ui.scale, packed(driven ? colors.accent : colors.dim), 0,
+                   2 * outline.ui.scale);
+    if (driven) list.AddCircleFilled(middle, 2 * outline.ui.scale, packed(colors.accent));
   } else {
-    const float h = 4 * app.scale;
+    const float h = 4 * outline.ui.scale;
     list.AddLine({middle.x - r, middle.y + h}, {middle.x + r, middle.y - h}, packed(colors.dim),
-                 2 * app.scale);
-    list.AddTriangleFilled({middle.x + r, middle.y - h}, {middle.x + r - 5 * app.scale, middle.y - h},
-                           {middle.x + r, middle.y - h + 5 * app.scale}, packed(colors.dim));
+                 2 * outline.ui.scale);
+    list.AddTriangleFilled({middle.x + r, middle.y - h}, {middle.x + r - 5 * outline.ui.scale, middle.y - h},
+                           {middle.x + r, middle.y - h + 5 * outline.ui.scale}, packed(colors.dim));
   }
 }
 
 void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, float width, bool hovered) {
-  App& app = outline.app;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, height = outline.height;
+  const UiColors& colors = colors_of(outline.ui);
+  const float s = outline.ui.scale, height = outline.height;
   const ImVec2 to(from.x + width, from.y + height);
-  const bool selected = app.selection().has(part), pointed = app.view.hovered == id;
+  const bool selected = outline.session.selection().has(part), pointed = outline.view.hovered == id;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImVec4 back = colors.accent;
   back.w = selected ? 0.22f : 0;
@@ -213,10 +216,10 @@ void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, 
   if (const auto mistake = outline.mistakes.find(part); mistake != outline.mistakes.end()) {
     right -= ImGui::CalcTextSize(icon::warning).x;
     list.AddText({right, y}, packed(colors.warn), icon::warning);
-    if (hovered) ImGui::SetTooltip("%s", words_for(app.mistakes[mistake->second]).c_str());
+    if (hovered) ImGui::SetTooltip("%s", words_for(outline.session.mistakes[mistake->second]).c_str());
     right -= 6 * s;
   }
-  if (std::ranges::find(app.view.hidden, part) != app.view.hidden.end()) {
+  if (std::ranges::find(outline.view.hidden, part) != outline.view.hidden.end()) {
     right -= ImGui::CalcTextSize(icon::eye_off).x;
     list.AddText({right, y}, packed(colors.dim), icon::eye_off);
     if (hovered) ImGui::SetTooltip("Hidden in the view. Ctrl+Shift+H shows all.");
@@ -236,47 +239,49 @@ void draw_row(const Outline& outline, PartId id, const Part& part, ImVec2 from, 
 }
 
 void part_row(Outline& outline, PartId id) {
-  App& app = outline.app;
   const Part part{id.kind, name_of(outline.mechanism(), id)};
   const std::string widget = widget_of(part), field = widget + "/name";
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 1.f);
-  if (typing_in(app, field)) {
-    draw_sign(outline, id, {from.x + 10 * app.scale, from.y + outline.height / 2});
-    ImGui::SetCursorScreenPos({from.x + 22 * app.scale, from.y});
+  if (typing_in(outline.ui, field)) {
+    draw_sign(outline, id, {from.x + 10 * outline.ui.scale, from.y + outline.height / 2});
+    ImGui::SetCursorScreenPos({from.x + 22 * outline.ui.scale, from.y});
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        {6 * app.scale, (outline.height - ImGui::GetFontSize()) / 2});
-    name_field(app, app, field, part, width - 22 * app.scale);
+                        {6 * outline.ui.scale, (outline.height - ImGui::GetFontSize()) / 2});
+    name_field(outline.session, outline.ui, field, part, width - 22 * outline.ui.scale);
     ImGui::PopStyleVar();
     ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
     return;
   }
   ImGui::PushID(id.index);
   if (ImGui::InvisibleButton("row", {width, outline.height})) choose(outline, part);
-  note_widget(app.widgets, widget, KeyUse::row);
-  if (app.selection().has(part)) mark_chosen(app.widgets);
+  note_widget(outline.ui.widgets, widget, KeyUse::row);
+  if (outline.session.selection().has(part)) mark_chosen(outline.ui.widgets);
   const bool hovered = ImGui::IsItemHovered();
-  if (hovered) app.view.hovered = id;
+  if (hovered) outline.view.hovered = id;
   if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && !ImGui::GetIO().KeyCtrl)
-    later(app, [&app, field, name = part.name] { start_typing(app, app, field, name); });
-  if (takes_menu_key(app, widget)) ImGui::OpenPopup(ImGui::GetItemID());
-  row_menu(app, part);
+    later(outline.ui, [&session = outline.session, &ui = outline.ui, field, name = part.name] {
+      start_typing(session, ui, field, name);
+    });
+  if (takes_menu_key(outline.ui, widget)) ImGui::OpenPopup(ImGui::GetItemID());
+  row_menu(outline.session, outline.ui, outline.commands, part);
   ImGui::PopID();
   draw_row(outline, id, part, from, width, hovered);
   ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
 }
 
 void part_section(Outline& outline, std::size_t section) {
-  App& app = outline.app;
   const SectionWords& words = outline_sections[section];
   const std::size_t count = count_of(outline.mechanism(), words.kind);
   if (count == 0) return;
   const std::vector<PartId>& shown = outline.kept().listed[section];
   const std::string title = std::string(words.title) + "   " + std::to_string(count);
-  const Part& last = app.selection().empty() ? Part{} : app.selection().parts.back();
-  const bool reveal = last.kind == words.kind && last != app.inspector.revealed;
-  if (reveal) app.sections.open[std::string("outline/") + words.list] = true;
-  if (!inspector_section(app, app, std::string("outline/") + words.list, title.c_str(), true)) return;
+  const Part& last = outline.session.selection().empty() ? Part{} : outline.session.selection().parts.back();
+  const bool reveal = last.kind == words.kind && last != outline.state.revealed;
+  if (reveal) outline.ui.sections.open[std::string("outline/") + words.list] = true;
+  if (!inspector_section(outline.session, outline.ui, std::string("outline/") + words.list, title.c_str(),
+                         true))
+    return;
   outline.open[section] = true;
   if (reveal) {
     const auto row = std::ranges::find(shown, find_part(outline.mechanism(), last));
@@ -284,7 +289,7 @@ void part_section(Outline& outline, std::size_t section) {
     const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
     if (row != shown.end() && (y < top || y + 2 * outline.height > top + room))
       ImGui::SetScrollY(std::max(y - room / 2, 0.f));
-    app.inspector.revealed = last;
+    outline.state.revealed = last;
   }
   ImGui::PushID(words.list);
   ImGuiListClipper clipper;
@@ -295,63 +300,63 @@ void part_section(Outline& outline, std::size_t section) {
   ImGui::PopID();
 }
 
-void search_field(const Session& session, Ui& ui, InspectorState& inspector) {
+void search_field(const Session& session, Ui& ui, OutlineState& state) {
   const Mechanism& mechanism = session.mechanism();
   if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable_parts) {
-    inspector.search.clear();
+    state.search.clear();
     return;
   }
   ImGui::SetNextItemWidth(-1);
-  ImGui::InputTextWithHint("##search", "Search", &inspector.search);
+  ImGui::InputTextWithHint("##search", "Search", &state.search);
   note_widget(ui.widgets, "outline/search", KeyUse::type);
   ImGui::Dummy({0, 4 * ui.scale});
 }
 
-void what_is_missing(Session& session, Ui& ui, InspectorState& inspector) {
+void what_is_missing(Session& session, Ui& ui, OutlineState& state) {
   const float top = ImGui::GetCursorPosY();
   ImGui::Dummy({0, 6 * ui.scale});
   heading(ui, "What is missing");
   mistake_rows(session, ui, "mistakes", 0, most_mistakes);
-  inspector.missing_height = ImGui::GetCursorPosY() - top;
+  state.missing_height = ImGui::GetCursorPosY() - top;
 }
 
 } // namespace
 
-void start_rename(App& app) {
-  if (app.selection().parts.size() != 1) return;
-  const Part& part = app.selection().parts.front();
-  const bool listed = app.mode == Mode::build;
-  app.inspector.revealed = {}; // bring its row into view
-  start_typing(app, app, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
+void OutlinePanel::start_rename(Session& session, Ui& ui) {
+  if (session.selection().parts.size() != 1) return;
+  const Part& part = session.selection().parts.front();
+  const bool listed = session.mode == Mode::build;
+  state_.revealed = {}; // bring its row into view
+  start_typing(session, ui, listed ? widget_of(part) + "/name" : "inspector/name", part.name);
 }
 
-void outline_panel(App& app, const PanelRect& rect) {
+void OutlinePanel::draw(Session& session, Ui& ui, ViewState& view, const CommandRunner& commands,
+                        const PanelRect& rect) {
   begin_panel("outline", rect);
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 0});
-  search_field(app, app, app.inspector);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 0});
+  search_field(session, ui, state_);
   // What is missing stays in view below the list.
-  const float footer = app.mistakes.empty() ? 0 : app.inspector.missing_height;
+  const float footer = session.mistakes.empty() ? 0 : state_.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;
   ImGui::BeginChild("parts", {0, std::max(room - footer, room / 3)}, false);
-  keep_rows(app, app, app.inspector);
-  Outline outline{app, {}, {}, 0};
-  outline.height = ImGui::GetTextLineHeight() + 8 * app.scale;
-  for (std::size_t i = 0; i < app.mistakes.size(); ++i)
-    if (Part part = part_of(app.mechanism(), app.mistakes[i]); part.kind != PartKind::none)
+  keep_rows(session, ui, state_);
+  Outline outline{session, ui, view, state_, commands, {}, {}, 0};
+  outline.height = ImGui::GetTextLineHeight() + 8 * ui.scale;
+  for (std::size_t i = 0; i < session.mistakes.size(); ++i)
+    if (Part part = part_of(session.mechanism(), session.mistakes[i]); part.kind != PartKind::none)
       outline.mistakes.emplace(std::move(part), i);
   for (std::size_t i = 0; i < outline_sections.size(); ++i)
     part_section(outline, i);
-  const bool none = app.mechanism().bodies.empty() && app.mechanism().joints.empty();
-  if (none) paragraph("The parts of the mechanism are listed here.", colors_of(app).dim);
+  const bool none = session.mechanism().bodies.empty() && session.mechanism().joints.empty();
+  if (none) paragraph("The parts of the mechanism are listed here.", colors_of(ui).dim);
   const bool found =
       std::ranges::any_of(outline.kept().listed, [](const auto& rows) { return !rows.empty(); });
-  if (!none && !found && !app.inspector.search.empty())
-    paragraph("No part is called so.", colors_of(app).dim);
+  if (!none && !found && !state_.search.empty()) paragraph("No part is called so.", colors_of(ui).dim);
   // A click beside the rows selects nothing.
   if (ImGui::IsWindowHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !ImGui::IsAnyItemHovered())
-    later(app, [&app] { select(app, {}); });
+    later(ui, [&session] { select(session, {}); });
   ImGui::EndChild();
-  if (!none && !app.mistakes.empty()) what_is_missing(app, app, app.inspector);
+  if (!none && !session.mistakes.empty()) what_is_missing(session, ui, state_);
   ImGui::PopStyleVar();
   ImGui::End();
 }

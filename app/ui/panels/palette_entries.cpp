@@ -4,10 +4,8 @@
 #include "app/session/number_text.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
+#include "app/session/session.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/keyboard/keyboard.hpp"
-#include "app/ui/layout.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -18,7 +16,7 @@ namespace flyball {
 
 namespace {
 
-constexpr std::size_t most_entries = 200, most_recent = 20;
+constexpr std::size_t most_entries = 200;
 constexpr int recently_used = 30, disabled_command = -1000; // added to how well it answers
 
 std::string words_of_address(std::string address) {
@@ -58,11 +56,11 @@ void read_mechanism(const Session& session, PaletteIndex& index) {
   }
 }
 
-PaletteEntry command_entry(const App& app, const Command& command) {
+PaletteEntry command_entry(const CommandRunner& commands, const Command& command) {
   PaletteEntry entry;
   entry.name = command.id;
-  entry.title = label_of(app, command);
-  entry.enabled = is_enabled(app, command);
+  entry.title = commands.label(command);
+  entry.enabled = commands.enabled(command);
   entry.about = entry.enabled ? command.help : "Not now: there is nothing selected that it applies to.";
   entry.more = command.help;
   entry.right = key_text(command.key);
@@ -81,10 +79,14 @@ std::pair<std::string, std::string> words_and_number(const std::string& search) 
   return {search, ""};
 }
 
+} // namespace
+
 std::string number_words(const Session& session, const std::string& si_unit, double value) {
   const ShownUnit unit = shown_unit(si_unit, session.units);
   return short_text(unit.shown(value), 6) + (unit.text.empty() ? "" : " " + unit.text);
 }
+
+namespace {
 
 void describe_number(const Session& session, PaletteEntry& entry) {
   const std::string unit = parameter_unit(session.mechanism(), entry.address);
@@ -101,18 +103,18 @@ struct Ranked {
   PaletteEntry entry;
 };
 
-int recent_bonus(const CommandState& commands, const std::string& name) {
-  const auto found = std::ranges::find(commands.recent, name);
-  if (found == commands.recent.end()) return 0;
-  return recently_used - static_cast<int>(found - commands.recent.begin());
+int recent_bonus(const std::vector<std::string>& recent, const std::string& name) {
+  const auto found = std::ranges::find(recent, name);
+  if (found == recent.end()) return 0;
+  return recently_used - static_cast<int>(found - recent.begin());
 }
 
 // Whether the entry answers, with what it makes of a number behind its name.
-void try_entry(const Session& session, const CommandState& commands, const std::string& search,
+void try_entry(const Session& session, const std::vector<std::string>& recent, const std::string& search,
                const PaletteEntry& entry, std::vector<Ranked>& ranked) {
   if (FuzzyMatch match = fuzzy_match(search, entry.title, entry.more)) {
     ranked.push_back(
-        {match.score + recent_bonus(commands, entry.name) + (entry.enabled ? 0 : disabled_command), entry});
+        {match.score + recent_bonus(recent, entry.name) + (entry.enabled ? 0 : disabled_command), entry});
     ranked.back().entry.marks = std::move(match.marks);
     return;
   }
@@ -127,7 +129,7 @@ void try_entry(const Session& session, const CommandState& commands, const std::
   // Numbers with a slider are what is most likely meant.
   const bool slider = std::ranges::find(session.parameters, entry.address, &ParameterControl::address) !=
                       session.parameters.end();
-  ranked.push_back({match.score + recent_bonus(commands, entry.name) + (slider ? 25 : 0), entry});
+  ranked.push_back({match.score + recent_bonus(recent, entry.name) + (slider ? 25 : 0), entry});
   ranked.back().entry.marks = std::move(match.marks);
   ranked.back().entry.value = typed.value;
 }
@@ -136,93 +138,29 @@ bool starts_empty(const std::string& search) {
   return search.find_first_not_of(' ') == std::string::npos;
 }
 
-// The part of the mechanism whose number it is; none for the scene's own.
-Part part_of_address(const std::string& address) {
-  const std::size_t from = address.find('.'), to = address.find('.', from + 1);
-  if (from == std::string::npos || to == std::string::npos) return {};
-  const std::string name = address.substr(from + 1, to - from - 1);
-  if (address.starts_with("bodies.")) return {PartKind::body, name};
-  if (address.starts_with("joints.")) return {PartKind::joint, name};
-  if (address.starts_with("forces.")) return {PartKind::force, name};
-  return {};
-}
-
-void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*shown_mechanism(app, app.tool), part);
-  const SceneList& scene = shown_scene(app)->solid;
-  Bounds bounds;
-  for (const Instance& instance : scene.instances)
-    if (instance.part == id) bounds.add(instance_bounds(instance));
-  if (id.kind == PartKind::none || bounds.empty) return;
-  // With something of what is around it.
-  const Vec3 around = Vec3::Constant(0.12 * (scene.bounds.upper - scene.bounds.lower).norm());
-  const Vec3 middle = bounds.center();
-  bounds.add(Vec3(middle - around));
-  bounds.add(Vec3(middle + around));
-  const WidgetRect& view = app.keyboard.view;
-  if (view.to.x <= view.from.x) return;
-  app.view.camera.fit(
-      bounds, {static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)});
-  app.view.fit = false;
-}
-
-void go_to_number(App& app, const std::string& address) {
-  const auto control = std::ranges::find(app.parameters, address, &ParameterControl::address);
-  if (control != app.parameters.end()) {
-    set_mode(app, Mode::explore);
-    PanelState& panels = app.panels;
-    bool* sections[] = {&panels.pinned, &panels.drives, &panels.springs, &panels.dampers};
-    *sections[static_cast<std::size_t>(control->group)] = true;
-  } else {
-    const Part part = part_of_address(address);
-    select(app, part.kind == PartKind::none ? Selection{} : Selection{{part}});
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    if (layout_of(app, screen.x, screen.y).inspector.width <= 0) set_mode(app, Mode::build);
-  }
-  seek_number(app, address);
-}
-
 } // namespace
 
-const std::vector<PaletteEntry>& palette_entries(App& app) {
-  if (!app.commands.index) app.commands.index = std::make_shared<PaletteIndex>();
-  PaletteIndex& index = *app.commands.index;
-  read_mechanism(app, index);
-  const std::string& search = app.commands.search;
+const std::vector<PaletteEntry>& palette_entries(const Session& session, const CommandRunner& commands,
+                                                 PaletteIndex& index, const std::string& search,
+                                                 const std::vector<std::string>& recent) {
+  read_mechanism(session, index);
   if (index.fresh && index.search == search) return index.found;
   std::vector<Ranked> ranked;
-  for (const Command& command : commands())
-    try_entry(app, app.commands, search, command_entry(app, command), ranked);
+  for (const Command& command : flyball::commands())
+    try_entry(session, recent, search, command_entry(commands, command), ranked);
   for (const PaletteEntry& entry : index.entries)
-    if (!starts_empty(search) || recent_bonus(app.commands, entry.name) > 0)
-      try_entry(app, app.commands, search, entry, ranked);
+    if (!starts_empty(search) || recent_bonus(recent, entry.name) > 0)
+      try_entry(session, recent, search, entry, ranked);
   std::ranges::stable_sort(ranked, [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
   if (ranked.size() > most_entries) ranked.resize(most_entries);
   index.found.clear();
   for (Ranked& each : ranked) {
-    if (!each.entry.address.empty()) describe_number(app, each.entry);
+    if (!each.entry.address.empty()) describe_number(session, each.entry);
     index.found.push_back(std::move(each.entry));
   }
   index.search = search;
   index.fresh = true;
   return index.found;
-}
-
-void use_palette_entry(App& app, const PaletteEntry& chosen) {
-  const PaletteEntry entry = chosen; // the list is made anew by what it does
-  std::vector<std::string>& recent = app.commands.recent;
-  std::erase(recent, entry.name);
-  recent.insert(recent.begin(), entry.name);
-  if (recent.size() > most_recent) recent.resize(most_recent);
-  if (entry.command) return entry.command->run(app);
-  if (entry.part.kind != PartKind::none) {
-    select(app, {{entry.part}});
-    return fit_part(app, entry.part);
-  }
-  if (!entry.value) return go_to_number(app, entry.address);
-  change_parameter(app, entry.address, *entry.value);
-  app.notice =
-      entry.title + ": " + number_words(app, parameter_unit(app.mechanism(), entry.address), *entry.value);
 }
 
 } // namespace flyball

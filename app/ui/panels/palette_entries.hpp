@@ -26,6 +26,8 @@ struct PaletteEntry {
   std::vector<std::size_t> marks; // bytes of the title that were typed
 };
 
+struct Session;
+
 // Parts and numbers of the mechanism, until it changes, and what was found last.
 struct PaletteIndex {
   std::uint64_t revision = 0;
@@ -36,9 +38,10 @@ struct PaletteIndex {
 };
 
 // The best first, those used recently before others that answer as well; without a search all commands.
-const std::vector<PaletteEntry>& palette_entries(App& app);
-// Does what the entry says: runs the command, selects the part and brings it into view, goes to the number's
-// slider or field, or sets it.
-void use_palette_entry(App& app, const PaletteEntry& entry);
+const std::vector<PaletteEntry>& palette_entries(const Session& session, const CommandRunner& commands,
+                                                 PaletteIndex& index, const std::string& search,
+                                                 const std::vector<std::string>& recent);
+// "15 rad/s": a number in the unit that is shown.
+std::string number_words(const Session& session, const std::string& si_unit, double value);
 
 } // namespace flyball

@@ -1,9 +1,9 @@
-// The sliders: what a person explores with.
+#include "app/ui/panels/parameters_panel.hpp"
+
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
-#include "app/ui/panels.hpp"
+#include "app/ui/layout.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
 #include "app/ui/widgets/sensitivity_line.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -131,7 +131,7 @@ float row_height(const Ui& ui, ParameterGroup group) {
          (group == ParameterGroup::pinned ? sensitivity_height(ui) + gap : 0);
 }
 
-void parameter(Session& session, Ui& ui, PanelState& panels, const ParameterControl& control) {
+void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterControl& control) {
   const float s = ui.scale, icon_width = 22 * s;
   const std::string name = "parameters/" + control.address;
   ImGui::PushID(control.address.c_str());
@@ -191,7 +191,7 @@ void parameter(Session& session, Ui& ui, PanelState& panels, const ParameterCont
       start_typing(session, ui, field, text);
     });
   range_menu(session, ui, control);
-  if (control.group == ParameterGroup::pinned) sensitivity_line(session, ui, panels, control);
+  if (control.group == ParameterGroup::pinned) sensitivity_line(session, ui, rates, control);
   ImGui::PopID();
 }
 
@@ -201,56 +201,70 @@ bool sliders_moved(const Session& session) {
   });
 }
 
-void group(App& app, ParameterGroup which, const char* name, const char* title, bool& open) {
-  const auto [first, last] = std::ranges::equal_range(app.parameters, which, {}, &ParameterControl::group);
-  if (first == last || !section(app, name, title, open)) return;
+} // namespace
+
+void ParametersPanel::draw_group(Session& session, Ui& ui, ParameterGroup which, const char* name,
+                                 const char* title, bool& open) {
+  const auto [first, last] =
+      std::ranges::equal_range(session.parameters, which, {}, &ParameterControl::group);
+  if (first == last || !section(ui, name, title, open)) return;
   if (const auto sought = std::find_if(
-          first, last, [&](const ParameterControl& each) { return each.address == app.keyboard.sought; });
+          first, last, [&](const ParameterControl& each) { return each.address == ui.keyboard.sought; });
       sought != last) {
-    const float y = ImGui::GetCursorPosY() + static_cast<float>(sought - first) * row_height(app, which);
+    const float y = ImGui::GetCursorPosY() + static_cast<float>(sought - first) * row_height(ui, which);
     if (const float top = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
-        y < top || y + row_height(app, which) > top + room)
+        y < top || y + row_height(ui, which) > top + room)
       ImGui::SetScrollY(std::max(y - room / 2, 0.f));
   }
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(last - first), row_height(app, which));
+  clipper.Begin(static_cast<int>(last - first), row_height(ui, which));
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-      parameter(app, app, app.panels, first[i]);
-  ImGui::Dummy({0, 4 * app.scale});
+      parameter(session, ui, rates_, first[i]);
+  ImGui::Dummy({0, 4 * ui.scale});
 }
 
-} // namespace
+void ParametersPanel::open_group(ParameterGroup group) {
+  switch (group) {
+  case ParameterGroup::pinned: pinned_ = true; break;
+  case ParameterGroup::named: named_ = true; break;
+  case ParameterGroup::drives: drives_ = true; break;
+  case ParameterGroup::springs: springs_ = true; break;
+  case ParameterGroup::dampers: dampers_ = true; break;
+  }
+}
 
-void parameters_panel(App& app, const PanelRect& rect) {
+float ParametersPanel::draw(Session& session, Ui& ui, const PanelRect& rect) {
+  float height = 0;
   begin_panel("parameters", rect);
-  if (!app.parameters.empty()) {
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 3 * app.scale});
-    group(app, ParameterGroup::pinned, "parameters/pinned", "Pinned", app.panels.pinned);
-    group(app, ParameterGroup::named, "parameters/named", "Parameters", app.panels.named);
-    const bool speeds = std::ranges::all_of(app.parameters, [](const ParameterControl& control) {
+  if (!session.parameters.empty()) {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
+    draw_group(session, ui, ParameterGroup::pinned, "parameters/pinned", "Pinned", pinned_);
+    draw_group(session, ui, ParameterGroup::named, "parameters/named", "Parameters", named_);
+    const bool speeds = std::ranges::all_of(session.parameters, [](const ParameterControl& control) {
       return control.group != ParameterGroup::drives || told_by_title(control);
     });
-    group(app, ParameterGroup::drives, "parameters/drives", speeds ? "Drive speeds" : "Drives",
-          app.panels.drives);
-    group(app, ParameterGroup::springs, "parameters/springs", "Spring constants", app.panels.springs);
-    if (app.motion.on) // dampers move no steady state
-      group(app, ParameterGroup::dampers, "parameters/dampers", "Dampers", app.panels.dampers);
+    draw_group(session, ui, ParameterGroup::drives, "parameters/drives", speeds ? "Drive speeds" : "Drives",
+               drives_);
+    draw_group(session, ui, ParameterGroup::springs, "parameters/springs", "Spring constants", springs_);
+    if (session.motion.on) // dampers move no steady state
+      draw_group(session, ui, ParameterGroup::dampers, "parameters/dampers", "Dampers", dampers_);
     ImGui::PopStyleVar();
-    if (text_button(app, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(app);
+    if (text_button(ui, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(session);
     help_on_hover("Sliders start from the last answer; this starts from the pose in the file, which may lead "
                   "elsewhere.");
-    if (sliders_moved(app)) {
+    if (sliders_moved(session)) {
       ImGui::SameLine();
-      if (text_button(app, "parameters/reset", "Reset all")) later(app, [&app] { drop_explored(app); });
+      if (text_button(ui, "parameters/reset", "Reset all")) later(ui, [&session] { drop_explored(session); });
     }
-    app.panels.parameters_height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / app.scale;
+    height = (ImGui::GetCursorPosY() + ImGui::GetStyle().WindowPadding.y) / ui.scale;
   } else {
     paragraph("Drive speeds, spring constants and named parameters get a slider here, and every number that "
               "is pinned.",
-              colors_of(app).dim);
+              colors_of(ui).dim);
   }
   ImGui::End();
+  return height;
 }
 
 } // namespace flyball

@@ -1,5 +1,7 @@
-// Where a drive makes the balance turn: what the motion in the steady state's place runs through in a period.
+// What a periodic motion runs through in a period: the one in the steady state's place where a drive makes
+// the balance turn, and the limit cycle beside a steady state that hunts.
 #include "app/session/units.hpp"
+#include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
@@ -13,9 +15,16 @@ namespace {
 
 constexpr int digits = 6; // of ends, which are looked at rather than copied
 
-// `less`: what the numbers leave out, "less -1 turns a period".
-void range_row(Session& session, Ui& ui, const std::string& name, const PeriodicRange& range,
-               const ShownUnit& unit, const std::string& help = {}, const std::string& less = {}) {
+struct RangeWords {
+  std::string prefix; // of the widgets' names
+  std::string name, help;
+  std::string less;       // what the numbers leave out, "less -1 turns a period"
+  bool amplitude = false; // is told, too
+};
+
+void range_row(Session& session, Ui& ui, const RangeWords& words, const PeriodicRange& range,
+               const ShownUnit& unit) {
+  const auto& [prefix, name, help, less, amplitude] = words;
   const NumberStyle& numbers = session.options.numbers;
   if (!std::isfinite(range.mean))
     return row(ui, name, "-", "", "It is not defined throughout the period, or does not come back.");
@@ -27,14 +36,22 @@ void range_row(Session& session, Ui& ui, const std::string& name, const Periodic
            : std::string("Its error is not known."));
   row(ui, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
       unit.text.c_str(), about.c_str());
-  note_widget(ui.widgets, "results/periodic/" + name);
+  note_widget(ui.widgets, prefix + "/" + name);
   if (!less.empty()) {
     paragraph(less, colors_of(ui).dim);
-    note_widget(ui.widgets, "results/periodic/" + name + "/less");
+    note_widget(ui.widgets, prefix + "/" + name + "/less");
   }
   right_digits(ui,
                short_text(unit.shown(range.least), digits) + " … " +
                    short_text(unit.shown(range.most), digits) + " " + unit.text,
+               colors_of(ui).dim);
+  ImGui::Dummy({0, 0});
+  if (!amplitude) return;
+  const std::string within =
+      std::isfinite(range.error) ? " ± " + magnitude_text(range.error * unit.factor, numbers) : "";
+  right_digits(ui,
+               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, digits) + within +
+                   " " + unit.text,
                colors_of(ui).dim);
   ImGui::Dummy({0, 0});
 }
@@ -53,29 +70,73 @@ std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
          " a period, and counts less its even share of that.";
 }
 
+// Names of widgets begin with `prefix`.
+void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
+  const bool own = state.drive_periods == 0;
+  const double error = own ? state.period_error : 1e-7 * state.period;
+  row(ui, "Period", value_text(state.period, std::max(error, 1e-12 * state.period), {8, 1e-16, false}), "s",
+      own ? ("Its own: nothing times it.\n± " + short_text(state.period_error, 2) + " s").c_str()
+      : state.drive_periods == 1
+          ? "That of the drives."
+          : (std::to_string(state.drive_periods) + " times that of the drives.").c_str());
+  const auto range = [&](const std::string& name, const PeriodicRange& of, const ShownUnit& unit,
+                         const std::string& help = {}, const std::string& less = {}) {
+    range_row(session, ui, {prefix, name, help, less, own}, of, unit);
+  };
+  for (const PeriodicCoordinate& c : state.coordinates) {
+    const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", session.units);
+    range(coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
+    if (c.goes_on())
+      range(coordinate_label(c) + ", its rate", c.rate, shown_unit(c.angle ? "rad/s" : "m/s", session.units));
+  }
+  for (const PeriodicMeasure& m : state.measures)
+    range(m.name, m.range, shown_unit(m.unit, session.units));
+  for (const PeriodicTorque& t : state.drive_torques)
+    range("Drive of " + coordinate_label(t), t.range, shown_unit(t.angle ? "N m" : "N", session.units));
+  if (session.options.numbers.run_times)
+    row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
+  if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
+  help_on_hover("The motion begins in this one, at the drawn phase.");
+}
+
 } // namespace
 
 void periodic_results(Session& session, Ui& ui) {
   const PeriodicState* state = periodic_motion(session);
   if (!state) return;
   heading(ui, "Over a period");
-  row(ui, "Period", value_text(state->period, 1e-7 * state->period, {8, 1e-16, false}), "s",
-      state->drive_periods == 1
-          ? "That of the drives."
-          : (std::to_string(state->drive_periods) + " times that of the drives.").c_str());
-  for (const PeriodicCoordinate& c : state->coordinates) {
-    const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", session.units);
-    range_row(session, ui, coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
+  motion_rows(session, ui, *state, "results/periodic");
+}
+
+void cycle_offer(Session& session, Ui& ui) {
+  if (!hunts(session)) return;
+  const auto& search = session.study.periodic.cycle;
+  const bool wanted = session.study.periodic.cycle_wanted;
+  if (check_row(
+          ui, "results/cycle", "Find the limit cycle", wanted,
+          "Swings about this state grow: looks for the motion, with a period of its own, that they come "
+          "to, and follows it as numbers change."))
+    find_cycle(session, !wanted);
+  const PeriodicState* state = limit_cycle(session);
+  if (search.running()) {
+    paragraph("Looking for the limit cycle…", colors_of(ui).dim);
+    note_widget(ui.widgets, "results/cycle/running");
   }
-  for (const PeriodicMeasure& m : state->measures)
-    range_row(session, ui, m.name, m.range, shown_unit(m.unit, session.units));
-  for (const PeriodicTorque& t : state->drive_torques)
-    range_row(session, ui, "Drive of " + coordinate_label(t), t.range,
-              shown_unit(t.angle ? "N m" : "N", session.units));
-  if (session.options.numbers.run_times)
-    row(ui, "Run time", duration_text(state->run_time_s, session.options.numbers), "");
-  if (text_button(ui, "results/periodic/motion", "Show in the motion's plots")) show_periodic_motion(session);
-  help_on_hover("The motion begins in this one, at the drawn phase.");
+  if (!state) return;
+  const UiColors& colors = colors_of(ui);
+  paragraph(state->message, state->status == PeriodicStatus::found ? colors.dim : colors.warn);
+  note_widget(ui.widgets, "results/cycle/message");
+}
+
+void cycle_results(Session& session, Ui& ui) {
+  const PeriodicState* state = limit_cycle(session);
+  if (!state || state->status != PeriodicStatus::found) return;
+  heading(ui, state->drive_periods == 0 ? "Limit cycle, over a period" : "Periodic motion, over a period");
+  motion_rows(session, ui, *state, "results/cycle");
+  if (!state->floquet.multipliers.empty()) {
+    heading(ui, "Its Floquet multipliers");
+    floquet_rows(ui, state->floquet);
+  }
 }
 
 } // namespace flyball

@@ -3,10 +3,15 @@
 
 namespace flyball {
 
-struct PanelState;
+struct Floquet;
 struct Session;
 struct ToolState;
 struct Ui;
+
+// Which are open.
+struct ResultSections {
+  bool torques = true, reactions = false, eigenvalues = false, system = false;
+};
 
 void coordinate_results(Session& session, Ui& ui);
 void measure_results(Session& session, Ui& ui);
@@ -14,15 +19,19 @@ void measure_results(Session& session, Ui& ui);
 void friction_results(const Session& session, Ui& ui);
 // Where a drive makes the balance turn: the motion in its place.
 void periodic_results(Session& session, Ui& ui);
+// Where the steady state hunts: the limit cycle beside it can be asked for, and is told.
+void cycle_offer(Session& session, Ui& ui);
+void cycle_results(Session& session, Ui& ui);
+void floquet_rows(Ui& ui, const Floquet& floquet);
 void solver_results(const Session& session, Ui& ui);
 // While a hand pulls.
 void pull_results(const Session& session, Ui& ui, const ToolState& tool);
 // Position, speed and acceleration of the selected bodies.
 void body_results(Session& session, Ui& ui);
 // Drive torques, reactions.
-void load_results(const Session& session, Ui& ui, PanelState& panels);
-void eigenvalue_results(const Session& session, Ui& ui, PanelState& panels);
-void system_results(const Session& session, Ui& ui, PanelState& panels);
+void load_results(const Session& session, Ui& ui, ResultSections& open);
+void eigenvalue_results(const Session& session, Ui& ui, ResultSections& open);
+void system_results(const Session& session, Ui& ui, ResultSections& open);
 // The residual after each iteration, on a logarithmic scale.
 void history_plot(const Session& session, Ui& ui, float width, float height);
 

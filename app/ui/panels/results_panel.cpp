@@ -1,8 +1,9 @@
+#include "app/ui/panels/results_panel.hpp"
+
 #include "app/render/icons.hpp"
+#include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/panels.hpp"
-#include "app/ui/panels/result_sections.hpp"
+#include "app/ui/layout.hpp"
 #include "app/ui/remedies.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -103,11 +104,9 @@ void refusal(Session& session, Ui& ui) {
 
 // Below an inspector its numbers would be read as part of it: a title of their own stays where it is while
 // they scroll. Returns what is left for them.
-PanelRect below_title(App& app, const PanelRect& rect) {
-  const ImVec2 window = ImGui::GetIO().DisplaySize;
-  if (layout_of(app, window.x, window.y).inspector.height <= 0) return rect;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, pad = ImGui::GetStyle().WindowPadding.x;
+PanelRect below_title(Ui& ui, const PanelRect& rect) {
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, pad = ImGui::GetStyle().WindowPadding.x;
   PanelRect title = rect, rest = rect;
   title.height = std::min(std::round(ImGui::GetFontSize() + 9 * s), rect.height);
   rest.y += title.height;
@@ -118,15 +117,15 @@ PanelRect below_title(App& app, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({title.x, title.y}, {title.x + title.width, title.y + title.height},
                      packed(colors.raised));
-  list.AddText(app.fonts.strong, app.fonts.strong->FontSize,
-               {title.x + pad, std::round(title.y + (title.height - app.fonts.strong->FontSize) / 2)},
+  list.AddText(ui.fonts.strong, ui.fonts.strong->FontSize,
+               {title.x + pad, std::round(title.y + (title.height - ui.fonts.strong->FontSize) / 2)},
                packed(colors.text), "Results");
-  app.widgets["results/title"] = {{title.x, title.y}, {title.x + title.width, title.y + title.height}};
+  ui.widgets["results/title"] = {{title.x, title.y}, {title.x + title.width, title.y + title.height}};
   ImGui::End();
   return rest;
 }
 
-void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& tool) {
+void result_contents(Session& session, Ui& ui, ResultSections& open, const ToolState& tool) {
   if (session.mechanism().bodies.empty()) {
     paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",
               colors_of(ui).dim);
@@ -139,18 +138,20 @@ void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& too
     verdict(session, ui);
     remedies(session, ui);
     periodic_results(session, ui);
+    cycle_offer(session, ui);
     warning_rows(session, ui, "results/warnings", 3);
     pull_results(session, ui, tool);
     neutral_joints(session, ui);
     coordinate_results(session, ui);
     friction_results(session, ui);
     measure_results(session, ui);
+    cycle_results(session, ui);
     body_results(session, ui);
     // What runs away leaves a residual that says nothing: it is small because everything else is large.
     if (session.answer.solution.unheld.empty()) solver_results(session, ui);
-    load_results(session, ui, panels);
-    eigenvalue_results(session, ui, panels);
-    system_results(session, ui, panels);
+    load_results(session, ui, open);
+    eigenvalue_results(session, ui, open);
+    system_results(session, ui, open);
   } else if (solving(session)) {
     paragraph("Solving…", colors_of(ui).dim);
   }
@@ -158,10 +159,11 @@ void contents(Session& session, Ui& ui, PanelState& panels, const ToolState& too
 
 } // namespace
 
-void results_panel(App& app, const PanelRect& rect) {
-  begin_panel("results", below_title(app, rect));
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * app.scale, 4 * app.scale});
-  contents(app, app, app.panels, app.tool);
+void ResultsPanel::draw(Session& session, Ui& ui, const ToolState& tool, const PanelRect& rect,
+                        bool below_inspector) {
+  begin_panel("results", below_inspector ? below_title(ui, rect) : rect);
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 4 * ui.scale});
+  result_contents(session, ui, open_, tool);
   ImGui::PopStyleVar();
   ImGui::End();
 }

@@ -1,4 +1,5 @@
-#include "app/ui/app.hpp"
+#include "app/ui/panels/shortcut_sheet.hpp"
+
 #include "app/ui/commands.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -77,14 +78,14 @@ void fixed_lines(Ui& ui, const char* title, std::span<const NavigationLine> entr
 
 } // namespace
 
-void shortcut_sheet(App& app) {
+void ShortcutSheet::draw(Ui& ui, Navigation navigation) {
   constexpr const char* name = "shortcuts";
-  if (!app.commands.shortcuts) {
+  if (!open) {
     if (ImGui::IsPopupOpen(name)) ImGui::ClosePopupToLevel(0, true);
     return;
   }
   if (!ImGui::IsPopupOpen(name)) ImGui::OpenPopup(name);
-  const float s = app.scale;
+  const float s = ui.scale;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, window.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
   ImGui::SetNextWindowSize({std::min(1180 * s, window.x - 20 * s), std::min(670 * s, window.y - 20 * s)});
@@ -105,32 +106,32 @@ void shortcut_sheet(App& app) {
   const int columns = std::clamp(static_cast<int>(ImGui::GetContentRegionAvail().x / (200 * s)), 1, 4);
   if (ImGui::BeginTable("columns", columns, ImGuiTableFlags_SizingStretchSame)) {
     ImGui::TableNextColumn();
-    lines(app, "File", "file.");
-    lines(app, "Insert", "insert.");
+    lines(ui, "File", "file.");
+    lines(ui, "Insert", "insert.");
     ImGui::TableNextColumn();
-    lines(app, "Edit", "edit.");
-    lines(app, "Study", "study.");
-    lines(app, "Help", "help.");
+    lines(ui, "Edit", "edit.");
+    lines(ui, "Study", "study.");
+    lines(ui, "Help", "help.");
     ImGui::TableNextColumn();
-    lines(app, "View", "view.");
+    lines(ui, "View", "view.");
     ImGui::TableNextColumn();
-    heading(app, "Mouse in the view");
+    heading(ui, "Mouse in the view");
     if (begin_lines("mouse")) {
-      for (const NavigationLine& entry : navigation_lines(app.navigation))
-        line(app, entry.keys, entry.does);
+      for (const NavigationLine& entry : navigation_lines(navigation))
+        line(ui, entry.keys, entry.does);
       for (const NavigationLine& entry : mouse_lines)
-        line(app, entry.keys, entry.does);
+        line(ui, entry.keys, entry.does);
       ImGui::EndTable();
     }
-    fixed_lines(app, "Without a mouse", by_keys);
+    fixed_lines(ui, "Without a mouse", by_keys);
     ImGui::EndTable();
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
   const bool beside =
       ImGui::IsMouseClicked(0) && !ImGui::IsWindowHovered(ImGuiHoveredFlags_RootAndChildWindows);
-  if (text_button(app, "shortcuts/close", "Close", true) || beside) app.commands.shortcuts = false;
-  if (!app.commands.shortcuts) ImGui::CloseCurrentPopup();
+  if (text_button(ui, "shortcuts/close", "Close", true) || beside) open = false;
+  if (!open) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 

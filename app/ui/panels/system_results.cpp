@@ -1,5 +1,4 @@
 // What was compiled for solving, and what was left out because this scene has no use for it.
-#include "app/ui/panel_state.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -20,10 +19,10 @@ void list_of(Ui& ui, const char* title, const std::vector<std::string>& words, c
 
 } // namespace
 
-void system_results(const Session& session, Ui& ui, PanelState& panels) {
+void system_results(const Session& session, Ui& ui, ResultSections& open) {
   const UiColors& colors = colors_of(ui);
   const SystemSummary& summary = session.answer.summary;
-  if (!section(ui, "results/system", "System", panels.system)) return;
+  if (!section(ui, "results/system", "System", open.system)) return;
   row(ui, "Bodies", std::to_string(summary.bodies), "");
   row(ui, "Coordinates, free", std::to_string(summary.free_coordinates), "");
   row(ui, "Coordinates, driven", std::to_string(summary.driven_coordinates), "");

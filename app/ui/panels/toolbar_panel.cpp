@@ -1,8 +1,10 @@
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/view_state.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -55,28 +57,29 @@ void next(const Ui& ui) {
 }
 
 // A command's button; its tooltip is the command's sentence with its key.
-void command_button(App& app, const char* id, const char* icon, bool show_state = false) {
+void command_button(Ui& ui, const CommandRunner& commands, const char* id, const char* icon,
+                    bool show_state = false) {
   const Command& wanted = command(id);
   const std::string keys = key_text(wanted.key);
   const std::string help =
-      (wanted.label ? label_of(app, wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
-  ImGui::BeginDisabled(!is_enabled(app, wanted));
-  const bool on = show_state && wanted.checked && wanted.checked(app);
-  if (icon_button(app, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
+      (wanted.label ? commands.label(wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
+  ImGui::BeginDisabled(!commands.enabled(wanted));
+  const bool on = show_state && commands.checked(wanted);
+  if (icon_button(ui, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
                   on))
-    wanted.run(app);
+    commands.run(wanted);
   ImGui::EndDisabled();
-  next(app);
+  next(ui);
 }
 
-void file_buttons(App& app) {
-  command_button(app, "file.new", icon::file);
-  command_button(app, "file.open", icon::folder_open);
-  command_button(app, "file.save", icon::save);
-  command_button(app, "file.export", icon::camera);
-  space_between_groups(app);
-  command_button(app, "edit.undo", icon::undo);
-  command_button(app, "edit.redo", icon::redo);
+void file_buttons(Ui& ui, const CommandRunner& commands) {
+  command_button(ui, commands, "file.new", icon::file);
+  command_button(ui, commands, "file.open", icon::folder_open);
+  command_button(ui, commands, "file.save", icon::save);
+  command_button(ui, commands, "file.export", icon::camera);
+  space_between_groups(ui);
+  command_button(ui, commands, "edit.undo", icon::undo);
+  command_button(ui, commands, "edit.redo", icon::redo);
 }
 
 // Two words, of which one is lit.
@@ -115,18 +118,18 @@ void play_buttons(Session& session, Ui& ui) {
   factor_combo(session, ui, "toolbar/factor", 62 * ui.scale);
 }
 
-void direction_buttons(App& app) {
+void direction_buttons(Ui& ui, ViewState& view) {
   for (const Direction& direction : directions) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * app.scale, 5 * app.scale});
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * ui.scale, 5 * ui.scale});
     ImGui::PushID(direction.name);
-    if (ImGui::Button(direction.text)) look_from(app.view, direction.azimuth, direction.elevation);
+    if (ImGui::Button(direction.text)) look_from(view, direction.azimuth, direction.elevation);
     ImGui::PopID();
     ImGui::PopStyleVar();
-    note_widget(app.widgets, direction.name);
+    note_widget(ui.widgets, direction.name);
     help_on_hover(direction.help);
-    next(app);
+    next(ui);
   }
-  if (icon_button(app, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(app);
+  if (icon_button(ui, "toolbar/fit", icon::expand, "All in view (F)")) fit_all(view);
 }
 
 // Whether these words have room as buttons beside what ends the bar; without it they are in the menu alone.
@@ -175,43 +178,44 @@ void factor_combo(Session& session, Ui& ui, const char* name, float width) {
   help_on_hover("Speed of the picture: below 1× is slow motion");
 }
 
-void toolbar_panel(App& app, const PanelRect& rect) {
-  const float s = app.scale;
+void toolbar_panel(Session& session, Ui& ui, ViewState& view, const CommandRunner& commands,
+                   const PanelRect& rect) {
+  const float s = ui.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 7 * s});
   begin_panel("toolbar", rect,
               ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_MenuBar);
   ImGui::PopStyleVar();
-  menu_bar(app);
-  file_buttons(app);
-  space_between_groups(app);
-  mode_switch(app, app);
-  space_between_groups(app);
-  ImGui::BeginDisabled(app.mode != Mode::explore); // what follows stays where it is
-  play_buttons(app, app);
+  menu_bar(session, ui, commands);
+  file_buttons(ui, commands);
+  space_between_groups(ui);
+  mode_switch(session, ui);
+  space_between_groups(ui);
+  ImGui::BeginDisabled(session.mode != Mode::explore); // what follows stays where it is
+  play_buttons(session, ui);
   ImGui::EndDisabled();
-  space_between_groups(app);
+  space_between_groups(ui);
   const float fit = ImGui::GetFrameHeight() + 2 * s + 17 * s; // the button, and the space behind it
-  if (have_room(app, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
-    direction_buttons(app);
-    space_between_groups(app);
-    if (have_room(app, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
-      toggle(app, "toolbar/ghost", "Ghost",
-             app.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
-             app.view.ghost);
-      toggle(app, "toolbar/grid", "Grid", "The floor", app.view.grid);
-      toggle(app, "toolbar/shadow", "Shadow", "Shadow on the floor", app.view.shadow);
+  if (have_room(ui, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
+    direction_buttons(ui, view);
+    space_between_groups(ui);
+    if (have_room(ui, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
+      toggle(ui, "toolbar/ghost", "Ghost",
+             session.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
+             view.ghost);
+      toggle(ui, "toolbar/grid", "Grid", "The floor", view.grid);
+      toggle(ui, "toolbar/shadow", "Shadow", "Shadow on the floor", view.shadow);
     }
   }
   const float side = ImGui::GetFrameHeight() + 2 * s;
   ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), rect.width - side - 8 * s));
-  const bool light = app.theme == Theme::light;
-  if (icon_button(app, "toolbar/theme", light ? icon::moon : icon::sun,
+  const bool light = ui.theme == Theme::light;
+  if (icon_button(ui, "toolbar/theme", light ? icon::moon : icon::sun,
                   light ? "Dark colours" : "Light colours"))
-    choose_theme(app, light ? ThemeChoice::dark : ThemeChoice::light);
+    choose_theme(session, ui, view, light ? ThemeChoice::dark : ThemeChoice::light);
   const float line = rect.height - std::max(1.f, std::round(s));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
-  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(app).border));
+  list.AddRectFilled({0, line}, {rect.width, rect.height}, packed(colors_of(ui).border));
   list.PopClipRect();
   ImGui::End();
 }

@@ -1,7 +1,10 @@
 #include "app/ui/panels/view_cube.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/ui.hpp"
+#include "app/ui/view_state.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -46,7 +49,8 @@ Vec3 cube_vector(const CubeDirection& d) {
 }
 
 struct CubeDrawing {
-  const App& app;
+  const Ui& ui;
+  const ViewState& state;
   ImVec2 middle;
   float edge; // pixels, half of the cube's
   Mat3 axes;
@@ -77,7 +81,7 @@ void fill_quad(ImDrawList& list, const std::array<ImVec2, 4>& corners, ImU32 col
 
 // Letters lie on the face: they turn and shorten with it.
 void draw_face_letters(const CubeDrawing& d, const CubeFace& face, ImU32 color) {
-  const ImFont& font = *d.app.fonts.text;
+  const ImFont& font = *d.ui.fonts.text;
   const float size = font.FontSize;
   const double scale = 0.62 * 2 / static_cast<double>(font.CalcTextSizeA(size, 1e9f, 0, "Bottom").x) * 1.25;
   const ImVec2 text = font.CalcTextSizeA(size, 1e9f, 0, face.name);
@@ -134,7 +138,7 @@ ImVec4 cube_edge_color(const UiColors& colors) {
 void draw_cube_face(const CubeDrawing& d, const CubeFace& face) {
   const double facing = (d.axes * cube_vector(face.normal)).z();
   if (facing <= 1e-3) return;
-  const UiColors& colors = colors_of(d.app);
+  const UiColors& colors = colors_of(d.ui);
   const auto corner = [&](int u, int v) {
     Vec3 p = cube_vector(face.normal);
     p[face.u] = u;
@@ -149,13 +153,13 @@ void draw_cube_face(const CubeDrawing& d, const CubeFace& face) {
   shade.z += (colors.panel.z - shade.z) * share;
   shade.w = 0.94f;
   fill_quad(d.list, corners, packed(shade));
-  if (d.app.view.cube.hovered) {
+  if (d.state.cube.hovered) {
     ImVec4 lit = colors.accent;
     lit.w = 0.45f;
-    light_patch(d, face, *d.app.view.cube.hovered, packed(lit));
+    light_patch(d, face, *d.state.cube.hovered, packed(lit));
   }
   d.list.AddPolyline(corners.data(), 4, packed(cube_edge_color(colors)), ImDrawFlags_Closed,
-                     std::max(1.f, d.app.scale));
+                     std::max(1.f, d.ui.scale));
   ImVec4 ink = colors.text;
   ink.w *= static_cast<float>(std::clamp((facing - 0.15) / 0.35, 0., 1.));
   if (ink.w > 0) draw_face_letters(d, face, packed(ink));
@@ -163,8 +167,8 @@ void draw_cube_face(const CubeDrawing& d, const CubeFace& face) {
 
 // From the corner at the left, below and behind, as far as one sees them beside the cube.
 void draw_cube_axes(const CubeDrawing& d, bool behind) {
-  const ViewCamera& camera = d.app.view.camera;
-  const float s = d.app.scale;
+  const ViewCamera& camera = d.state.camera;
+  const float s = d.ui.scale;
   const Vec3 corner = d.axes * Vec3(-1, -1, -1);
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 world = Vec3::Unit(axis);
@@ -175,14 +179,14 @@ void draw_cube_axes(const CubeDrawing& d, bool behind) {
       return ImVec2(d.middle.x + d.edge * static_cast<float>(p.x()),
                     d.middle.y - d.edge * static_cast<float>(p.y()));
     };
-    const ImU32 color = packed(axis_color(d.app.theme, axis), 1);
+    const ImU32 color = packed(axis_color(d.ui.theme, axis), 1);
     d.list.AddLine(place(corner), place(tip), color, 2 * s);
     const char name[2] = {"XYZ"[axis], 0};
-    const ImFont& font = *d.app.fonts.text;
+    const ImFont& font = *d.ui.fonts.text;
     const float size = 0.85f * font.FontSize;
     const ImVec2 text = font.CalcTextSizeA(size, 1e9f, 0, name);
     const ImVec2 end = place(tip + 0.28 * seen);
-    d.list.AddText(d.app.fonts.text, size, {std::round(end.x - text.x / 2), std::round(end.y - text.y / 2)},
+    d.list.AddText(d.ui.fonts.text, size, {std::round(end.x - text.x / 2), std::round(end.y - text.y / 2)},
                    color, name);
   }
 }
@@ -252,27 +256,31 @@ namespace {
 
 // Downwards, where there is gravity.
 void draw_cube_gravity(const CubeDrawing& d) {
-  const float s = d.app.scale;
+  const float s = d.ui.scale;
   const ImVec2 from = d.at({0, -1, 0}), to = d.at({0, -gravity_ends, 0});
   if (std::hypot(to.x - from.x, to.y - from.y) < 3 * s) return;
-  const ImU32 color = packed(colors_of(d.app).dim);
+  const ImU32 color = packed(colors_of(d.ui).dim);
   d.list.AddLine(from, to, color, 1.5f * s);
   d.list.AddCircleFilled(to, 2.2f * s, color);
   const ImVec2 end = d.at({0, -gravity_named, 0});
-  const ImFont& font = *d.app.fonts.text;
+  const ImFont& font = *d.ui.fonts.text;
   const float size = 0.85f * font.FontSize;
   const ImVec2 text = font.CalcTextSizeA(size, 1e9f, 0, "g");
-  d.list.AddText(d.app.fonts.text, size, {std::round(end.x - text.x / 2), std::round(end.y - text.y / 2)},
+  d.list.AddText(d.ui.fonts.text, size, {std::round(end.x - text.x / 2), std::round(end.y - text.y / 2)},
                  color, "g");
 }
 
 } // namespace
 
-void draw_view_cube(const App& app, const PanelRect& view) {
-  if (!has_view_cube(app, app.view, view)) return;
-  const CubeDrawing d{app, cube_middle(app, view), cube_half_edge * app.scale,
-                      seen_cube_axes(app.view.camera), *ImGui::GetWindowDrawList()};
-  const bool falls = app.mechanism().gravity.stableNorm() > 0, above = app.view.camera.elevation > 0;
+void draw_view_cube(const Session& session, const Ui& ui, const ViewState& state, const PanelRect& view) {
+  if (!has_view_cube(ui, state, view)) return;
+  const CubeDrawing d{ui,
+                      state,
+                      cube_middle(ui, view),
+                      cube_half_edge * ui.scale,
+                      seen_cube_axes(state.camera),
+                      *ImGui::GetWindowDrawList()};
+  const bool falls = session.mechanism().gravity.stableNorm() > 0, above = state.camera.elevation > 0;
   draw_cube_axes(d, true);
   if (falls && above) draw_cube_gravity(d);
   for (const CubeFace& face : cube_faces)

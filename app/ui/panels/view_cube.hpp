@@ -9,8 +9,8 @@
 
 namespace flyball {
 
-struct App;
 struct PanelRect;
+struct Session;
 struct Ui;
 struct ViewState;
 
@@ -32,6 +32,6 @@ std::array<double, 2> cube_angles(const CubeDirection& direction, double azimuth
 bool has_view_cube(const Ui& ui, const ViewState& state, const PanelRect& view);
 // Before the view's own button, of which it takes its part.
 void use_view_cube(Ui& ui, ViewState& state, const PanelRect& view);
-void draw_view_cube(const App& app, const PanelRect& view);
+void draw_view_cube(const Session& session, const Ui& ui, const ViewState& state, const PanelRect& view);
 
 } // namespace flyball

@@ -1,7 +1,8 @@
 #include "app/ui/panels/view_input.hpp"
 
-#include "app/ui/app.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_state.hpp"
 
 #include <cmath>
 
@@ -49,33 +50,32 @@ void drag_camera(ViewState& view, const ViewInput& input, CameraDrag drag, Vec2 
 
 } // namespace
 
-void steer(App& app, const ViewInput& input) {
+void steer(const ToolState& tool, ViewState& view, const ViewInput& input) {
   const ImGuiIO& io = ImGui::GetIO();
   const Vec2 by(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   // Whoever has taken hold of the camera wants it where he puts it, also while the first answer is awaited.
   if (input.active && by != Vec2::Zero()) {
-    stop_glide(app.view);
+    stop_glide(view);
     for (const int button : {ImGuiMouseButton_Middle, ImGuiMouseButton_Right, ImGuiMouseButton_Left}) {
       if (!ImGui::IsMouseDown(button)) continue;
-      if (button == ImGuiMouseButton_Left && (!input.moved || takes_left_drag(app, input))) break;
+      if (button == ImGuiMouseButton_Left && (!input.moved || takes_left_drag(tool, view, input))) break;
       const ImVec2& pressed = io.MouseClickedPos[button];
       drag_camera(
-          app.view, input, camera_drag(app.navigation, button, input.ctrl, input.shift), by,
+          view, input, camera_drag(view.navigation, button, input.ctrl, input.shift), by,
           {static_cast<double>(pressed.x - input.rect.x), static_cast<double>(pressed.y - input.rect.y)});
       break;
     }
   }
   if (!input.hovered) return;
-  if (io.MouseWheel != 0 && !app.tool.pull) {
-    stop_glide(app.view);
-    app.view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
+  if (io.MouseWheel != 0 && !tool.pull) {
+    stop_glide(view);
+    view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }
-  const bool on_handle =
-      app.tool.hovered != Handle::none || app.tool.hovered_point || !app.tool.hovered_name.empty();
-  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && app.view.hovered.kind == PartKind::none &&
-      !on_handle && !places(app.tool.tool) &&
-      (frames_with_left(app.navigation) || !takes_left_drag(app, input)))
-    fit_all(app);
+  const bool on_handle = tool.hovered != Handle::none || tool.hovered_point || !tool.hovered_name.empty();
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && view.hovered.kind == PartKind::none &&
+      !on_handle && !places(tool.tool) &&
+      (frames_with_left(view.navigation) || !takes_left_drag(tool, view, input)))
+    fit_all(view);
 }
 
 } // namespace flyball

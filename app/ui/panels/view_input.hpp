@@ -9,7 +9,7 @@
 
 namespace flyball {
 
-struct App;
+struct ToolState;
 
 struct ViewInput {
   PanelRect rect; // pixels of the window
@@ -39,6 +39,6 @@ struct ViewInput {
 // Of the last item, which is the view.
 ViewInput view_input(const Ui& ui, const ViewState& view, const PanelRect& rect);
 // Orbits, pans, zooms and fits; after everything that needs the camera of this frame's picture.
-void steer(App& app, const ViewInput& input);
+void steer(const ToolState& tool, ViewState& view, const ViewInput& input);
 
 } // namespace flyball

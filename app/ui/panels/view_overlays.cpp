@@ -3,10 +3,12 @@
 
 #include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/dialog_state.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_frame.hpp"
+#include "app/ui/widgets/notice.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
@@ -46,10 +48,10 @@ WidgetRect draw_line(const Ui& ui, const PanelRect& rect, const std::string& tex
 
 } // namespace
 
-void part_label(App& app) {
-  const PartId part = app.view.hovered;
-  if (places(app.tool.tool)) return;
-  const Mechanism& m = *shown_mechanism(app, app.tool);
+void part_label(const ViewContext& context) {
+  const PartId part = context.view.hovered;
+  if (places(context.tool.tool)) return;
+  const Mechanism& m = *shown_mechanism(context.session, context.tool);
   const auto i = static_cast<std::size_t>(part.index);
   std::string name, what;
   if (part.kind == PartKind::body && i < m.bodies.size()) {
@@ -66,7 +68,7 @@ void part_label(App& app) {
     return;
   }
   ImGui::BeginTooltip();
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(context.ui.fonts.strong);
   ImGui::TextUnformatted(name.c_str());
   ImGui::PopFont();
   ImGui::SameLine();
@@ -111,18 +113,18 @@ void motion_caption(const Session& session, const Ui& ui, const PanelRect& rect)
   draw_words(ui, ui.fonts.text, {at.x, at.y + big + 4 * s}, colors.dim, what);
 }
 
-void view_lines(App& app, const PanelRect& rect) {
-  const UiColors& colors = colors_of(app);
-  float y = rect.y + rect.height - 42 * app.scale;
-  draw_line(app, rect, tool_hint(app, app.inspector, app.tool), colors.text, y);
-  app.view.lines_top = y;
-  keep_notice(app, app.notice_log);
-  app.notice_age.pointed = false;
-  if (is_error(app) || app.notice.empty()) return;
-  const WidgetRect plate =
-      draw_line(app, rect, app.notice, colors.dim, y, notice_strength(app, app.notice_age));
-  app.notice_age.pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(plate.from, plate.to);
-  app.widgets["notice"] = plate;
+void view_lines(const ViewContext& context, NoticeAge& age, NoticeLog& log, const PanelRect& rect) {
+  const UiColors& colors = colors_of(context.ui);
+  float y = rect.y + rect.height - 42 * context.ui.scale;
+  draw_line(context.ui, rect, tool_hint(context.session, context.tool), colors.text, y);
+  context.view.lines_top = y;
+  keep_notice(context.session, log);
+  age.pointed = false;
+  if (is_error(context.session) || context.session.notice.empty()) return;
+  const WidgetRect plate = draw_line(context.ui, rect, context.session.notice, colors.dim, y,
+                                     notice_strength(context.session, age));
+  age.pointed = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(plate.from, plate.to);
+  context.ui.widgets["notice"] = plate;
 }
 
 void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect& rect) {
@@ -203,10 +205,10 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
   ImGui::End();
 }
 
-void problem_banner(App& app, const PanelRect& rect) {
-  if (app.problem.empty()) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = std::max(rect.width - 48 * s, 40 * s);
+void problem_banner(Session& session, Ui& ui, const CommandRunner& commands, const PanelRect& rect) {
+  if (session.problem.empty()) return;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, width = std::max(rect.width - 48 * s, 40 * s);
   ImGui::SetNextWindowPos({rect.x + 24 * s, rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
@@ -216,16 +218,16 @@ void problem_banner(App& app, const PanelRect& rect) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
-  ImGui::PushFont(app.fonts.strong);
+  ImGui::PushFont(ui.fonts.strong);
   ImGui::TextColored(colors.bad, "%s  The scene cannot be opened", icon::warning);
   ImGui::PopFont();
-  paragraph(app.problem, colors.text);
+  paragraph(session.problem, colors.text);
   ImGui::Dummy({0, 2 * s});
-  if (text_button(app, "problem/close", "Keep the open scene")) app.problem.clear();
+  if (text_button(ui, "problem/close", "Keep the open scene")) session.problem.clear();
   ImGui::SameLine();
-  if (text_button(app, "problem/open", "Open another…")) {
-    app.problem.clear();
-    show_open_dialog(app);
+  if (text_button(ui, "problem/open", "Open another…")) {
+    session.problem.clear();
+    commands.run("file.open");
   }
   ImGui::End();
 }

@@ -1,8 +1,9 @@
 // What an empty document shows instead of nothing: the first steps.
-#include "app/ui/app.hpp"
+#include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/dialog_state.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/tool_state.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <array>
@@ -30,10 +31,11 @@ constexpr std::array first_steps{
 
 } // namespace
 
-void welcome(App& app, const PanelRect& view) {
-  if (!app.mechanism().bodies.empty() || app.tool.tool != Tool::select || app.dialog.showing) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale, width = std::min(430 * s, view.width - 90 * s);
+void welcome(const Session& session, Ui& ui, const ToolState& tool, const DialogState& dialog,
+             const CommandRunner& commands, const PanelRect& view) {
+  if (!session.mechanism().bodies.empty() || tool.tool != Tool::select || dialog.showing) return;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale, width = std::min(430 * s, view.width - 90 * s);
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + view.height / 2}, ImGuiCond_Always,
                           {0.5f, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
@@ -44,10 +46,10 @@ void welcome(App& app, const PanelRect& view) {
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(3);
-  heading(app, "Build a mechanism");
+  heading(ui, "Build a mechanism");
   for (const FirstStep& step : first_steps) {
     ImGui::Dummy({0, 3 * s});
-    ImGui::PushFont(app.fonts.strong);
+    ImGui::PushFont(ui.fonts.strong);
     ImGui::TextUnformatted(step.title);
     ImGui::PopFont();
     paragraph(step.text, colors.dim);
@@ -56,14 +58,14 @@ void welcome(App& app, const PanelRect& view) {
       if (!id) continue;
       if (!first) ImGui::SameLine();
       first = false;
-      if (text_button(app, std::string("welcome/") + id, command(id).title)) run_command(app, id);
+      if (text_button(ui, std::string("welcome/") + id, command(id).title)) commands.run(id);
       help_on_hover(command(id).help);
     }
   }
   ImGui::Dummy({0, 6 * s});
-  if (text_button(app, "welcome/examples", "Start from an example…", true)) show_gallery(app);
+  if (text_button(ui, "welcome/examples", "Start from an example…", true)) commands.run("file.examples");
   ImGui::SameLine();
-  if (text_button(app, "welcome/open", "Open…")) show_open_dialog(app);
+  if (text_button(ui, "welcome/open", "Open…")) commands.run("file.open");
   paragraph("Ctrl+P finds every command, ? lists the keys.", colors.dim);
   ImGui::End();
 }

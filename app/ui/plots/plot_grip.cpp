@@ -1,5 +1,4 @@
 // The grip beside a plot's marker, by which it is pulled off its curve.
-#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -63,7 +62,7 @@ void follow_grip(const PlotFrame& frame) {
 }
 
 void pull_by_keys(const PlotFrame& frame, const std::string& name) {
-  const KeyNudge* nudge = nudge_of(frame.app, name);
+  const KeyNudge* nudge = nudge_of(frame.ui, name);
   if (!nudge || (nudge->x == 0 && nudge->y == 0)) return;
   const PlotBox& area = frame.layout.area;
   const double step = nudge->size * plot_key_share;
@@ -104,8 +103,8 @@ void draw_plot_grip(const PlotFrame& frame) {
   const std::optional<PlotBox> box = grip_box(frame);
   if (!box) return;
   const PlotPen& pen = frame.pen;
-  const UiColors& colors = colors_of(frame.app);
-  const float s = frame.app.scale, line = std::max(1.f, std::round(s));
+  const UiColors& colors = colors_of(frame.ui);
+  const float s = frame.ui.scale, line = std::max(1.f, std::round(s));
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const ImVec2 from = pen.at(box->left, box->top), to = pen.at(box->right, box->bottom);
   const bool pointed = mouse.x >= from.x && mouse.x < to.x && mouse.y >= from.y && mouse.y < to.y &&

@@ -1,6 +1,5 @@
 #include "app/plot/nearest.hpp"
 #include "app/render/imgui_compat.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -165,7 +164,7 @@ void take_legend(const PlotFrame& frame) {
     if (ImGui::IsItemHovered()) {
       frame.pen.list.AddRectFilled(frame.pen.at(entry.box.left, entry.box.top),
                                    frame.pen.at(entry.box.right, entry.box.bottom),
-                                   packed(colors_of(frame.app).raised), 4 * frame.app.scale);
+                                   packed(colors_of(frame.ui).raised), 4 * frame.ui.scale);
       if (entry.text.text != entry.name) help_on_hover(entry.name.c_str());
     }
     if (!pressed) continue;
@@ -182,7 +181,7 @@ bool button_over(const PlotFrame& frame, const char* id, const PlotBox& box, con
   ImGui::SetCursorScreenPos(frame.pen.at(box.left, box.top));
   const bool pressed = ImGui::InvisibleButton(
       id, {static_cast<float>(box.width()), static_cast<float>(box.height())}, buttons);
-  note_widget(frame.app.widgets, name, use);
+  note_widget(frame.ui.widgets, name, use);
   return pressed;
 }
 

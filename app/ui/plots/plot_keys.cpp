@@ -1,6 +1,5 @@
 // A plot by keys: arrows move its marker, or where there is none a cursor to read by; plus and minus zoom.
 #include "app/plot/nearest.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 
@@ -40,17 +39,17 @@ void click_at(const PlotFrame& frame, const PixelPoint& at) {
 
 std::optional<PixelPoint> take_plot_keys(const PlotFrame& frame) {
   const std::string area_name = frame.name + "/area";
-  if (!has_keyboard(frame.app, area_name)) {
+  if (!has_keyboard(frame.ui, area_name)) {
     frame.view.keyed.reset();
     return std::nullopt;
   }
-  if (takes_menu_key(frame.app, area_name)) ImGui::OpenPopup("menu");
+  if (takes_menu_key(frame.ui, area_name)) ImGui::OpenPopup("menu");
   const PlotBox& area = frame.layout.area;
   const auto& marker = frame.plot.marker;
   PixelPoint at{(area.left + area.right) / 2, (area.top + area.bottom) / 2};
   if (frame.view.keyed) at = pixel_of(frame, (*frame.view.keyed)[0], (*frame.view.keyed)[1]);
   if (marker) at = pixel_of(frame, marker->x, marker->y);
-  if (const KeyNudge* nudge = nudge_of(frame.app, area_name)) {
+  if (const KeyNudge* nudge = nudge_of(frame.ui, area_name)) {
     const double step = nudge->size * plot_key_share;
     const PixelPoint moved{at[0] + nudge->x * std::max(1.0, step * area.width()),
                            at[1] - nudge->y * std::max(1.0, step * area.height())};

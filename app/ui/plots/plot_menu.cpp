@@ -1,5 +1,4 @@
 #include "app/plot/csv.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -10,7 +9,7 @@ namespace {
 
 bool item(const PlotFrame& frame, const char* name, const char* text, bool on = false, bool usable = true) {
   const bool chosen = ImGui::MenuItem(text, nullptr, on, usable);
-  note_widget(frame.app.widgets, frame.name + "/menu/" + name);
+  note_widget(frame.ui.widgets, frame.name + "/menu/" + name);
   return chosen;
 }
 
@@ -48,7 +47,7 @@ void plot_menu(const PlotFrame& frame) {
     ImGui::Separator();
     if (item(frame, "copy", "Copy as CSV")) {
       ImGui::SetClipboardText(to_csv(frame.plot, frame.view.look).c_str());
-      frame.app.notice = "Copied the plot's numbers";
+      frame.session.notice = "Copied the plot's numbers";
     }
     if (item(frame, "png", "Save as PNG…")) wanted = PlotFile::png;
     if (item(frame, "svg", "Save as SVG…")) wanted = PlotFile::svg;
@@ -63,8 +62,8 @@ void plot_menu(const PlotFrame& frame) {
   save.width = frame.layout.width / frame.layout.scale;
   save.height = frame.layout.height / frame.layout.scale;
   save.ground = frame.pen.ground;
-  show_plot_dialog(frame.app, frame.app.dialog, frame.app.file_dialogs,
-                   frame.name.substr(std::string("plot/").size()), std::move(save));
+  frame.ui.plot_to_save = std::make_shared<PlotToSave>(
+      PlotToSave{frame.name.substr(std::string("plot/").size()), std::move(save)});
 }
 
 } // namespace flyball

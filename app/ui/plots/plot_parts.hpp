@@ -9,7 +9,8 @@ namespace flyball {
 
 // One plot in one frame.
 struct PlotFrame {
-  App& app;
+  Session& session;
+  Ui& ui;
   const std::string& name; // "plot/NAME"
   PlotView& view;
   const Plot& plot;

@@ -1,7 +1,6 @@
 #include "app/plot/colors.hpp"
 #include "app/plot/layout_heat.hpp"
 #include "app/plot/nearest.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -99,9 +98,9 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
 }
 
 void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<ReadingLine>& lines) {
-  const UiFonts& fonts = frame.app.fonts;
-  const UiColors& colors = colors_of(frame.app);
-  const float s = frame.app.scale, pad = 7 * s, gap = 10 * s, line = std::round(1.2f * fonts.text->FontSize);
+  const UiFonts& fonts = frame.ui.fonts;
+  const UiColors& colors = colors_of(frame.ui);
+  const float s = frame.ui.scale, pad = 7 * s, gap = 10 * s, line = std::round(1.2f * fonts.text->FontSize);
   const auto width = [](ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
   };
@@ -132,7 +131,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<R
   list.AddRect({x, y}, {x + size.x, y + size.y}, packed(colors.border), 4 * s, 0,
                std::max(1.f, std::round(s)));
   float top = y + pad;
-  const float drop = digits_drop(frame.app);
+  const float drop = digits_drop(frame.ui);
   for (const ReadingLine& l : lines) {
     if (l.color) list.AddCircleFilled({x + pad + 4 * s, top + fonts.text->FontSize / 2}, 3.5f * s, *l.color);
     list.AddText(fonts.text, fonts.text->FontSize, {x + pad + indent, top},
@@ -152,7 +151,7 @@ void show_plot_reading(const PlotFrame& frame, const PixelPoint& at) {
   const PlotBox& a = frame.layout.area;
   if (!a.contains(at[0], at[1])) return;
   const ImU32 color = packed_color(plot_colors(frame.pen.ground).frame, 0.7f);
-  const float line = std::max(1.f, std::round(frame.app.scale));
+  const float line = std::max(1.f, std::round(frame.ui.scale));
   const ImVec2 cross = frame.pen.at(std::floor(at[0]), std::floor(at[1]));
   const ImVec2 low = frame.pen.at(a.left, a.top), high = frame.pen.at(a.right, a.bottom);
   frame.pen.list.AddRectFilled({cross.x, low.y}, {cross.x + line, high.y}, color);

@@ -2,14 +2,13 @@
 
 #include "app/plot/csv.hpp"
 #include "app/plot/svg.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/file.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flyball {
 
@@ -48,14 +47,15 @@ void size_fields(Ui& ui, PlotSave& save) {
   if (!fits(save)) paragraph("From 160 to 8192 pixels a side.", colors_of(ui).bad);
 }
 
+} // namespace
+
 // Returns whether the dialog is done with.
-bool save_plot(App& app) {
-  const PlotSave& save = *app.dialog.plot;
-  const std::filesystem::path file = typed_file(app.file_dialogs, extension_of(save.kind));
-  if (!may_replace(app, app.file_dialogs, file)) return false;
+bool PlotDialog::save(Session& session, std::optional<ExportRequest>& picture) {
+  const PlotSave& save = *save_;
+  const std::filesystem::path file = typed_file(query_, extension_of(save.kind));
+  if (!may_replace(session, query_, file)) return false;
   if (save.kind == PlotFile::png) {
-    app.export_request = ExportRequest{
-        .file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = app.dialog.plot};
+    picture = ExportRequest{.file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = save_};
     return true;
   }
   try {
@@ -65,24 +65,22 @@ bool save_plot(App& app) {
                      : to_svg(save.plot,
                               {.width = save.pixels[0], .height = save.pixels[1], .ground = save.ground},
                               save.look));
-    app.notice = "Saved " + file.string();
+    session.notice = "Saved " + file.string();
     return true;
   } catch (const SceneError& error) {
-    app.file_dialogs.message = error.what();
-    app.file_dialogs.replacing.clear();
+    query_.message = error.what();
+    query_.replacing.clear();
     return false;
   }
 }
 
-void close(DialogState& dialog) {
-  dialog.plot.reset();
+void PlotDialog::close() {
+  save_.reset();
   close_dialog();
 }
 
-} // namespace
-
-void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
-                      const std::string& name, PlotSave save) {
+void PlotDialog::open(const Session& session, DialogState& dialog, PlotToSave asked) {
+  PlotSave& save = asked.save;
   dialog.wanted = Dialog::save_plot;
   // Twice as fine as the screen, for print.
   const double finer = save.kind == PlotFile::png ? 2 : 1;
@@ -90,45 +88,49 @@ void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogSta
     return std::clamp(static_cast<int>(finer * points), smallest_plot, largest_plot);
   };
   save.pixels = {pixels(save.width), pixels(save.height)};
-  show_folder(file_dialogs, usual_folder(session));
-  file_dialogs.replacing.clear();
+  show_folder(query_, usual_folder(session));
+  query_.replacing.clear();
   const std::filesystem::path& file = session.document.file();
   const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
-  file_dialogs.path = stem + "-" + file_stem(name) + extension_of(save.kind);
-  dialog.plot = std::make_shared<PlotSave>(std::move(save));
+  query_.path = stem + "-" + file_stem(asked.name) + extension_of(save.kind);
+  save_ = std::make_shared<PlotSave>(std::move(save));
 }
 
-void plot_dialog(App& app) {
-  if (!begin_dialog(app, app.dialog, Dialog::save_plot, "Save the plot", 560)) return;
-  if (!app.dialog.plot) { // nothing to be saved
-    close(app.dialog);
-    return end_dialog();
+std::optional<ExportRequest> PlotDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
+  if (const auto asked = std::exchange(ui.plot_to_save, {})) open(session, dialog, std::move(*asked));
+  std::optional<ExportRequest> picture;
+  if (!begin_dialog(ui, dialog, Dialog::save_plot, "Save the plot", 560)) return picture;
+  if (!save_) { // nothing to be saved
+    close();
+    end_dialog();
+    return picture;
   }
-  PlotSave& save = *app.dialog.plot;
+  PlotSave& save = *save_;
   const char* extension = extension_of(save.kind);
-  bool accepted = path_field(app, app.file_dialogs, "save_plot", "Name");
-  folder_line(app, app.file_dialogs, "save_plot");
-  if (const auto clicked = file_list(app, app.file_dialogs, "save_plot", extension, false, 160 * app.scale))
-    app.file_dialogs.path = clicked->filename().string();
-  if (save.kind != PlotFile::csv) size_fields(app, save);
-  const std::filesystem::path file = typed_file(app.file_dialogs, extension);
-  const bool replaces = asks_to_replace(app, app.file_dialogs, file);
-  if (!replaces && !app.file_dialogs.message.empty()) paragraph(app.file_dialogs.message, colors_of(app).bad);
-  ImGui::Dummy({0, 2 * app.scale});
-  const bool usable = fits(save) && !app.file_dialogs.path.empty();
+  bool accepted = path_field(ui, query_, "save_plot", "Name");
+  folder_line(ui, query_, "save_plot");
+  if (const auto clicked = file_list(ui, query_, "save_plot", extension, false, 160 * ui.scale))
+    query_.path = clicked->filename().string();
+  if (save.kind != PlotFile::csv) size_fields(ui, save);
+  const std::filesystem::path file = typed_file(query_, extension);
+  const bool replaces = asks_to_replace(ui, query_, file);
+  if (!replaces && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
+  ImGui::Dummy({0, 2 * ui.scale});
+  const bool usable = fits(save) && !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(app, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
+  accepted = text_button(ui, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
-  const bool cancelled = text_button(app, "save_plot/cancel", "Cancel") || escape_pressed();
+  const bool cancelled = text_button(ui, "save_plot/cancel", "Cancel") || escape_pressed();
   std::error_code ignored;
   if (cancelled)
-    close(app.dialog);
-  else if (accepted && usable && std::filesystem::is_directory(typed_path(app.file_dialogs), ignored))
-    entered_file(app.file_dialogs, false); // goes there
-  else if (accepted && usable && save_plot(app))
-    close(app.dialog);
+    close();
+  else if (accepted && usable && std::filesystem::is_directory(typed_path(query_), ignored))
+    entered_file(query_, false); // goes there
+  else if (accepted && usable && this->save(session, picture))
+    close();
   end_dialog();
+  return picture;
 }
 
 } // namespace flyball

@@ -2,16 +2,18 @@
 #pragma once
 
 #include "app/plot/colors.hpp"
+#include "app/ui/export_request.hpp"
 #include "app/ui/plots/plot_view.hpp"
+#include "app/ui/widgets/file_query.hpp"
 
 #include <array>
+#include <memory>
+#include <optional>
+#include <string>
 
 namespace flyball {
 
-struct App;
 struct DialogState;
-struct FileDialogState;
-struct Session;
 
 // What is being saved. The dialog writes SVG and CSV itself; a PNG becomes an ExportRequest for whoever has
 // OpenGL.
@@ -24,9 +26,26 @@ struct PlotSave {
   PlotGround ground = PlotGround::light;
 };
 
-// Asks where to. `name` becomes part of the file's name.
-void show_plot_dialog(const Session& session, DialogState& dialog, FileDialogState& file_dialogs,
-                      const std::string& name, PlotSave save);
-void plot_dialog(App& app);
+// Asked for in a plot's menu.
+struct PlotToSave {
+  std::string name; // becomes part of the file's name
+  PlotSave save;
+};
+
+// Asks where to.
+class PlotDialog {
+ public:
+  // Opens where a plot is to be saved. Returns the picture that is asked for.
+  std::optional<ExportRequest> draw(Session& session, Ui& ui, DialogState& dialog);
+  FileQuery& query() { return query_; } // may be filled in beforehand
+
+ private:
+  void open(const Session& session, DialogState& dialog, PlotToSave asked);
+  bool save(Session& session, std::optional<ExportRequest>& picture);
+  void close();
+
+  FileQuery query_;
+  std::shared_ptr<PlotSave> save_; // while one is being saved
+};
 
 } // namespace flyball

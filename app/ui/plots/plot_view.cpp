@@ -1,6 +1,5 @@
 #include "app/ui/plots/plot_view.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -36,15 +35,16 @@ void draw_box(const PlotFrame& frame) {
                end = frame.pen.at(std::clamp(to[0], a.left, a.right), std::clamp(to[1], a.top, a.bottom));
   const ImVec2 low(std::min(from.x, end.x), std::min(from.y, end.y)),
       high(std::max(from.x, end.x), std::max(from.y, end.y));
-  ImVec4 accent = colors_of(frame.app).accent;
-  frame.pen.list.AddRect(low, high, packed(accent), 0, 0, std::max(1.f, std::round(frame.app.scale)));
+  ImVec4 accent = colors_of(frame.ui).accent;
+  frame.pen.list.AddRect(low, high, packed(accent), 0, 0, std::max(1.f, std::round(frame.ui.scale)));
   accent.w = 0.12f;
   frame.pen.list.AddRectFilled(low, high, packed(accent));
 }
 
 } // namespace
 
-PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Plot& plot, ImVec2 size) {
+PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView& view, const Plot& plot,
+                     ImVec2 size) {
   PlotEvents events;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   size = {std::max(std::floor(size.x), 1.f), std::max(std::floor(size.y), 1.f)};
@@ -53,14 +53,14 @@ PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Pl
     return events;
   }
   ImGui::PushID(name.c_str());
-  const std::shared_ptr<const PlotLayout> layout = laid_out(app, view, plot, size);
+  const std::shared_ptr<const PlotLayout> layout = laid_out(ui, view, plot, size);
   const PlotPen pen{*ImGui::GetWindowDrawList(),
-                    app.fonts,
+                    ui.fonts,
                     {std::round(at.x), std::round(at.y)},
-                    app.scale,
-                    plot_ground(app.theme)};
+                    ui.scale,
+                    plot_ground(ui.theme)};
   const std::string path = "plot/" + name;
-  const PlotFrame frame{app, path, view, plot, *layout, pen, events};
+  const PlotFrame frame{session, ui, path, view, plot, *layout, pen, events};
   view.cursor.reset();
   std::optional<PixelPoint> reading;
   pen.list.PushClipRect(at, {at.x + size.x, at.y + size.y}, true);

@@ -13,7 +13,8 @@
 
 namespace flyball {
 
-struct App;
+struct Session;
+struct Ui;
 
 enum class PlotFile { none, png, svg, csv };
 
@@ -72,7 +73,8 @@ struct PlotView {
 // Draws the plot into `size` pixels at ImGui's cursor; names its parts "plot/NAME/area",
 // "plot/NAME/legend/CURVE", "plot/NAME/axis/x", "plot/NAME/menu/...". Curves can be long and are drawn
 // quickly where Plot::version is kept.
-PlotEvents plot_view(App& app, const std::string& name, PlotView& view, const Plot& plot, ImVec2 size);
+PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView& view, const Plot& plot,
+                     ImVec2 size);
 
 // Another takes its place and is laid out anew: with the next version.
 void replace_plot(Plot& plot, Plot next);

@@ -1,5 +1,5 @@
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -56,40 +56,65 @@ bool tab(const Session& session, Ui& ui, const Tab& wanted) {
 
 } // namespace
 
-void study_panel(App& app, const PanelRect& rect) {
-  const float s = app.scale;
+void StudyPanel::draw(Session& session, Ui& ui, const CommandRunner& commands, const PanelRect& rect) {
+  const float s = ui.scale;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
   begin_panel("study", rect, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   ImGui::GetWindowDrawList()->AddLine({rect.x, rect.y}, {rect.x + rect.width, rect.y},
-                                      packed(colors_of(app).border), std::max(1.f, std::round(s)));
+                                      packed(colors_of(ui).border), std::max(1.f, std::round(s)));
   StudyKind wanted = StudyKind::none;
   const float top = ImGui::GetCursorPosY();
   for (const Tab& each : tabs)
-    if (tab(app, app, each) && each.study != app.study.open) wanted = each.study;
+    if (tab(session, ui, each) && each.study != session.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
-  if (app.study.open == StudyKind::motion && app.motion.on) {
+  if (session.study.open == StudyKind::motion && session.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
     ImGui::SetCursorPosX(from);
-    motion_transport(app, app, rect.width - side - 24 * s - from);
+    motion_transport(session, ui, rect.width - side - 24 * s - from);
     ImGui::SameLine();
   }
   ImGui::SetCursorPos({rect.width - side - 8 * s, top});
-  const bool closed = icon_button(app, "study/close", icon::close, "Close");
-  switch (app.study.open) {
+  const bool closed = icon_button(ui, "study/close", icon::close, "Close");
+  switch (session.study.open) {
   case StudyKind::none: break;
-  case StudyKind::motion: motion_panel(app); break;
-  case StudyKind::compare: compare_panel(app); break;
-  case StudyKind::response: response_panel(app); break;
-  case StudyKind::states: states_panel(app, app); break;
-  case StudyKind::modes: modes_panel(app); break;
-  case StudyKind::map: map_panel(app); break;
-  case StudyKind::spread: spread_panel(app); break;
-  case StudyKind::transfer: transfer_panel(app); break;
+  case StudyKind::motion: motion_panel(session, ui, shown_.motion, commands); break;
+  case StudyKind::compare: compare_panel(session, ui, shown_.compare); break;
+  case StudyKind::response: response_panel(session, ui, shown_.response); break;
+  case StudyKind::states: states_panel(session, ui); break;
+  case StudyKind::modes: modes_panel(session, ui, shown_.campbell, commands); break;
+  case StudyKind::map: map_panel(session, ui, shown_.map); break;
+  case StudyKind::spread: spread_panel(session, ui, shown_.spread); break;
+  case StudyKind::transfer: transfer_panel(session, ui, shown_.transfer, commands); break;
   }
   ImGui::End();
-  if (closed) open_study(app, StudyKind::none);
-  if (wanted != StudyKind::none) open_study(app, wanted);
+  if (closed) open_study(session, StudyKind::none);
+  if (wanted != StudyKind::none) open_study(session, wanted);
+}
+
+void StudyPanel::forget_closed(const Session& session) {
+  const StudyKind open = session.study.open;
+  if (open != StudyKind::response) shown_.response = {};
+  if (open != StudyKind::map) shown_.map = {};
+  if (open != StudyKind::spread) shown_.spread = {};
+  if (open != StudyKind::transfer) {
+    const bool hertz = shown_.transfer.hertz;
+    shown_.transfer = {};
+    shown_.transfer.hertz = hertz;
+  }
+  if (open != StudyKind::modes) {
+    const bool hertz = shown_.campbell.hertz;
+    shown_.campbell = {};
+    shown_.campbell.hertz = hertz;
+  }
+}
+
+void StudyPanel::fit() {
+  fit_plot(shown_.response.view);
+  fit_plot(shown_.map.view);
+  fit_plot(shown_.campbell.view);
+  for (MotionPlot& plot : shown_.motion)
+    fit_plot(plot.view);
 }
 
 } // namespace flyball

@@ -4,22 +4,37 @@
 #include "app/plot/plot.hpp"
 #include "app/session/session.hpp"
 #include "app/ui/layout.hpp"
+#include "app/ui/studies/study_views.hpp"
 #include "app/ui/ui.hpp"
 
 namespace flyball {
 
-struct App;
+class CommandRunner;
 
-void study_panel(App& app, const PanelRect& rect);
-void motion_panel(App& app);
+// The open study, with how a person looks at its plots.
+class StudyPanel {
+ public:
+  void draw(Session& session, Ui& ui, const CommandRunner& commands, const PanelRect& rect);
+  // What is closed is looked at afresh when it is opened again; once a frame.
+  void forget_closed(const Session& session);
+  void forget() { shown_ = {}; }
+  // All of each plot in view again.
+  void fit();
+  const StudyViews& shown() const { return shown_; }
+
+ private:
+  StudyViews shown_;
+};
+
+void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands);
 void motion_transport(Session& session, Ui& ui, float width); // play, scrub; in the present line, pixels
-void compare_panel(App& app);
-void response_panel(App& app);
+void compare_panel(Session& session, Ui& ui, CompareView& drawn);
+void response_panel(Session& session, Ui& ui, ResponseView& drawn);
 void states_panel(Session& session, Ui& ui);
-void modes_panel(App& app);
-void map_panel(App& app);
-void spread_panel(App& app);
-void transfer_panel(App& app);
+void modes_panel(Session& session, Ui& ui, CampbellView& drawn, const CommandRunner& commands);
+void map_panel(Session& session, Ui& ui, MapView& drawn);
+void spread_panel(Session& session, Ui& ui, SpreadView& drawn);
+void transfer_panel(Session& session, Ui& ui, TransferView& drawn, const CommandRunner& commands);
 
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {

@@ -1,8 +1,8 @@
 #include "app/ui/tools/aim.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/viewport/picking.hpp"
 #include "app/viewport/snapping.hpp"
 
@@ -80,24 +80,24 @@ Vec3 on_rod(const Instance& rod, const Ray& ray, double step) {
   return point;
 }
 
-Aim find_aim(App& app, const ViewInput& input) {
-  const Mechanism& mechanism = app.mechanism();
-  const SceneList& scene = cached_scene(app);
+Aim find_aim(const ViewContext& context, const ViewInput& input) {
+  const Mechanism& mechanism = context.session.mechanism();
+  const SceneList& scene = cached_scene(context);
   // Bodies come first in the list. A joint's sign in front of one does not hide it.
   const auto last = std::ranges::find_if_not(scene.instances,
                                              [](const Instance& i) { return i.part.kind == PartKind::body; });
   const std::span<const Instance> bodies(scene.instances.begin(), last);
   const Ray ray = input.ray();
   const auto hit = pick(bodies, ray, 2 * input.point);
-  const bool snap = snaps(app.tool, input);
+  const bool snap = snaps(context.tool, input);
   const double reach = snap_reach * input.point;
 
   Aim aim;
   aim.step = snap ? grid_step(input) : 0;
-  aim.plane = work_plane(input.camera, app.tool.last_point.value_or(Vec3::Zero()));
-  if (const SnapPoint* point =
-          snap ? snap_point(cached_snap_points(app, app.tool), input.camera, input.size, input.cursor, reach)
-               : nullptr) {
+  aim.plane = work_plane(input.camera, context.tool.last_point.value_or(Vec3::Zero()));
+  if (const SnapPoint* point = snap ? snap_point(cached_snap_points(context.session, context.tool),
+                                                 input.camera, input.size, input.cursor, reach)
+                                    : nullptr) {
     aim.plane.through = aim.point = point->point;
     aim.what = point->what;
     aim.named = point->named;
@@ -153,16 +153,16 @@ double grid_step(const ViewInput& input) {
   return step_above(grid_gap * input.point * input.metres_per_pixel());
 }
 
-const Aim& aim_at(App& app, const ViewInput& input) {
-  ToolCaches& cache = app.tool.caches;
-  const std::uint64_t revision = app.document.revision();
+const Aim& aim_at(const ViewContext& context, const ViewInput& input) {
+  ToolCaches& cache = context.tool.caches;
+  const std::uint64_t revision = context.session.document.revision();
   if (cache.aim_revision != revision || cache.aim_cursor != input.cursor ||
-      cache.aim_camera != input.camera || cache.aim_snaps != snaps(app.tool, input)) {
-    cache.aim = find_aim(app, input);
+      cache.aim_camera != input.camera || cache.aim_snaps != snaps(context.tool, input)) {
+    cache.aim = find_aim(context, input);
     cache.aim_revision = revision;
     cache.aim_cursor = input.cursor;
     cache.aim_camera = input.camera;
-    cache.aim_snaps = snaps(app.tool, input);
+    cache.aim_snaps = snaps(context.tool, input);
   }
   return cache.aim;
 }

@@ -13,7 +13,7 @@ bool snaps(const ToolState& tool, const ViewInput& input);
 double grid_step(const ViewInput& input);
 // The place under the cursor: a point of the mechanism, else one of the body there, else one on the work
 // plane.
-const Aim& aim_at(App& app, const ViewInput& input);
+const Aim& aim_at(const ViewContext& context, const ViewInput& input);
 // The place marked in the picture, with the grid around it, and its coordinates beside the cursor. `head` is
 // a line above them.
 void draw_aim(const Session& session, const Ui& ui, const ViewInput& input, const Aim& aim,

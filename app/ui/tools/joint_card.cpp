@@ -1,10 +1,10 @@
 // The card beside the point of a joint or bearing to be made: which bodies, which type, which axis.
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/work_plane.hpp"
 
@@ -189,12 +189,13 @@ void second_axis_row(Ui& ui, ToolState& tool) {
 
 // What the solids of the two bodies first offered cover of the window, a rectangle each: others that are
 // chosen do not move the card.
-std::vector<PanelRect> covered_by_bodies(App& app, const ViewInput& input) {
+std::vector<PanelRect> covered_by_bodies(const ViewContext& context, const ViewInput& input) {
   std::vector<PanelRect> covered;
-  const std::array<std::string, 2>& names = app.tool.joint->guessed;
-  for (const Instance& solid : cached_scene(app).instances) {
+  const std::array<std::string, 2>& names = context.tool.joint->guessed;
+  for (const Instance& solid : cached_scene(context).instances) {
     if (solid.part.kind != PartKind::body) continue;
-    const std::string& name = app.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
+    const std::string& name =
+        context.session.mechanism().bodies[static_cast<std::size_t>(solid.part.index)].name;
     if (name != names[0] && name != names[1]) continue;
     const Bounds box = instance_bounds(solid);
     ImVec2 low(1e9f, 1e9f), high(-1e9f, -1e9f);
@@ -219,20 +220,20 @@ float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
 
 // Beside the point, rather on the side where less of the mechanism is, and within the view, above what is
 // written at its foot; in a corner of it where the card would lie on the bodies that are joined.
-void place_card(App& app, const ViewInput& input, ImVec2 size) {
-  const float s = app.scale, gap = 28 * s, edge = 8 * s;
+void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size) {
+  const float s = context.ui.scale, gap = 28 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
   const ImVec2 corner(rect.x, rect.y);
-  const ImVec2 at = input.on_screen(app.tool.joint->at).value_or(corner);
-  const ImVec2 middle = input.on_screen(cached_scene(app).bounds.center()).value_or(corner);
+  const ImVec2 at = input.on_screen(context.tool.joint->at).value_or(corner);
+  const ImVec2 middle = input.on_screen(cached_scene(context).bounds.center()).value_or(corner);
   const float right = at.x + gap, left = at.x - gap - size.x;
   const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
   const bool to_left = left >= least && (at.x < middle.x || right > most);
   ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
-  const float top = rect.y + edge, foot = std::max(top, app.view.lines_top - size.y - edge);
+  const float top = rect.y + edge, foot = std::max(top, context.view.lines_top - size.y - edge);
   from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, top, foot);
-  const std::vector<PanelRect> covered = covered_by_bodies(app, input);
+  const std::vector<PanelRect> covered = covered_by_bodies(context, input);
   const auto hidden = [&](ImVec2 place) {
     float area = 0;
     for (const PanelRect& each : covered)
@@ -250,14 +251,14 @@ void place_card(App& app, const ViewInput& input, ImVec2 size) {
 
 } // namespace
 
-void joint_card(App& app, const ViewInput& input) {
-  if (!app.tool.joint) return;
-  const float s = app.scale;
-  const bool bearing = app.tool.tool == Tool::bearing;
+void joint_card(const ViewContext& context, const ViewInput& input) {
+  if (!context.tool.joint) return;
+  const float s = context.ui.scale;
+  const bool bearing = context.tool.tool == Tool::bearing;
   // It has a place for all the rows that a type and two bodies bring: more of them do not move it.
   const float most_rows = bearing ? 0 : 12.5f * (ImGui::GetFrameHeight() + 4 * s);
-  const ImVec2 size(264 * s, std::max(app.tool.card_height, most_rows));
-  place_card(app, input, size);
+  const ImVec2 size(264 * s, std::max(context.tool.card_height, most_rows));
+  place_card(context, input, size);
   ImGui::SetNextWindowSize({size.x, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
@@ -266,29 +267,30 @@ void joint_card(App& app, const ViewInput& input) {
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PopStyleVar(2);
-  heading(app, bearing ? "Bearing" : "Join");
-  body_rows(app, app, app.tool);
+  heading(context.ui, bearing ? "Bearing" : "Join");
+  body_rows(context.session, context.ui, context.tool);
   ImGui::Dummy({0, s});
-  if (!bearing) type_rows(app, app, app.tool, input);
-  if (bearing || has_axis(app.tool.joint_type)) axis_rows(app, app, app.tool, input);
-  if (!bearing && has_axis2(app.tool.joint_type)) second_axis_row(app, app.tool);
+  if (!bearing) type_rows(context.session, context.ui, context.tool, input);
+  if (bearing || has_axis(context.tool.joint_type))
+    axis_rows(context.session, context.ui, context.tool, input);
+  if (!bearing && has_axis2(context.tool.joint_type)) second_axis_row(context.ui, context.tool);
   ImGui::Dummy({0, 2 * s});
   // The card stays as tall as it was: fewer rows do not move what is clicked next.
   const float foot =
-      app.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
+      context.tool.joint->card_height - ImGui::GetStyle().WindowPadding.y - ImGui::GetFrameHeight();
   ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
-  if (text_button(app, "tools/join", bearing ? "Insert" : "Join", true)) {
-    make_joint(app, app, app.tool);
+  if (text_button(context.ui, "tools/join", bearing ? "Insert" : "Join", true)) {
+    make_joint(context.session, context.ui, context.tool);
   } else {
     ImGui::SameLine();
-    if (text_button(app, "tools/cancel", "Cancel")) {
-      select(app, app.tool.joint->before);
-      app.tool.joint.reset();
+    if (text_button(context.ui, "tools/cancel", "Cancel")) {
+      select(context.session, context.tool.joint->before);
+      context.tool.joint.reset();
     }
   }
-  app.tool.card_height = std::max(app.tool.card_height, ImGui::GetWindowHeight());
-  if (app.tool.joint)
-    app.tool.joint->card_height = std::max(app.tool.joint->card_height, ImGui::GetWindowHeight());
+  context.tool.card_height = std::max(context.tool.card_height, ImGui::GetWindowHeight());
+  if (context.tool.joint)
+    context.tool.joint->card_height = std::max(context.tool.joint->card_height, ImGui::GetWindowHeight());
   ImGui::End();
 }
 

@@ -1,6 +1,7 @@
 #include "app/ui/tools/joints_along.hpp"
 
 #include "app/session/session.hpp"
+#include "app/ui/tool_state.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -48,17 +49,17 @@ Names stretched_links(const Mechanism& mechanism, const Selection& moved) {
 
 } // namespace
 
-OuterJoints joints_of_moved(const InspectorState& inspector, bool opposite) {
-  return inspector.leave_joints != opposite ? OuterJoints::stay : OuterJoints::follow;
+OuterJoints joints_of_moved(const ToolState& tool, bool opposite) {
+  return tool.leave_joints != opposite ? OuterJoints::stay : OuterJoints::follow;
 }
 
-void tell_joints(Session& session, const InspectorState& inspector, const Selection& moved, bool opposite) {
+void tell_joints(Session& session, const ToolState& tool, const Selection& moved, bool opposite) {
   const Mechanism& mechanism = session.mechanism();
   const Names names = outer_joints(mechanism, moved);
   if (names.empty()) return;
   const bool one = names.size() == 1;
   const std::string joints = (one ? "Joint " : "Joints ") + listed(names);
-  if (joints_of_moved(inspector, opposite) == OuterJoints::follow)
+  if (joints_of_moved(tool, opposite) == OuterJoints::follow)
     session.notice =
         joints + " went along" +
         clause(staying_bodies(mechanism, moved, names), " stays where it was", " stay where they were") +

@@ -1,9 +1,9 @@
 #include "app/ui/tools/named_points.hpp"
 
 #include "app/document/formula_edits.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
@@ -94,32 +94,33 @@ void select_point(Session& session, ToolState& tool, const std::string& name) {
   tool.point = name;
 }
 
-void use_points(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
+void use_points(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
   tool.hovered_name.clear();
-  if (!are_shown(app, app.tool)) return;
-  const auto all = marks(app, app, input);
+  if (!are_shown(context.session, context.tool)) return;
+  const auto all = marks(context.session, context.ui, input);
   const ImVec2 cursor = input.on_screen(input.cursor);
   const bool can = input.hovered && !tool.grab && (tool.tool == Tool::point || !places(tool.tool)) &&
                    (!input.active || input.pressed || !input.moved);
   if (can) {
     for (const auto& [point, mark] : all)
       if (is_in(mark.name, cursor)) tool.hovered_name = point->name;
-    const NamedPoint* near = tool.hovered_name.empty() ? point_near(app, input) : nullptr;
-    if (near && (tool.tool == Tool::point || !part_under_cursor(app, input))) tool.hovered_name = near->name;
+    const NamedPoint* near = tool.hovered_name.empty() ? point_near(context.session, input) : nullptr;
+    if (near && (tool.tool == Tool::point || !part_under_cursor(context, input)))
+      tool.hovered_name = near->name;
   }
   if (!tool.hovered_name.empty()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   const std::string& taken = tool.grab ? tool.grab->stands : tool.point;
   for (const auto& [point, mark] : all) {
-    draw_mark(app, *point, mark, point->name == tool.hovered_name || point->name == taken);
-    app.widgets["point/" + point->name] = mark.name;
+    draw_mark(context.ui, *point, mark, point->name == tool.hovered_name || point->name == taken);
+    context.ui.widgets["point/" + point->name] = mark.name;
   }
 }
 
-void begin_picking(App& app) {
-  if (app.fields.picking.empty()) return;
-  set_tool(app, Tool::point);
-  app.tool.standing = std::exchange(app.fields.picking, {});
+void begin_picking(Session& session, Ui& ui, ToolState& tool) {
+  if (ui.fields.picking.empty()) return;
+  set_tool(session, ui, tool, Tool::point);
+  tool.standing = std::exchange(ui.fields.picking, {});
 }
 
 void pick_point(Session& session, ToolState& tool, const ViewInput& input) {

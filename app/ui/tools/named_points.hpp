@@ -16,9 +16,9 @@ void select_point(Session& session, ToolState& tool, const std::string& name);
 
 // Draws them while building, where nothing is selected or a tool or a drag may snap to them, and finds the
 // one under the cursor: on its name, or on its place where no part is in front.
-void use_points(App& app, const ViewInput& input);
+void use_points(const ViewContext& context, const ViewInput& input);
 // After the panels: chooses the tool that picks one, where a field has asked for it (FieldState::picking).
-void begin_picking(App& app);
+void begin_picking(Session& session, Ui& ui, ToolState& tool);
 // The tool that picks one where app.tool.standing shall stand.
 void pick_point(Session& session, ToolState& tool, const ViewInput& input);
 

@@ -1,10 +1,10 @@
 #include "app/ui/tools/tool_cursor.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/viewport/picking.hpp"
 
 #include <algorithm>
@@ -27,10 +27,10 @@ const Instance* solid_of(const SceneList& scene, int body) {
 }
 
 // How far the point is from the second nearest of the bodies: where two meet it is none.
-double distance_to_second(App& app, const std::vector<int>& bodies, const Vec3& point) {
+double distance_to_second(const ViewContext& context, const std::vector<int>& bodies, const Vec3& point) {
   std::array<double, 2> nearest{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
   for (const int body : bodies) {
-    const Instance* solid = solid_of(cached_scene(app), body);
+    const Instance* solid = solid_of(cached_scene(context), body);
     if (!solid) continue;
     const double away = std::max(surface_distance(*solid, point), 0.0);
     if (away < nearest[1]) nearest[1] = away;
@@ -40,22 +40,22 @@ double distance_to_second(App& app, const std::vector<int>& bodies, const Vec3& 
 }
 
 // Where a joint, link or force is most likely wanted: the point where the selected bodies meet, or any two.
-std::optional<Vec3> likely_point(App& app) {
-  const Mechanism& mechanism = app.mechanism();
+std::optional<Vec3> likely_point(const ViewContext& context) {
+  const Mechanism& mechanism = context.session.mechanism();
   std::vector<int> bodies;
-  for (const std::string& name : app.selection().names(PartKind::body))
+  for (const std::string& name : context.session.selection().names(PartKind::body))
     bodies.push_back(body_index(mechanism, name));
-  if (app.tool.tool != Tool::joint && app.tool.tool != Tool::bearing && !bodies.empty())
+  if (context.tool.tool != Tool::joint && context.tool.tool != Tool::bearing && !bodies.empty())
     return mechanism.bodies[static_cast<std::size_t>(bodies.front())].position;
   if (bodies.empty())
     for (int i = 0; i < static_cast<int>(mechanism.bodies.size()); ++i)
       bodies.push_back(i);
   std::optional<Vec3> best;
   std::tuple<double, bool> least{std::numeric_limits<double>::max(), true};
-  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
+  for (const SnapPoint& snap : cached_snap_points(context.session, context.tool)) {
     if (snap.part.kind == PartKind::none) continue;
     // Rather a body's own point than that of a joint that is there already.
-    const std::tuple<double, bool> worth{distance_to_second(app, bodies, snap.point),
+    const std::tuple<double, bool> worth{distance_to_second(context, bodies, snap.point),
                                          snap.part.kind != PartKind::body};
     if (worth >= least) continue;
     least = worth;
@@ -64,38 +64,38 @@ std::optional<Vec3> likely_point(App& app) {
   return best;
 }
 
-bool is_free(App& app, Vec2 pixel, ViewSize view) {
-  const auto& all = cached_scene(app).instances;
+bool is_free(const ViewContext& context, Vec2 pixel, ViewSize view) {
+  const auto& all = cached_scene(context).instances;
   const auto last =
       std::ranges::find_if_not(all, [](const Instance& i) { return i.part.kind == PartKind::body; });
-  return !pick(std::span<const Instance>(all.begin(), last), app.view.camera.ray(pixel, view),
-               20 * static_cast<double>(app.scale));
+  return !pick(std::span<const Instance>(all.begin(), last), context.view.camera.ray(pixel, view),
+               20 * static_cast<double>(context.ui.scale));
 }
 
-Vec2 first_place(App& app, ViewSize view) {
+Vec2 first_place(const ViewContext& context, ViewSize view) {
   const Vec2 middle(view.width / 2, view.height / 2);
-  switch (app.tool.tool) {
+  switch (context.tool.tool) {
   case Tool::ball:
   case Tool::block:
   case Tool::plate:
   case Tool::rod: {
-    const double step = aside * static_cast<double>(app.scale);
+    const double step = aside * static_cast<double>(context.ui.scale);
     for (Vec2 place = middle; place.x() < view.width - step; place.x() += step)
-      if (is_free(app, place, view)) return place;
+      if (is_free(context, place, view)) return place;
     return middle;
   }
   default: break;
   }
-  const auto point = likely_point(app);
-  return point ? app.view.camera.project(*point, view).value_or(middle) : middle;
+  const auto point = likely_point(context);
+  return point ? context.view.camera.project(*point, view).value_or(middle) : middle;
 }
 
 // Left to right and top to bottom, as they are seen.
-std::optional<Vec2> next_point(App& app, const Vec2& from, ViewSize view, bool back) {
+std::optional<Vec2> next_point(const ViewContext& context, const Vec2& from, ViewSize view, bool back) {
   std::vector<std::pair<double, double>> places;
-  for (const SnapPoint& snap : cached_snap_points(app, app.tool)) {
-    if (app.tool.tool == Tool::point && snap.named.empty()) continue;
-    if (const auto at = app.view.camera.project(snap.point, view))
+  for (const SnapPoint& snap : cached_snap_points(context.session, context.tool)) {
+    if (context.tool.tool == Tool::point && snap.named.empty()) continue;
+    if (const auto at = context.view.camera.project(snap.point, view))
       if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
         places.emplace_back(std::round(at->x()), std::round(at->y()));
   }
@@ -122,10 +122,10 @@ double arrow_step(const Ui& ui, const ToolState& tool, const ViewState& state, c
 
 } // namespace
 
-bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
-  ToolState& tool = app.tool;
-  const Vec2 now = tool.cursor.value_or(app.keyboard.in_view.value_or(first_place(app, view)));
-  const double step = arrow_step(app, app.tool, app.view, key, view);
+bool take_cursor_key(const ViewContext& context, const KeyPress& key, ViewSize view) {
+  ToolState& tool = context.tool;
+  const Vec2 now = tool.cursor.value_or(context.ui.keyboard.in_view.value_or(first_place(context, view)));
+  const double step = arrow_step(context.ui, context.tool, context.view, key, view);
   Vec2 by = Vec2::Zero();
   switch (key.key) {
   case keys::right: by.x() = step; break;
@@ -133,7 +133,7 @@ bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
   case keys::down: by.y() = step; break;
   case keys::up: by.y() = -step; break;
   case keys::page_down:
-  case keys::page_up: tool.cursor = next_point(app, now, view, key.key == keys::page_up); return true;
+  case keys::page_up: tool.cursor = next_point(context, now, view, key.key == keys::page_up); return true;
   case keys::enter:
     if (key.ctrl || key.shift) return false;
     tool.cursor = now;
@@ -145,17 +145,17 @@ bool take_cursor_key(App& app, const KeyPress& key, ViewSize view) {
   return true;
 }
 
-void use_tool_cursor(App& app, ViewInput& input) {
-  ToolState& tool = app.tool;
-  app.keyboard.in_view = input.hovered ? std::optional(input.cursor) : std::nullopt;
+void use_tool_cursor(const ViewContext& context, ViewInput& input) {
+  ToolState& tool = context.tool;
+  context.ui.keyboard.in_view = input.hovered ? std::optional(input.cursor) : std::nullopt;
   const bool click = std::exchange(tool.cursor_click, false);
-  if (!app.keyboard.by_key || app.mode != Mode::build || !places(tool.tool)) {
+  if (!context.ui.keyboard.by_key || context.session.mode != Mode::build || !places(tool.tool)) {
     tool.cursor.reset();
     return;
   }
   // A tool that was chosen by a key shows at once where Enter would put it.
   if (!tool.cursor && !input.hovered && !tool.first && !tool.joint)
-    tool.cursor = first_place(app, input.size);
+    tool.cursor = first_place(context, input.size);
   if (!tool.cursor) return;
   input.cursor = *tool.cursor;
   input.hovered = true;

@@ -9,9 +9,9 @@
 namespace flyball {
 
 // A key of the cursor; false: none. `view` in pixels.
-bool take_cursor_key(App& app, const KeyPress& key, ViewSize view);
+bool take_cursor_key(const ViewContext& context, const KeyPress& key, ViewSize view);
 // Puts the cursor into the place of the mouse, as long as that rests.
-void use_tool_cursor(App& app, ViewInput& input);
+void use_tool_cursor(const ViewContext& context, ViewInput& input);
 // After the tool was used: what was made with the cursor has the keys next, or the card that asks how.
 void follow_tool_cursor(const Session& session, Ui& ui, ToolState& tool, std::uint64_t revision_before,
                         bool joining_before);

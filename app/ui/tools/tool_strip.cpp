@@ -1,5 +1,4 @@
 // The tools, as a strip of buttons at the left edge of the view.
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/tool_glyphs.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -78,10 +77,10 @@ bool glyph_button(Ui& ui, const char* name, bool on, const Draw& draw) {
 
 } // namespace
 
-void tool_strip(App& app, const PanelRect& view) {
-  if (app.mode != Mode::build) return;
-  const UiColors& colors = colors_of(app);
-  const float s = app.scale;
+void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view) {
+  if (session.mode != Mode::build) return;
+  const UiColors& colors = colors_of(ui);
+  const float s = ui.scale;
   // In a low view the groups stand in as many columns as they need.
   const float room = std::max(view.height / s - top - bottom, 4 * button_side + 2 * strip_pad);
   ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
@@ -112,16 +111,16 @@ void tool_strip(App& app, const PanelRect& view) {
   };
   for (const ToolButton& button : buttons) {
     place(button.separated);
-    const bool on = app.tool.tool == button.tool;
-    if (glyph_button(app, button.name, on, [&](ImDrawList& list, ImVec2 center, float half, ImU32 ink) {
+    const bool on = tool.tool == button.tool;
+    if (glyph_button(ui, button.name, on, [&](ImDrawList& list, ImVec2 center, float half, ImU32 ink) {
           draw_tool_glyph(list, button.tool, center, half, ink);
         }))
-      set_tool(app, button.tool);
-    tell(app, button.command);
+      set_tool(session, ui, tool, button.tool);
+    tell(ui, button.command);
   }
   place(true);
-  if (glyph_button(app, "tools/snap", app.tool.snap, draw_magnet_glyph)) app.tool.snap = !app.tool.snap;
-  tell(app, "view.snap");
+  if (glyph_button(ui, "tools/snap", tool.snap, draw_magnet_glyph)) tool.snap = !tool.snap;
+  tell(ui, "view.snap");
   ImGui::End();
 }
 

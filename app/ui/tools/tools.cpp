@@ -1,10 +1,12 @@
 #include "app/ui/tools/tools.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/commands.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/tools/typed_size.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 
 namespace flyball {
 
@@ -95,6 +97,14 @@ bool drags(Tool tool) {
 
 } // namespace
 
+void set_tool(Session& session, Ui& ui, ToolState& tool, Tool wanted) {
+  ui.keyboard.at.clear();                 // the tool works in the view
+  for (auto& behind : ui.keyboard.behind) // also if it was chosen in the menu of a field
+    behind = {};
+  if (wanted != Tool::select && wanted != Tool::box && wanted != Tool::pull) set_mode(session, Mode::build);
+  tool.tool = wanted;
+}
+
 bool places(Tool tool) {
   return tool != Tool::select && tool != Tool::rotate && tool != Tool::pull && tool != Tool::box;
 }
@@ -113,10 +123,9 @@ void keep_tool_state(Session& session, ToolState& tool) {
     tool.joint.reset();
 }
 
-bool takes_left_drag(const App& app, const ViewInput& input) {
-  const ToolState& tool = app.tool;
+bool takes_left_drag(const ToolState& tool, const ViewState& view, const ViewInput& input) {
   if (tool.grab || tool.assembly || tool.pull || tool.reach || tool.frame || tool.spent) return true;
-  return drags(tool.tool) || ((input.ctrl || frames_with_left(app.navigation)) && !places(tool.tool));
+  return drags(tool.tool) || ((input.ctrl || frames_with_left(view.navigation)) && !places(tool.tool));
 }
 
 bool step_back(Session& session, ToolState& tool) {
@@ -148,9 +157,9 @@ bool step_back(Session& session, ToolState& tool) {
   return true;
 }
 
-void take_tool_keys(App& app) {
-  if (ImGui::GetIO().WantTextInput || app.dialog.showing || app.commands.palette_showing) return;
-  std::erase_if(app.keys, [&](const KeyPress& key) { return take_key(app, app, app.tool, key); });
+void take_tool_keys(Session& session, Ui& ui, ToolState& tool) {
+  if (ImGui::GetIO().WantTextInput) return;
+  std::erase_if(ui.keys, [&](const KeyPress& key) { return take_key(session, ui, tool, key); });
 }
 
 void end_tool(ToolState& tool, const ViewInput& input) {
@@ -174,12 +183,12 @@ std::string owner_of(const std::string& address) {
   return path.substr(0, path.find('.'));
 }
 
-std::string hint_of_tool(const Session& session, const InspectorState& inspector, const ToolState& tool) {
+std::string hint_of_tool(const Session& session, const ToolState& tool) {
 
   if (tool.grab)
     return std::string(tool.snap ? "Ctrl drags freely." : "Ctrl snaps.") +
            (outer_joints(*tool.grab->before, tool.grab->selection).empty() ? ""
-            : inspector.leave_joints                                       ? " Shift takes joints along."
+            : tool.leave_joints                                            ? " Shift takes joints along."
                                                                            : " Shift leaves joints behind.") +
            " A number can be typed. Esc takes it back.";
   if (const std::string hint = hand_hint(tool); !hint.empty()) return hint;
@@ -230,8 +239,8 @@ std::string hint_of_tool(const Session& session, const InspectorState& inspector
 
 } // namespace
 
-std::string tool_hint(const Session& session, const InspectorState& inspector, const ToolState& tool) {
-  return standing_hint(tool) + hint_of_tool(session, inspector, tool);
+std::string tool_hint(const Session& session, const ToolState& tool) {
+  return standing_hint(tool) + hint_of_tool(session, tool);
 }
 
 const std::vector<SnapPoint>& cached_snap_points(const Session& session, ToolState& tool) {
@@ -243,17 +252,18 @@ const std::vector<SnapPoint>& cached_snap_points(const Session& session, ToolSta
   return cache.snap_points;
 }
 
-const SceneList& cached_scene(App& app) {
-  if (app.mode == Mode::build) return shown_scene(app)->solid;
-  ToolCaches& cache = app.tool.caches;
+const SceneList& cached_scene(const ViewContext& context) {
+  if (context.session.mode == Mode::build) return shown_scene(context)->solid;
+  ToolCaches& cache = context.tool.caches;
   // Marks of cut joints come with the answer.
-  if (cache.scene_revision != app.document.revision() || cache.scene_ticket != app.answer.ticket) {
-    ViewFrame frame = view_frame(app);
-    frame.mechanism = &app.mechanism();
+  if (cache.scene_revision != context.session.document.revision() ||
+      cache.scene_ticket != context.session.answer.ticket) {
+    ViewFrame frame = view_frame(context.session, context.ui, context.tool, context.view);
+    frame.mechanism = &context.session.mechanism();
     frame.poses = {};
     cache.scene = scene_of(frame);
-    cache.scene_revision = app.document.revision();
-    cache.scene_ticket = app.answer.ticket;
+    cache.scene_revision = context.session.document.revision();
+    cache.scene_ticket = context.session.answer.ticket;
   }
   return cache.scene;
 }

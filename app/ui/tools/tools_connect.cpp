@@ -1,11 +1,11 @@
 // What has two ends: rods, links, springs and dampers. Two clicks, or a drag from one end to the other.
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/typed_size.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
@@ -118,17 +118,17 @@ void draw_between(const Ui& ui, const ToolState& tool, const ViewInput& input, c
 
 } // namespace
 
-void use_connecting(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
+void use_connecting(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
   const bool entered = std::exchange(tool.place_now, false);
   if (!input.hovered && !tool.first) return;
-  Aim aim = aim_at(app, input);
+  Aim aim = aim_at(context, input);
   std::string mistake;
   if (tool.first) {
     const Aim& from = *tool.first;
-    aim = second_end(app, app.tool, input, from, aim, mistake);
-    draw_between(app, app.tool, input, from.point, aim.point);
-    const ShownUnit unit = shown_unit("m", app.units);
+    aim = second_end(context.session, context.tool, input, from, aim, mistake);
+    draw_between(context.ui, context.tool, input, from.point, aim.point);
+    const ShownUnit unit = shown_unit("m", context.session.units);
     std::string head =
         "length " + (tool.typed.empty()
                          ? short_text(unit.shown((aim.point - from.point).norm()), 4) + " " + unit.text
@@ -137,9 +137,9 @@ void use_connecting(App& app, const ViewInput& input) {
       head += ", " + aim.what;
     else if (tool.tool != Tool::rod && aim.body != ground_name)
       head += ", on " + aim.body;
-    draw_aim(app, app, input, aim, head);
+    draw_aim(context.session, context.ui, input, aim, head);
   } else {
-    draw_aim(app, app, input, aim);
+    draw_aim(context.session, context.ui, input, aim);
   }
   if (tool.spent) return;
   if (input.pressed && !tool.first) tool.first = aim;
@@ -151,18 +151,18 @@ void use_connecting(App& app, const ViewInput& input) {
     return;
   }
   if (!mistake.empty()) {
-    app.notice = "“" + tool.typed + "” is no length. " + mistake;
+    context.session.notice = "“" + tool.typed + "” is no length. " + mistake;
     return;
   }
   if (const std::string reason = obstacle(tool.tool, from, aim); !reason.empty()) {
-    app.notice = reason;
+    context.session.notice = reason;
     if (!tool.first_clicked && !entered) tool.first.reset();
     return;
   }
-  add(app, app.tool, input, from, aim);
+  add(context.session, context.tool, input, from, aim);
   tool.last_point = aim.point;
   tool.spent = input.held; // Enter, while the button is down
-  end_tool(app.tool, input);
+  end_tool(context.tool, input);
 }
 
 } // namespace flyball

@@ -2,13 +2,13 @@
 // the state it began with at every movement.
 #include "app/document/formula_edits.hpp"
 #include "app/session/quantity.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/gizmo_drawing.hpp"
 #include "app/ui/tools/joints_along.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <algorithm>
@@ -109,8 +109,7 @@ void edit_grabbed(Session& session, const ToolState& tool, const std::function<v
   session.gesture = gesture;
 }
 
-void turn_by_gizmo(Session& session, InspectorState& inspector, ToolState& tool, const ViewInput& input,
-                   const Gizmo& gizmo) {
+void turn_by_gizmo(Session& session, ToolState& tool, const ViewInput& input, const Gizmo& gizmo) {
   Grab& grab = *tool.grab;
   const auto turned_by = turned(gizmo, grab.handle, grab.from, input.ray());
   if (turned_by) grab.swept += std::remainder(*turned_by - grab.swept, 2 * std::numbers::pi);
@@ -124,13 +123,12 @@ void turn_by_gizmo(Session& session, InspectorState& inspector, ToolState& tool,
   const Quat rotation(Eigen::AngleAxisd(angle, Vec3::Unit(axis_of(grab.handle))));
   edit_grabbed(session, tool, [&](Mechanism& mechanism) {
     if (angle != 0)
-      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(inspector, input.shift));
+      rotate_parts(mechanism, grab.selection, grab.centre, rotation, joints_of_moved(tool, input.shift));
   });
-  tell_joints(session, inspector, grab.selection, input.shift);
+  tell_joints(session, tool, grab.selection, input.shift);
 }
 
-void move(Session& session, InspectorState& inspector, ToolState& tool, const ViewInput& input,
-          const Gizmo& gizmo) {
+void move(Session& session, ToolState& tool, const ViewInput& input, const Gizmo& gizmo) {
   Grab& grab = *tool.grab;
   const auto by = dragged(gizmo, grab.handle, grab.from, input.ray());
   if (!by) return;
@@ -163,25 +161,25 @@ void move(Session& session, InspectorState& inspector, ToolState& tool, const Vi
   grab.by = moved;
   grab.shift = input.shift;
   edit_grabbed(session, tool, [&](Mechanism& mechanism) {
-    move_grabbed(mechanism, grab, target, joints_of_moved(inspector, input.shift));
+    move_grabbed(mechanism, grab, target, joints_of_moved(tool, input.shift));
     stand_at(mechanism, address_of(mechanism, grab), grab.stands);
   });
-  tell_joints(session, inspector, grab.selection, input.shift);
+  tell_joints(session, tool, grab.selection, input.shift);
 }
 
-void hold(App& app, const ViewInput& input, const Gizmo& gizmo) {
+void hold(const ViewContext& context, const ViewInput& input, const Gizmo& gizmo) {
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app, app.tool);
+    step_back(context.session, context.tool);
     return;
   }
-  if (is_ring(app.tool.grab->handle))
-    turn_by_gizmo(app, app.inspector, app.tool, input, gizmo);
+  if (is_ring(context.tool.grab->handle))
+    turn_by_gizmo(context.session, context.tool, input, gizmo);
   else
-    move(app, app.inspector, app.tool, input, gizmo);
+    move(context.session, context.tool, input, gizmo);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go(app, app.tool, true);
+    let_go(context.session, context.tool, true);
     // Letting go is no click; but a click on a handle means the part behind it, if there is any.
-    app.tool.spent = input.moved || !part_under_cursor(app, input);
+    context.tool.spent = input.moved || !part_under_cursor(context, input);
   }
 }
 
@@ -220,13 +218,14 @@ void let_go(Session& session, ToolState& tool, bool keep) {
   tool.grab.reset();
 }
 
-void use_gizmo(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
-  const bool wanted = app.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
-  const NamedPoint* named = selected_point(app, app.tool);
+void use_gizmo(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
+  const bool wanted =
+      context.session.mode == Mode::build && (tool.tool == Tool::select || tool.tool == Tool::rotate);
+  const NamedPoint* named = selected_point(context.session, context.tool);
   const auto centre = !wanted ? std::nullopt
                       : named ? std::optional(named->at)
-                              : cached_centre(app, app.tool);
+                              : cached_centre(context.session, context.tool);
   const Handle before = std::exchange(tool.hovered, Handle::none);
   if (!centre) {
     tool.hovered_point.reset();
@@ -239,12 +238,12 @@ void use_gizmo(App& app, const ViewInput& input) {
               input.size,
               input.point};
   if (tool.grab) {
-    draw_grabbed(app, app, app.tool, input);
-    draw_ends(app, app, app.tool, input);
+    draw_grabbed(context.session, context.ui, context.tool, input);
+    draw_ends(context.session, context.ui, context.tool, input);
     gizmo.centre = tool.grab->centre;
     gizmo.normal = tool.grab->normal;
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
-    hold(app, input, gizmo);
+    hold(context, input, gizmo);
     return;
   }
   const std::vector<HandleShape> shapes = handle_shapes(gizmo);
@@ -253,17 +252,18 @@ void use_gizmo(App& app, const ViewInput& input) {
   // A click on a handle neither picks nor drops anything behind it.
   if (input.active && !input.pressed && before != Handle::none) tool.hovered = before;
   if (tool.frame) tool.hovered = Handle::none;
-  draw_handles(app, input, shapes, tool.hovered);
-  draw_ends(app, app, app.tool, input);
-  note_handles(app, input, shapes);
+  draw_handles(context.ui, input, shapes, tool.hovered);
+  draw_ends(context.session, context.ui, context.tool, input);
+  note_handles(context.ui, input, shapes);
   if (tool.hovered_point) tool.hovered = Handle::none;
   if (tool.hovered_point || tool.hovered != Handle::none) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (!input.pressed) return;
   if (tool.hovered_point) {
-    gizmo.centre = cached_ends(app, app.tool)[static_cast<std::size_t>(tool.hovered_point->end)];
-    take_hold(app, app.tool, input, gizmo, Handle::plane, tool.hovered_point);
+    gizmo.centre =
+        cached_ends(context.session, context.tool)[static_cast<std::size_t>(tool.hovered_point->end)];
+    take_hold(context.session, context.tool, input, gizmo, Handle::plane, tool.hovered_point);
   } else if (tool.hovered != Handle::none) {
-    take_hold(app, app.tool, input, gizmo, tool.hovered, std::nullopt);
+    take_hold(context.session, context.tool, input, gizmo, tool.hovered, std::nullopt);
   }
 }
 

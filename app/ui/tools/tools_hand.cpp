@@ -1,8 +1,10 @@
 #include "app/ui/tools/tools_hand.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +38,14 @@ void ask_held(Session& session, std::shared_ptr<const Mechanism> mechanism,
                                                       .grip = std::move(grip)});
 }
 
-std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input) {
-  const SceneList& scene = shown_scene(app)->solid;
+std::optional<HandHit> body_under_cursor(const ViewContext& context, const ViewInput& input) {
+  const SceneList& scene = shown_scene(context)->solid;
   // Bodies come first in the list. A joint's sign in front of one does not hide it.
   const auto last = std::ranges::find_if_not(scene.instances,
                                              [](const Instance& i) { return i.part.kind == PartKind::body; });
   const auto hit = pick(std::span(scene.instances.begin(), last), input.ray(), 4 * input.point);
   if (!hit) return {};
-  return HandHit{part_of(*shown_mechanism(app, app.tool), hit->part).name, hit->point};
+  return HandHit{part_of(*shown_mechanism(context.session, context.tool), hit->part).name, hit->point};
 }
 
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
@@ -55,43 +57,45 @@ std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray) {
   return ray.origin + way * ray.direction;
 }
 
-bool use_hand(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
-  follow_pull(app, app.tool);
-  follow_reach(app, app.tool);
-  if (tool.assembly && app.mode != Mode::build) let_go_assembly(app, app.tool, true);
-  if (tool.pull && app.mode != Mode::explore) let_go_pull(app, app.tool, true);
-  if (tool.reach && app.mode != Mode::explore) let_go_reach(app, app.tool, true);
-  if (!holds(app.tool)) {
-    if (!is_hand(app.tool, input) || tool.grab || tool.frame || tool.spent || !input.hovered) return false;
+bool use_hand(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
+  follow_pull(context.session, context.tool);
+  follow_reach(context.session, context.tool);
+  if (tool.assembly && context.session.mode != Mode::build)
+    let_go_assembly(context.session, context.tool, true);
+  if (tool.pull && context.session.mode != Mode::explore) let_go_pull(context.session, context.tool, true);
+  if (tool.reach && context.session.mode != Mode::explore) let_go_reach(context.session, context.tool, true);
+  if (!holds(context.tool)) {
+    if (!is_hand(context.tool, input) || tool.grab || tool.frame || tool.spent || !input.hovered)
+      return false;
     if (!input.pressed) {
-      if (!input.active && app.view.hovered.kind == PartKind::body)
+      if (!input.active && context.view.hovered.kind == PartKind::body)
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
       return false;
     }
-    const auto hit = body_under_cursor(app, input);
+    const auto hit = body_under_cursor(context, input);
     if (!hit) return false;
-    if (app.mode == Mode::build)
-      take_assembly(app, app.tool, input, *hit);
+    if (context.session.mode == Mode::build)
+      take_assembly(context.session, context.tool, input, *hit);
     else if (input.shift)
-      take_reach(app, app.tool, input, *hit);
+      take_reach(context.session, context.tool, input, *hit);
     else
-      take_pull(app, app.tool, input, *hit);
-    return holds(app.tool);
+      take_pull(context.session, context.tool, input, *hit);
+    return holds(context.tool);
   }
   ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-    step_back(app, app.tool);
+    step_back(context.session, context.tool);
     return true;
   }
   if (tool.assembly)
-    hold_assembly(app, app, app.tool, input);
+    hold_assembly(context.session, context.ui, context.tool, input);
   else if (tool.reach)
-    hold_reach(app, app, app.tool, input);
+    hold_reach(context.session, context.ui, context.tool, input);
   else
-    hold_pull(app, app, app.tool, input);
+    hold_pull(context.session, context.ui, context.tool, input);
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
-    let_go_hand(app, app.tool, true);
+    let_go_hand(context.session, context.tool, true);
     tool.spent = input.moved; // letting go is no click, but a click selects
     return input.moved;
   }

@@ -11,7 +11,7 @@
 namespace flyball {
 
 // Before the other tools. Whether the hand has hold of something, so that the button is not theirs.
-bool use_hand(App& app, const ViewInput& input);
+bool use_hand(const ViewContext& context, const ViewInput& input);
 // Lets go of what it has hold of; `keep`: otherwise everything is where it was. False where it had nothing.
 bool let_go_hand(Session& session, ToolState& tool, bool keep);
 // What to do next while it has hold of something, in a line; else empty.
@@ -22,7 +22,7 @@ struct HandHit {
   std::string body;
   Vec3 point = Vec3::Zero(); // m, world
 };
-std::optional<HandHit> body_under_cursor(App& app, const ViewInput& input);
+std::optional<HandHit> body_under_cursor(const ViewContext& context, const ViewInput& input);
 // Where the cursor is on the plane; nothing where one looks along it.
 std::optional<Vec3> on_plane(const HandPlane& plane, const Ray& ray);
 

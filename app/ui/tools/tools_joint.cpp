@@ -1,11 +1,11 @@
 // Joining two bodies, by a joint or a bearing: a click says where, the card beside the point how.
-#include "app/ui/app.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/snapping.hpp"
 
@@ -23,19 +23,19 @@ void show_bodies(Session& session, const ToolState& tool) {
   select(session, std::move(selection));
 }
 
-void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
-  const JointDraft former = app.tool.joint.value_or(JointDraft()); // whose point is moved
-  const bool bearing = app.tool.tool == Tool::bearing;
+void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& aim) {
+  const JointDraft former = context.tool.joint.value_or(JointDraft()); // whose point is moved
+  const bool bearing = context.tool.tool == Tool::bearing;
   JointDraft draft;
-  draft.before = app.tool.joint ? former.before : app.selection();
+  draft.before = context.tool.joint ? former.before : context.session.selection();
   draft.card_height = former.card_height;
   const double reach = snap_reach * input.point * input.metres_per_pixel();
   draft.at = aim.point;
   draft.named = aim.named;
-  draft.guessed =
-      guess_bodies(app.mechanism(), cached_scene(app).instances, draft.before, draft.at, reach, bearing);
+  draft.guessed = guess_bodies(context.session.mechanism(), cached_scene(context).instances, draft.before,
+                               draft.at, reach, bearing);
   if (draft.guessed[1].empty()) {
-    app.notice = "There is nothing to join yet: place a body first.";
+    context.session.notice = "There is nothing to join yet: place a body first.";
     return;
   }
   draft.bodies_chosen = former.bodies_chosen;
@@ -44,13 +44,14 @@ void begin_joint(App& app, const ViewInput& input, const Aim& aim) {
   if (former.axis_chosen)
     draft.axis = former.axis;
   else
-    draft.axis = bearing ? guess_shaft(app.mechanism(), draft.bodies, aim.plane.normal)
-                         : guess_axis(app.mechanism(), app.tool.joint_type, draft.bodies, aim.plane.normal);
+    draft.axis = bearing ? guess_shaft(context.session.mechanism(), draft.bodies, aim.plane.normal)
+                         : guess_axis(context.session.mechanism(), context.tool.joint_type, draft.bodies,
+                                      aim.plane.normal);
   draft.axis2_chosen = former.axis2_chosen && draft.axis.cross(former.axis2).norm() > 1e-6;
   draft.axis2 = draft.axis2_chosen ? former.axis2 : axis_across(draft.axis);
-  app.tool.joint = std::move(draft);
-  app.tool.last_point = aim.point;
-  show_bodies(app, app.tool);
+  context.tool.joint = std::move(draft);
+  context.tool.last_point = aim.point;
+  show_bodies(context.session, context.tool);
 }
 
 void pick_axis(Session& session, ToolState& tool, const Aim& aim) {
@@ -103,23 +104,23 @@ void draw_draft(const Ui& ui, const ToolState& tool, const ViewInput& input) {
 
 } // namespace
 
-void use_joining(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
-  if (tool.joint) draw_draft(app, app.tool, input);
+void use_joining(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
+  if (tool.joint) draw_draft(context.ui, context.tool, input);
   if (!input.hovered) return;
-  const Aim aim = aim_at(app, input);
+  const Aim aim = aim_at(context, input);
   const bool picking = tool.joint && tool.joint->picking_axis;
   if (picking && tool.joint->axis_from) {
     const auto p = input.on_screen(*tool.joint->axis_from), q = input.on_screen(aim.point);
-    if (p && q) draw_line(app, *p, *q, palette(app.theme).accent, 2);
-    if (p) draw_dot(app, *p, 4);
+    if (p && q) draw_line(context.ui, *p, *q, palette(context.ui.theme).accent, 2);
+    if (p) draw_dot(context.ui, *p, 4);
   }
-  if (!tool.joint || picking || input.active) draw_aim(app, app, input, aim);
+  if (!tool.joint || picking || input.active) draw_aim(context.session, context.ui, input, aim);
   if (!input.clicked() || tool.spent) return;
   if (picking)
-    pick_axis(app, app.tool, aim);
+    pick_axis(context.session, context.tool, aim);
   else
-    begin_joint(app, input, aim);
+    begin_joint(context, input, aim);
 }
 
 bool make_joint(Session& session, Ui& ui, ToolState& tool) {

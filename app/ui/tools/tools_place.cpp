@@ -1,11 +1,11 @@
 // Placing balls, blocks and plates: a click takes a size that suits the view, a drag draws it out.
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/typed_size.hpp"
+#include "app/ui/view_context.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <algorithm>
@@ -83,46 +83,46 @@ std::string size_text(const NewBody& body, double step, const DisplayUnits& unit
 
 } // namespace
 
-void use_placing(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
+void use_placing(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
   const BodyForm form = tool.tool == Tool::ball    ? BodyForm::ball
                         : tool.tool == Tool::block ? BodyForm::block
                                                    : BodyForm::plate;
   const bool entered = std::exchange(tool.place_now, false);
   if (!input.hovered && !tool.first) return;
-  const Aim& aim = aim_at(app, input);
+  const Aim& aim = aim_at(context, input);
   const Aim from = tool.first.value_or(aim);
   const bool drawing = tool.first && input.moved;
   NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
   std::string mistake;
   const bool typing = !tool.typed.empty();
-  if (const auto size = typing ? typed_length(tool.typed, app.units, &mistake) : std::nullopt)
+  if (const auto size = typing ? typed_length(tool.typed, context.session.units, &mistake) : std::nullopt)
     take_typed_size(body, *size, from.plane.normal);
-  draw_body_outline(app, input, body);
+  draw_body_outline(context.ui, input, body);
   if (typing)
-    draw_tag(app, input, input.cursor, from.what,
+    draw_tag(context.ui, input, input.cursor, from.what,
              (form == BodyForm::ball ? "radius " : "edge ") +
-                 typed_text(tool.typed, shown_unit("m", app.units).text));
+                 typed_text(tool.typed, shown_unit("m", context.session.units).text));
   else if (drawing)
-    draw_tag(app, input, input.cursor, aim.what, size_text(body, from.step, app.units));
+    draw_tag(context.ui, input, input.cursor, aim.what, size_text(body, from.step, context.session.units));
   else
-    draw_aim(app, app, input, from);
+    draw_aim(context.session, context.ui, input, from);
   if (tool.spent) return;
   if (input.pressed) tool.first = aim;
   if (!entered && (!input.released || !tool.first)) return;
   if (typing && !mistake.empty()) {
-    app.notice = "“" + tool.typed + "” is no size. " + mistake;
+    context.session.notice = "“" + tool.typed + "” is no size. " + mistake;
     tool.first.reset();
     return;
   }
-  edit(app, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
+  edit(context.session, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
     const Part part{PartKind::body, add_body(mechanism, body)};
     stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
     selection.set(part);
   });
   tool.last_point = from.point;
   tool.spent = input.held; // Enter, while the button is down
-  end_tool(app.tool, input);
+  end_tool(context.tool, input);
 }
 
 } // namespace flyball

@@ -1,9 +1,11 @@
 // Pointing at parts, picking them, and framing them.
-#include "app/ui/app.hpp"
 #include "app/ui/panels/view_drawing.hpp"
+#include "app/ui/shown_scene.hpp"
 #include "app/ui/tools/aim.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/box_select.hpp"
 #include "app/viewport/picking.hpp"
@@ -13,44 +15,46 @@
 
 namespace flyball {
 
-std::optional<Hit> part_under_cursor(App& app, const ViewInput& input) {
+std::optional<Hit> part_under_cursor(const ViewContext& context, const ViewInput& input) {
   const double slack = 4 * input.point;
-  return pick(shown_scene(app)->solid.instances, input.ray(), slack);
+  return pick(shown_scene(context)->solid.instances, input.ray(), slack);
 }
 
 namespace {
 
 // Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves, or the
 // picture under it.
-void point_at_parts(App& app, const ViewInput& input) {
+void point_at_parts(const ViewContext& context, const ViewInput& input) {
   const bool steering = input.active && (input.moved || !input.held);
-  const bool handle = app.tool.hovered != Handle::none || app.tool.hovered_point || app.tool.grab ||
-                      !app.tool.hovered_name.empty();
+  const bool handle = context.tool.hovered != Handle::none || context.tool.hovered_point ||
+                      context.tool.grab || !context.tool.hovered_name.empty();
   if ((!input.hovered && !input.released) || steering || handle) {
-    app.view.hovered = {};
-    app.view.pointed_at = Vec2::Constant(-1);
+    context.view.hovered = {};
+    context.view.pointed_at = Vec2::Constant(-1);
     return;
   }
-  ToolCaches& cache = app.tool.caches;
-  const std::shared_ptr<const ViewScene>& scene = app.view.scene.scene;
-  if (input.cursor == app.view.pointed_at && cache.hover_scene == scene && cache.hover_camera == input.camera)
+  ToolCaches& cache = context.tool.caches;
+  const std::shared_ptr<const ViewScene>& scene = context.view.scene.scene;
+  if (input.cursor == context.view.pointed_at && cache.hover_scene == scene &&
+      cache.hover_camera == input.camera)
     return;
-  app.view.pointed_at = input.cursor;
+  context.view.pointed_at = input.cursor;
   cache.hover_scene = scene;
   cache.hover_camera = input.camera;
-  const auto hit = part_under_cursor(app, input);
-  app.view.hovered = hit ? hit->part : PartId{};
+  const auto hit = part_under_cursor(context, input);
+  context.view.hovered = hit ? hit->part : PartId{};
 }
 
 // A tool that attaches something shows to which body it would.
-void point_at_body(App& app, const ViewInput& input) {
-  const Tool tool = app.tool.tool;
+void point_at_body(const ViewContext& context, const ViewInput& input) {
+  const Tool tool = context.tool.tool;
   const bool attaches = tool != Tool::ball && tool != Tool::block && tool != Tool::rod &&
                         tool != Tool::plate && tool != Tool::point;
-  app.view.hovered = {};
-  app.view.pointed_at = Vec2::Constant(-1);
+  context.view.hovered = {};
+  context.view.pointed_at = Vec2::Constant(-1);
   if (attaches && input.hovered)
-    app.view.hovered = find_part(app.mechanism(), {PartKind::body, aim_at(app, input).body});
+    context.view.hovered =
+        find_part(context.session.mechanism(), {PartKind::body, aim_at(context, input).body});
 }
 
 void click_part(Session& session, ToolState& tool, const ViewState& view, const ViewInput& input) {
@@ -65,18 +69,19 @@ void click_part(Session& session, ToolState& tool, const ViewState& view, const 
   select(session, std::move(selection));
 }
 
-void select_framed(App& app, const ViewInput& input) {
-  const Mechanism& mechanism = *shown_mechanism(app, app.tool);
+void select_framed(const ViewContext& context, const ViewInput& input) {
+  const Mechanism& mechanism = *shown_mechanism(context.session, context.tool);
   Selection selection;
-  if (input.shift) selection = app.selection();
+  if (input.shift) selection = context.session.selection();
   std::vector<Part> parts = selection.parts;
-  for (const PartId id : parts_in_frame(part_anchors(mechanism, view_frame(app).poses), input.camera,
-                                        input.size, {*app.tool.frame, input.cursor})) {
+  for (const PartId id : parts_in_frame(
+           part_anchors(mechanism, view_frame(context.session, context.ui, context.tool, context.view).poses),
+           input.camera, input.size, {*context.tool.frame, input.cursor})) {
     Part part = part_of(mechanism, id);
     if (!input.shift || !selection.has(part)) parts.push_back(std::move(part));
   }
   selection.parts = std::move(parts);
-  select(app, std::move(selection));
+  select(context.session, std::move(selection));
 }
 
 void draw_frame(const Ui& ui, const ToolState& tool, const ViewInput& input) {
@@ -90,27 +95,27 @@ void draw_frame(const Ui& ui, const ToolState& tool, const ViewInput& input) {
 
 } // namespace
 
-void use_selecting(App& app, const ViewInput& input) {
-  ToolState& tool = app.tool;
+void use_selecting(const ViewContext& context, const ViewInput& input) {
+  ToolState& tool = context.tool;
   if (places(tool.tool)) {
-    point_at_body(app, input);
+    point_at_body(context, input);
     return;
   }
-  if (tool.frame && input.moved) draw_frame(app, app.tool, input);
-  point_at_parts(app, input);
+  if (tool.frame && input.moved) draw_frame(context.ui, context.tool, input);
+  point_at_parts(context, input);
   if (tool.grab || tool.spent) return;
   const bool handle = tool.hovered != Handle::none || tool.hovered_point;
   if (input.pressed && !handle &&
-      (tool.tool == Tool::box || input.ctrl || (frames_with_left(app.navigation) && !input.alt)))
+      (tool.tool == Tool::box || input.ctrl || (frames_with_left(context.view.navigation) && !input.alt)))
     tool.frame = input.cursor;
   if (!input.released) return;
   if (tool.frame && input.moved) {
-    select_framed(app, input);
+    select_framed(context, input);
     tool.frame.reset();
     if (tool.tool == Tool::box && !input.shift) tool.tool = Tool::select;
   } else if (input.clicked() && !handle) {
     tool.frame.reset();
-    click_part(app, app.tool, app.view, input);
+    click_part(context.session, context.tool, context.view, input);
   }
 }
 

@@ -58,18 +58,18 @@ struct Place {
   fs::path folder;
   std::string filter;
 };
-Place place_of(const FileDialogState& file_dialogs) {
-  const fs::path path = typed_path(file_dialogs);
-  const bool ends_in_folder = file_dialogs.path.ends_with('/') || file_dialogs.path.ends_with("..");
+Place place_of(const FileQuery& query) {
+  const fs::path path = typed_path(query);
+  const bool ends_in_folder = query.path.ends_with('/') || query.path.ends_with("..");
   if (ends_in_folder && is_folder(path)) return {path, {}};
-  const bool elsewhere = file_dialogs.path.find('/') != std::string::npos;
+  const bool elsewhere = query.path.find('/') != std::string::npos;
   if (elsewhere && is_folder(path.parent_path())) return {path.parent_path(), path.filename().string()};
-  return {file_dialogs.list.shown, file_dialogs.path};
+  return {query.list.shown, query.path};
 }
 
-std::vector<FolderEntry> shown_entries(const FileDialogState& file_dialogs, bool filtered) {
-  std::vector<FolderEntry> shown = file_dialogs.list.entries;
-  const std::string filter = filtered ? lower(place_of(file_dialogs).filter) : std::string();
+std::vector<FolderEntry> shown_entries(const FileQuery& query, bool filtered) {
+  std::vector<FolderEntry> shown = query.list.entries;
+  const std::string filter = filtered ? lower(place_of(query).filter) : std::string();
   std::erase_if(shown, [&](const FolderEntry& entry) {
     return lower(entry.path.filename().string()).find(filter) == std::string::npos;
   });
@@ -78,47 +78,46 @@ std::vector<FolderEntry> shown_entries(const FileDialogState& file_dialogs, bool
 
 } // namespace
 
-fs::path typed_path(const FileDialogState& file_dialogs) {
-  std::string typed = file_dialogs.path;
+fs::path typed_path(const FileQuery& query) {
+  std::string typed = query.path;
   if (typed == "~" || typed.starts_with("~/")) typed = home_folder().string() + typed.substr(1);
-  return resolved(file_dialogs.list.shown / typed);
+  return resolved(query.list.shown / typed);
 }
 
-fs::path typed_file(const FileDialogState& file_dialogs, const std::string& extension) {
-  fs::path path = typed_path(file_dialogs);
+fs::path typed_file(const FileQuery& query, const std::string& extension) {
+  fs::path path = typed_path(query);
   if (path.has_filename() && !is_folder(path) && path.extension() != extension) path += extension;
   return path;
 }
 
-void show_folder(FileDialogState& file_dialogs, const fs::path& folder) {
-  file_dialogs.list = {};
-  file_dialogs.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
-  file_dialogs.message.clear();
+void show_folder(FileQuery& query, const fs::path& folder) {
+  query.list = {};
+  query.list.shown = resolved(folder.empty() ? fs::path(".") : folder / ""); // where a link leads
+  query.message.clear();
 }
 
-bool path_field(Ui& ui, FileDialogState& file_dialogs, const std::string& name, const char* hint) {
+bool path_field(Ui& ui, FileQuery& query, const std::string& name, const char* hint) {
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1);
-  const std::string before = file_dialogs.path;
-  const bool entered =
-      ImGui::InputTextWithHint("##path", hint, &file_dialogs.path,
-                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const std::string before = query.path;
+  const bool entered = ImGui::InputTextWithHint(
+      "##path", hint, &query.path, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (entered) ImGui::SetKeyboardFocusHere(-1);
   note_widget(ui.widgets, name + "/path", KeyUse::type);
-  if (file_dialogs.path != before) {
-    file_dialogs.message.clear();
-    file_dialogs.list.chosen = -1;
+  if (query.path != before) {
+    query.message.clear();
+    query.list.chosen = -1;
   }
   return entered;
 }
 
-void folder_line(Ui& ui, FileDialogState& file_dialogs, const std::string& name) {
-  const fs::path folder = place_of(file_dialogs).folder;
+void folder_line(Ui& ui, FileQuery& query, const std::string& name) {
+  const fs::path folder = place_of(query).folder;
   const fs::path here = folder.has_filename() ? folder : folder.parent_path();
   ImGui::BeginDisabled(!here.has_relative_path());
   if (icon_button(ui, name + "/up", icon::folder_up, "The folder above")) {
-    show_folder(file_dialogs, here.parent_path());
-    file_dialogs.path = fs::path(file_dialogs.path).filename().string();
+    show_folder(query, here.parent_path());
+    query.path = fs::path(query.path).filename().string();
   }
   ImGui::EndDisabled();
   ImGui::SameLine();
@@ -128,15 +127,15 @@ void folder_line(Ui& ui, FileDialogState& file_dialogs, const std::string& name)
   ImGui::PopStyleColor();
 }
 
-std::optional<fs::path> file_list(Ui& ui, FileDialogState& file_dialogs, const std::string& name,
+std::optional<fs::path> file_list(Ui& ui, FileQuery& query, const std::string& name,
                                   const std::string& extension, bool filtered, float height) {
-  FolderList& list = file_dialogs.list;
-  const fs::path folder = place_of(file_dialogs).folder;
+  FolderList& list = query.list;
+  const fs::path folder = place_of(query).folder;
   if (ImGui::IsWindowAppearing() || list.read != folder) {
     list.entries = entries_of(folder, extension);
     list.read = folder;
   }
-  const std::vector<FolderEntry> shown = shown_entries(file_dialogs, filtered);
+  const std::vector<FolderEntry> shown = shown_entries(query, filtered);
   const int count = static_cast<int>(shown.size());
   bool moved = false;
   if (filtered && count > 0) {
@@ -154,7 +153,7 @@ std::optional<fs::path> file_list(Ui& ui, FileDialogState& file_dialogs, const s
     const FolderEntry& entry = shown[static_cast<std::size_t>(i)];
     const std::string file = entry.path.filename().string();
     const std::string text = std::string(entry.folder ? icon::folder : icon::file) + "  " + file;
-    const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(file_dialogs);
+    const bool chosen = filtered ? i == list.chosen : entry.path == typed_path(query);
     if (ImGui::Selectable(text.c_str(), chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = entry.path;
     if (chosen && moved) ImGui::SetScrollHereY();
     note_widget(ui.widgets, name + "/" + file, KeyUse::row);
@@ -165,40 +164,39 @@ std::optional<fs::path> file_list(Ui& ui, FileDialogState& file_dialogs, const s
   ImGui::EndChild();
   ImGui::PopStyleColor();
   if (!clicked || !is_folder(*clicked)) return clicked;
-  const std::string kept = filtered ? std::string() : fs::path(file_dialogs.path).filename().string();
-  show_folder(file_dialogs, *clicked);
-  file_dialogs.path = kept;
+  const std::string kept = filtered ? std::string() : fs::path(query.path).filename().string();
+  show_folder(query, *clicked);
+  query.path = kept;
   return std::nullopt;
 }
 
-std::optional<fs::path> entered_file(FileDialogState& file_dialogs, bool filtered) {
-  const std::vector<FolderEntry> shown = shown_entries(file_dialogs, filtered);
-  const auto chosen = static_cast<std::size_t>(std::max(file_dialogs.list.chosen, 0));
+std::optional<fs::path> entered_file(FileQuery& query, bool filtered) {
+  const std::vector<FolderEntry> shown = shown_entries(query, filtered);
+  const auto chosen = static_cast<std::size_t>(std::max(query.list.chosen, 0));
   std::error_code ignored;
-  fs::path path = typed_path(file_dialogs);
-  if (filtered && file_dialogs.list.chosen >= 0 && chosen < shown.size())
+  fs::path path = typed_path(query);
+  if (filtered && query.list.chosen >= 0 && chosen < shown.size())
     path = shown[chosen].path;
-  else if (file_dialogs.path.empty())
+  else if (query.path.empty())
     return std::nullopt;
   else if (filtered && !fs::exists(path, ignored) && !shown.empty())
     path = shown.front().path;
   if (!is_folder(path)) return path;
-  show_folder(file_dialogs, path);
-  file_dialogs.path.clear();
+  show_folder(query, path);
+  query.path.clear();
   return std::nullopt;
 }
 
-bool asks_to_replace(const Ui& ui, const FileDialogState& file_dialogs, const std::filesystem::path& file) {
-  const bool asks = file == file_dialogs.replacing;
+bool asks_to_replace(const Ui& ui, const FileQuery& query, const std::filesystem::path& file) {
+  const bool asks = file == query.replacing;
   if (asks) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(ui).warn);
   return asks;
 }
 
-bool may_replace(const Session& session, FileDialogState& file_dialogs, const fs::path& file) {
+bool may_replace(const Session& session, FileQuery& query, const fs::path& file) {
   std::error_code ignored;
-  if (!fs::exists(file, ignored) || file == file_dialogs.replacing || file == session.document.file())
-    return true;
-  file_dialogs.replacing = file;
+  if (!fs::exists(file, ignored) || file == query.replacing || file == session.document.file()) return true;
+  query.replacing = file;
   return false;
 }
 

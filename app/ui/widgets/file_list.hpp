@@ -1,7 +1,7 @@
 // What dialogs that open and save share: a field for a name or path, and the folder's entries to choose from.
 #pragma once
 
-#include "app/ui/file_dialog_state.hpp"
+#include "app/ui/widgets/file_query.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -13,32 +13,32 @@ struct Session;
 struct Ui;
 
 // What was typed, as a path: from the home folder after "~", otherwise from the folder that is shown.
-std::filesystem::path typed_path(const FileDialogState& file_dialogs);
+std::filesystem::path typed_path(const FileQuery& query);
 // The same with an extension, unless it is a folder or has it.
-std::filesystem::path typed_file(const FileDialogState& file_dialogs, const std::string& extension);
+std::filesystem::path typed_file(const FileQuery& query, const std::string& extension);
 
 // Shows a folder next, from its beginning.
-void show_folder(FileDialogState& file_dialogs, const std::filesystem::path& folder);
+void show_folder(FileQuery& query, const std::filesystem::path& folder);
 // The field; returns whether Enter was pressed in it. It has the keyboard when the dialog appears and after
 // Enter.
-bool path_field(Ui& ui, FileDialogState& file_dialogs, const std::string& name, const char* hint);
+bool path_field(Ui& ui, FileQuery& query, const std::string& name, const char* hint);
 // Where the dialog looks, and a way up.
-void folder_line(Ui& ui, FileDialogState& file_dialogs, const std::string& name);
+void folder_line(Ui& ui, FileQuery& query, const std::string& name);
 
 // The folders and files of the extension. `filtered`: those that what was typed is part of, and the arrow
 // keys choose among them; otherwise all. A folder that is clicked is shown next; returns the file that was
 // clicked.
-std::optional<std::filesystem::path> file_list(Ui& ui, FileDialogState& file_dialogs, const std::string& name,
+std::optional<std::filesystem::path> file_list(Ui& ui, FileQuery& query, const std::string& name,
                                                const std::string& extension, bool filtered, float height);
 // What Enter means: the entry that the arrow keys have chosen, else what was typed, else the first of the
 // filtered ones. A folder is shown next; returns a file.
-std::optional<std::filesystem::path> entered_file(FileDialogState& file_dialogs, bool filtered);
+std::optional<std::filesystem::path> entered_file(FileQuery& query, bool filtered);
 
 // Whether writing there may go ahead: nothing is there, or it is the document's own file, or the person was
 // told so and pressed again.
-bool may_replace(const Session& session, FileDialogState& file_dialogs, const std::filesystem::path& file);
+bool may_replace(const Session& session, FileQuery& query, const std::filesystem::path& file);
 // Asks whether to replace the file where the person was just kept from it. Whether it does.
-bool asks_to_replace(const Ui& ui, const FileDialogState& file_dialogs, const std::filesystem::path& file);
+bool asks_to_replace(const Ui& ui, const FileQuery& query, const std::filesystem::path& file);
 
 // Where a file that has no place yet may be put: what was used lately, the current folder, the home folder.
 std::filesystem::path usual_folder(const Session& session);

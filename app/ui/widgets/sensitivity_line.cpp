@@ -47,9 +47,9 @@ bool has_rates(const Session& session) {
   return converged(session) && (!solving(session) || session.waited <= answer_patience);
 }
 
-const std::vector<ShownRate>& kept_rates(const Session& session, PanelState& panels,
+const std::vector<ShownRate>& kept_rates(const Session& session, ShownRates& all,
                                          const ParameterControl& control) {
-  KeptRates& kept = panels.rates[control.address];
+  KeptRates& kept = all[control.address];
   if (kept.ticket != session.answer.ticket || kept.value != control.value || kept.from != control.from ||
       kept.to != control.to || kept.units != session.units)
     kept = {session.answer.ticket, control.value,
@@ -100,12 +100,12 @@ float sensitivity_height(const Ui& ui) {
   return std::round(small_text * ui.fonts.text->FontSize);
 }
 
-void sensitivity_line(const Session& session, Ui& ui, PanelState& panels, const ParameterControl& control) {
+void sensitivity_line(const Session& session, Ui& ui, ShownRates& all, const ParameterControl& control) {
   const float width = ImGui::GetContentRegionAvail().x, height = sensitivity_height(ui);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({std::max(width, 1.f), height});
   if (!has_rates(session)) return;
-  const std::vector<ShownRate>& rates = kept_rates(session, panels, control);
+  const std::vector<ShownRate>& rates = kept_rates(session, all, control);
   if (rates.empty()) return;
   const std::string name = "parameters/" + control.address + "/rate";
   note_widget(ui.widgets, name);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "app/session/session.hpp"
-#include "app/ui/panel_state.hpp"
 #include "app/ui/ui.hpp"
 #include "app/ui/widgets/shown_rate.hpp"
 
@@ -15,6 +14,6 @@ std::vector<ShownRate> shown_rates(const Session& session, const std::string& ad
 
 // Pixels; the same whether or not there is anything to tell, so that nothing jumps.
 float sensitivity_height(const Ui& ui);
-void sensitivity_line(const Session& session, Ui& ui, PanelState& panels, const ParameterControl& control);
+void sensitivity_line(const Session& session, Ui& ui, ShownRates& all, const ParameterControl& control);
 
 } // namespace flyball

@@ -4,6 +4,7 @@
 #include "app/session/units.hpp"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,5 +25,6 @@ struct KeptRates {
   DisplayUnits units;
   std::vector<ShownRate> rates;
 };
+using ShownRates = std::map<std::string, KeptRates>; // by the slider's address
 
 } // namespace flyball

@@ -1,6 +1,5 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
 #include "app/plot/comparison_plot.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
@@ -95,23 +94,24 @@ void words(Session& session, Ui& ui) {
 
 } // namespace
 
-void compare_panel(App& app) {
-  const float s = app.scale;
+void compare_panel(Session& session, Ui& ui, CompareView& drawn) {
+  const float s = ui.scale;
   ImGui::BeginChild("words", {words_width * s, 0});
-  words(app, app);
+  words(session, ui);
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (const auto& measured = app.study.compare.measured.found) {
-    CompareView& drawn = app.plots.compare;
-    if (drawn.of != measured || drawn.shown != app.study.compare.shown) {
+  if (const auto& measured = session.study.compare.measured.found) {
+    if (drawn.of != measured || drawn.shown != session.study.compare.shown) {
       drawn.of = measured;
-      drawn.shown = app.study.compare.shown;
-      replace_plot(drawn.plot, comparison_plot("", measured->result, shown_measure(app, measured->result)));
+      drawn.shown = session.study.compare.shown;
+      replace_plot(drawn.plot,
+                   comparison_plot("", measured->result, shown_measure(session, measured->result)));
       fit_plot(drawn.view);
     }
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    plot_view(app, "compare", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+    plot_view(session, ui, "compare", drawn.view, drawn.plot,
+              {std::max(room.x, 40.f), std::max(room.y, 40.f)});
   }
   ImGui::EndChild();
 }

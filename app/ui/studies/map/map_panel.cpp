@@ -1,5 +1,4 @@
 // The map of two parameters: what is wanted of it, and the plot.
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/map/map_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -180,25 +179,26 @@ void map_choices(Session& session, Ui& ui, MapView& drawn) {
 
 } // namespace
 
-void map_panel(App& app) {
-  const float s = app.scale;
-  MapState& map = app.study.map;
-  MapView& drawn = app.plots.map;
-  map_choices(app, app, drawn);
+void map_panel(Session& session, Ui& ui, MapView& drawn) {
+  const float s = ui.scale;
+  MapState& map = session.study.map;
+  map_choices(session, ui, drawn);
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   if (map.cells.found) {
-    draw_map(app, drawn);
+    draw_map(session, drawn);
     const PlotEvents events = plot_view(
-        app, "map", drawn.view, drawn.plot,
+        session, ui, "map", drawn.view, drawn.plot,
         {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
     // What is shown may be of other numbers than are chosen by now.
     const std::array<MapAxis, 2>& axes = map.cells.found->of.choice.axes;
     const bool same =
         axes[0].address == map.choice.axes[0].address && axes[1].address == map.choice.axes[1].address;
     if (const auto place = events.dragged_at ? events.dragged_at : events.clicked_at; place && same)
-      later(app, [&app, place = std::array{(*place)[0] / drawn.plot.x.factor,
-                                           (*place)[1] / drawn.plot.y.factor}] { go_to_place(app, place); });
+      later(ui, [&session,
+                 place = std::array{(*place)[0] / drawn.plot.x.factor, (*place)[1] / drawn.plot.y.factor}] {
+        go_to_place(session, place);
+      });
   }
   ImGui::EndChild();
 }

@@ -1,8 +1,7 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/modes/campbell_plot.hpp"
@@ -170,10 +169,10 @@ std::string speed_words(const VibrationMode& mode) {
   return "Shown " + short_text(1 / *slower, 3) + " times faster than it is.";
 }
 
-void transport(App& app) {
-  ModesState& modes = app.study.modes;
-  const UiColors& colors = colors_of(app);
-  const VibrationMode* mode = moving_mode(app);
+void transport(Session& session, Ui& ui, const CommandRunner& commands) {
+  ModesState& modes = session.study.modes;
+  const UiColors& colors = colors_of(ui);
+  const VibrationMode* mode = moving_mode(session);
   if (!mode) {
     ImGui::AlignTextToFramePadding();
     paragraph(modes.list.found && modes.list.found->result.modes.empty() ? ""
@@ -181,56 +180,57 @@ void transport(App& app) {
               colors.dim);
     return;
   }
-  if (icon_button(app, "modes/play", modes.playing ? icon::pause : icon::play,
+  if (icon_button(ui, "modes/play", modes.playing ? icon::pause : icon::play,
                   modes.playing ? "Pause (Space)" : "Play (Space)", modes.playing))
     modes.playing = !modes.playing;
   ImGui::SameLine();
-  if (icon_button(app, "modes/export", icon::save, "Export as MP4, GIF or numbered pictures…"))
-    show_mode_movie_dialog(app);
+  if (icon_button(ui, "modes/export", icon::save, "Export as MP4, GIF or numbered pictures…"))
+    commands.run("study.export_mode");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(110 * app.scale);
+  ImGui::SetNextItemWidth(110 * ui.scale);
   constexpr double least = 0.01, most = 0.6;
-  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + app.scale);
+  ImGui::SetCursorPosY(ImGui::GetCursorPosY() + ui.scale);
   ImGui::SliderScalar("##amplitude", ImGuiDataType_Double, &modes.amplitude, &least, &most, "");
-  note_widget(app.widgets, "modes/amplitude", KeyUse::slide);
-  nudge_value(app, "modes/amplitude", modes.amplitude, least, most);
+  note_widget(ui.widgets, "modes/amplitude", KeyUse::slide);
+  nudge_value(ui, "modes/amplitude", modes.amplitude, least, most);
   help_on_hover("How far it is shown swinging; the linearised motion is for small swings.");
   ImGui::SameLine();
   ImGui::BeginGroup();
-  clipped_text(largest_movement(app, *mode), ImGui::GetContentRegionAvail().x);
+  clipped_text(largest_movement(session, *mode), ImGui::GetContentRegionAvail().x);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
   clipped_text(speed_words(*mode), ImGui::GetContentRegionAvail().x);
   ImGui::PopStyleColor();
   ImGui::EndGroup();
-  note_widget(app.widgets, "modes/speed");
+  note_widget(ui.widgets, "modes/speed");
 }
 
-void modes_list(App& app) {
-  ModesState& modes = app.study.modes;
-  const UiColors& colors = colors_of(app);
+void modes_list(Session& session, Ui& ui, const CommandRunner& commands) {
+  ModesState& modes = session.study.modes;
+  const UiColors& colors = colors_of(ui);
   auto& search = modes.list;
   if (!search.problem.empty()) return paragraph(search.problem, colors.bad);
-  if (!converged(app)) return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
+  if (!converged(session))
+    return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
   const bool finding = search.running();
   if (finding && (!search.found || search.seconds() > modes_patience)) {
-    if (text_button(app, "modes/cancel", "Cancel")) search.stop();
+    if (text_button(ui, "modes/cancel", "Cancel")) search.stop();
     ImGui::SameLine();
-    task_bar(app, "modes/progress", search.progress(), search.seconds());
+    task_bar(ui, "modes/progress", search.progress(), search.seconds());
   }
   if (!search.found) return;
   const FoundModes& found = search.found->result;
-  if (!modes_are_current(app) && !finding) {
+  if (!modes_are_current(session) && !finding) {
     paragraph("Of the state before the last changes.", colors.warn);
-    if (text_button(app, "modes/again", "Find again", true)) find_modes_again(app);
+    if (text_button(ui, "modes/again", "Find again", true)) find_modes_again(session);
   }
-  verdict(app, app, found);
+  verdict(session, ui, found);
   if (found.modes.empty())
     return paragraph(found.singular_loops ? std::string(singular_loops_message)
                                           : "No coordinate is free to swing.",
                      colors.dim);
-  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * app.scale;
-  list(app, app, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * app.scale));
-  transport(app);
+  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * ui.scale;
+  list(session, ui, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
+  transport(session, ui, commands);
 }
 
 // Drive, range and unit, in one line.
@@ -303,32 +303,32 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   }
 }
 
-void show_campbell(App& app) {
-  CampbellState& campbell = app.study.modes.campbell;
-  const UiColors& colors = colors_of(app);
-  const std::string drive = campbell_drive(app);
+void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
+  CampbellState& campbell = session.study.modes.campbell;
+  const UiColors& colors = colors_of(ui);
+  const std::string drive = campbell_drive(session);
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
-  campbell_choices(app, app, app.plots.campbell, drive);
+  campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
   if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
   if (!diagram.found) return;
-  draw_campbell(app, app.plots.campbell);
-  if (const std::string& words = app.plots.campbell.critical; !words.empty()) {
+  draw_campbell(session, drawn);
+  if (const std::string& words = drawn.critical; !words.empty()) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
-    note_widget(app.widgets, "campbell/critical");
+    note_widget(ui.widgets, "campbell/critical");
   }
-  if (const std::string without = left_out(diagram.found->result, parameter_unit(app.mechanism(), drive));
+  if (const std::string without = left_out(diagram.found->result, parameter_unit(session.mechanism(), drive));
       !without.empty())
     paragraph(without, colors.dim);
-  if (!campbell.on_branch && converged(app) && !solving(app) && !diagram.running())
+  if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(
-      app, "campbell", app.plots.campbell.view, app.plots.campbell.plot,
+      session, ui, "campbell", drawn.view, drawn.plot,
       {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
   const auto set = [&](double speed) {
-    later(app, [&app, drive, speed] { change_parameter(app, drive, speed); });
+    later(ui, [&session, drive, speed] { change_parameter(session, drive, speed); });
   };
   if (diagram.found->of.drive != drive) return;
   if (events.clicked_at) set((*events.clicked_at)[0]);
@@ -337,18 +337,18 @@ void show_campbell(App& app) {
 
 } // namespace
 
-void modes_panel(App& app) {
-  const float s = app.scale;
+void modes_panel(Session& session, Ui& ui, CampbellView& drawn, const CommandRunner& commands) {
+  const float s = ui.scale;
   const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
   ImGui::BeginChild("modes", {width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
-  modes_list(app);
+  modes_list(session, ui, commands);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("campbell", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  show_campbell(app);
+  show_campbell(session, ui, drawn);
   ImGui::EndChild();
 }
 

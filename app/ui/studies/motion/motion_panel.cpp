@@ -1,7 +1,6 @@
 // The motion's choices, its transport and its plots.
 #include "app/render/icons.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
@@ -189,23 +188,23 @@ void run_settings(Session& session, Ui& ui) {
   accuracy(session, ui);
 }
 
-void motion_choices(App& app) {
-  const bool computing = computing_motion(app);
-  if (text_button(app, "motion/run", computing ? "Restart" : "Run again", true)) anew(app, app);
+void motion_choices(Session& session, Ui& ui, const CommandRunner& commands) {
+  const bool computing = computing_motion(session);
+  if (text_button(ui, "motion/run", computing ? "Restart" : "Run again", true)) anew(session, ui);
   if (computing) {
     ImGui::SameLine();
-    if (text_button(app, "motion/stop", "Stop")) stop_motion(app);
+    if (text_button(ui, "motion/stop", "Stop")) stop_motion(session);
     ImGui::SameLine();
-    progress_bar(app, app);
-  } else if (shown_motion(app)) {
+    progress_bar(session, ui);
+  } else if (shown_motion(session)) {
     ImGui::SameLine();
-    if (text_button(app, "motion/keep", "Keep state")) keep_motion_state(app);
+    if (text_button(ui, "motion/keep", "Keep state")) keep_motion_state(session);
     help_on_hover("Keeps the state that is shown, to start from.");
     ImGui::SameLine();
-    if (text_button(app, "motion/export", "Export…")) show_movie_dialog(app);
+    if (text_button(ui, "motion/export", "Export…")) commands.run("study.export");
     help_on_hover("Saves the run as MP4, GIF or numbered pictures.");
   }
-  run_settings(app, app);
+  run_settings(session, ui);
 }
 
 // The combo above a plot.
@@ -261,20 +260,19 @@ std::string first_shown(const std::vector<MotionQuantity>& all, std::size_t plot
   return chosen < all.size() ? all[chosen].key : "";
 }
 
-void plots(App& app) {
-  const MotionRun* shown = shown_motion(app);
+void draw_plots(Session& session, Ui& ui, std::array<MotionPlot, 2>& shown_plots) {
+  const MotionRun* shown = shown_motion(session);
   if (!shown) {
-    paragraph(computing_motion(app) ? "Computing…" : "No motion.", colors_of(app).dim);
+    paragraph(computing_motion(session) ? "Computing…" : "No motion.", colors_of(ui).dim);
     return;
   }
   const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
-  auto& shown_plots = app.plots.motion;
   for (std::size_t i = 0; i < shown_plots.size(); ++i) {
     const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
     if (!known) shown_plots[i].quantity = first_shown(all, i);
   }
-  const float gap = 10 * app.scale, whole = ImGui::GetContentRegionAvail().x;
-  const bool narrow = whole < 520 * app.scale;
+  const float gap = 10 * ui.scale, whole = ImGui::GetContentRegionAvail().x;
+  const bool narrow = whole < 520 * ui.scale;
   const std::size_t count = narrow ? 1 : shown_plots.size();
   const float width = std::floor((whole - gap * static_cast<float>(count - 1)) / static_cast<float>(count));
   for (std::size_t i = 0; i < count; ++i) {
@@ -282,21 +280,21 @@ void plots(App& app) {
     if (i > 0) ImGui::SameLine(0, gap);
     ImGui::BeginGroup();
     const std::string name = "motion/plot" + std::to_string(i + 1);
-    quantity_choice(app, each, all, name, width);
+    quantity_choice(ui, each, all, name, width);
     const auto run = [&](std::size_t k) {
-      return app.motion.runs[k].wanted ? app.motion.runs[k].run : nullptr;
+      return session.motion.runs[k].wanted ? session.motion.runs[k].run : nullptr;
     };
-    const MotionPlot::Of of{{run(0), run(1)}, each.quantity, app.answer.ticket, app.units};
+    const MotionPlot::Of of{{run(0), run(1)}, each.quantity, session.answer.ticket, session.units};
     if (each.of != of) {
       each.of = of;
-      replace_plot(each.plot, motion_plot(app, each.quantity));
+      replace_plot(each.plot, motion_plot(session, each.quantity));
     }
-    each.plot.marker = play_head(app, each.plot, each.view.look);
-    const PlotEvents events =
-        plot_view(app, name, each.view, each.plot, {width, std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+    each.plot.marker = play_head(session, each.plot, each.view.look);
+    const PlotEvents events = plot_view(session, ui, name, each.view, each.plot,
+                                        {width, std::max(ImGui::GetContentRegionAvail().y, 40.f)});
     if (events.dragged_to) {
-      app.playback.playing = false;
-      seek_motion(app, events.dragged_to->x);
+      session.playback.playing = false;
+      seek_motion(session, events.dragged_to->x);
     }
     ImGui::EndGroup();
   }
@@ -347,20 +345,20 @@ void motion_transport(Session& session, Ui& ui, float width) {
   ImGui::EndDisabled();
 }
 
-void motion_panel(App& app) {
-  const float s = app.scale;
+void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands) {
+  const float s = ui.scale;
   ImGui::BeginChild("choices", {motion_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  motion_choices(app);
+  motion_choices(session, ui, commands);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plots", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  if (app.motion.on) {
-    plots(app);
+  if (session.motion.on) {
+    draw_plots(session, ui, plots);
   } else {
-    paragraph("Run again shows the motion.", colors_of(app).dim);
+    paragraph("Run again shows the motion.", colors_of(ui).dim);
   }
   ImGui::EndChild();
 }

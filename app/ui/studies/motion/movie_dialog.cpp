@@ -1,8 +1,7 @@
-// What a film of the run or of a mode is to be, and how far it is.
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/studies/motion/movie_dialog.hpp"
+
+#include "app/session/session.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
-#include "app/ui/panels.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/file_list.hpp"
@@ -33,14 +32,10 @@ struct Ending {
 constexpr std::array endings{Ending{"movie/mp4", "MP4", ".mp4"}, Ending{"movie/gif", "GIF", ".gif"},
                              Ending{"movie/png", "Numbered PNG", ".png"}};
 
-MovieRequest request_of(const Session& session, const FileDialogState& file_dialogs,
-                        const MovieState& movie) {
+MovieRequest request_of(const Session& session, const FileQuery& query, const MovieState& movie) {
 
-  MovieRequest request{movie.of,    typed_path(file_dialogs),
-                       movie.width, movie.height,
-                       movie.rate,  movie.factor,
-                       movie.from,  movie.to,
-                       movie.swings};
+  MovieRequest request{movie.of,     typed_path(query), movie.width, movie.height, movie.rate,
+                       movie.factor, movie.from,        movie.to,    movie.swings};
   if (const MotionRun* shown = shown_motion(session); shown && movie.whole) {
     request.from = shown->run->time.front();
     request.to = shown->run->time.back();
@@ -55,8 +50,8 @@ std::filesystem::path first_file(const std::filesystem::path& file, std::size_t 
 
 // Buttons that change the name's ending. Those that need ffmpeg are there without it, too, as it can be
 // installed.
-void ending_buttons(Ui& ui, FileDialogState& file_dialogs) {
-  const std::filesystem::path file = typed_path(file_dialogs);
+void ending_buttons(Ui& ui, FileQuery& query) {
+  const std::filesystem::path file = typed_path(query);
   const bool able = ffmpeg_available();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("As");
@@ -66,9 +61,9 @@ void ending_buttons(Ui& ui, FileDialogState& file_dialogs) {
     const bool possible = able || movie_kind("film" + std::string(each.ending)) == MovieKind::frames;
     ImGui::BeginDisabled(!possible);
     if (text_button(ui, each.name, each.text, now)) {
-      std::filesystem::path typed = file_dialogs.path;
+      std::filesystem::path typed = query.path;
       if (movie_kind(typed)) typed.replace_extension();
-      file_dialogs.path = typed.string() + each.ending;
+      query.path = typed.string() + each.ending;
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
@@ -144,86 +139,76 @@ void progress(Ui& ui, MovieState& movie, const MovieState::Progress& at) {
   if (text_button(ui, "movie/cancel", "Cancel") || escape_pressed()) movie.cancel = true;
 }
 
-void choices(App& app) {
-  MovieState& movie = app.movie;
-  bool accepted = path_field(app, app.file_dialogs, "movie", "Name");
-  ending_buttons(app, app.file_dialogs);
-  size_fields(app, "movie", movie_sizes, fields_column, movie.width, movie.height);
-  plain_quantity_field(app, app, "movie/rate", "Frames a second", "",
+} // namespace
+
+void MovieDialog::choices(Session& session, Ui& ui, MovieState& movie) {
+  bool accepted = path_field(ui, query_, "movie", "Name");
+  ending_buttons(ui, query_);
+  size_fields(ui, "movie", movie_sizes, fields_column, movie.width, movie.height);
+  plain_quantity_field(session, ui, "movie/rate", "Frames a second", "",
                        "Of the film: 25 to 60 look smooth, a GIF has at most 50.", movie.rate,
                        Least::above_zero);
   if (movie.of == Filmed::mode)
-    swing_fields(app, app, app.movie);
+    swing_fields(session, ui, movie);
   else
-    time_fields(app, app, app.movie, *shown_motion(app)->run);
+    time_fields(session, ui, movie, *shown_motion(session)->run);
 
-  const MovieRequest request = request_of(app, app.file_dialogs, app.movie);
-  const std::size_t frames = requested_moments(app, request).size();
-  const std::string problem = problem_of(app, app.movie, request, frames);
+  const MovieRequest request = request_of(session, query_, movie);
+  const std::size_t frames = requested_moments(session, request).size();
+  const std::string problem = problem_of(session, movie, request, frames);
   const std::filesystem::path first = first_file(request.file, frames);
-  ImGui::Dummy({0, 2 * app.scale});
+  ImGui::Dummy({0, 2 * ui.scale});
   if (!problem.empty())
-    paragraph(problem, complete(app, app.movie) ? colors_of(app).bad : colors_of(app).dim);
+    paragraph(problem, complete(session, movie) ? colors_of(ui).bad : colors_of(ui).dim);
   else
     paragraph(std::to_string(frames) + " frames, " +
                   short_text(static_cast<double>(frames) / request.rate, 4) + " s long" +
                   (movie.of == Filmed::mode ? ", with the amplitude that is shown"
                                             : ": from " + short_text(request.from) + " s to " +
                                                   short_text(request.to) + " s of the run"),
-              colors_of(app).dim);
-  if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(app).bad);
-  const bool replaces = asks_to_replace(app, app.file_dialogs, first);
-  ImGui::Dummy({0, 2 * app.scale});
+              colors_of(ui).dim);
+  if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(ui).bad);
+  const bool replaces = asks_to_replace(ui, query_, first);
+  ImGui::Dummy({0, 2 * ui.scale});
   ImGui::BeginDisabled(!problem.empty());
-  accepted = text_button(app, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && problem.empty() && may_replace(app, app.file_dialogs, first)) {
-    play(app, false); // all the time there is goes into the film
+  if (accepted && problem.empty() && may_replace(session, query_, first)) {
+    play(session, false); // all the time there is goes into the film
     movie.request = request;
     movie.problem.clear();
   }
   ImGui::SameLine();
-  if (text_button(app, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (text_button(ui, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
 }
 
-void show_dialog_of(App& app, Filmed of) {
-  app.movie.of = of;
-  if (!shown(app, app.movie)) return;
-  app.dialog.wanted = Dialog::export_run;
+void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& movie, Filmed of) {
+  movie.of = of;
+  if (!shown(session, movie)) return;
+  dialog.wanted = Dialog::export_run;
   std::error_code ignored;
-  show_folder(app.file_dialogs, std::filesystem::current_path(ignored));
-  app.file_dialogs.replacing.clear();
-  app.movie.problem.clear();
-  app.movie.done = false;
-  const std::filesystem::path& file = app.document.file();
-  const std::string stem = file.empty() ? file_stem(app.mechanism().name) : file.stem().string();
+  show_folder(query_, std::filesystem::current_path(ignored));
+  query_.replacing.clear();
+  movie.problem.clear();
+  movie.done = false;
+  const std::filesystem::path& file = session.document.file();
+  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
   const std::string which =
-      of == Filmed::mode ? "-mode-" + std::to_string(*app.study.modes.chosen + 1) : std::string();
-  app.file_dialogs.path = (app.file_dialogs.list.shown / ("flyball-" + stem + which + ending)).string();
+      of == Filmed::mode ? "-mode-" + std::to_string(*session.study.modes.chosen + 1) : std::string();
+  query_.path = (query_.list.shown / ("flyball-" + stem + which + ending)).string();
 }
 
-} // namespace
-
-void show_movie_dialog(App& app) {
-  show_dialog_of(app, Filmed::run);
-}
-
-void show_mode_movie_dialog(App& app) {
-  show_dialog_of(app, Filmed::mode);
-}
-
-void movie_dialog(App& app) {
-  MovieState& movie = app.movie;
-  if (!begin_dialog(app, app.dialog, Dialog::export_run,
+void MovieDialog::draw(Session& session, Ui& ui, DialogState& dialog, MovieState& movie) {
+  if (!begin_dialog(ui, dialog, Dialog::export_run,
                     movie.of == Filmed::mode ? "Export the mode" : "Export the run", 480))
     return;
   if (movie.request || movie.progress)
-    progress(app, app.movie, movie.progress.value_or(MovieState::Progress{}));
-  else if (movie.done || !shown(app, app.movie)) // nothing is: another document
+    progress(ui, movie, movie.progress.value_or(MovieState::Progress{}));
+  else if (movie.done || !shown(session, movie)) // nothing is: another document
     close_dialog();
   else
-    choices(app);
+    choices(session, ui, movie);
   end_dialog();
 }
 

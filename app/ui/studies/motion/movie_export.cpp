@@ -1,8 +1,9 @@
 #include "app/ui/studies/motion/movie_export.hpp"
 
-#include "app/ui/app.hpp"
 #include "app/ui/studies/modes/mode_movie.hpp"
 #include "app/ui/studies/motion/run_movie.hpp"
+#include "app/ui/view_context.hpp"
+#include "app/ui/view_frame.hpp"
 
 #include <exception>
 
@@ -50,17 +51,16 @@ std::vector<double> requested_moments(const Session& session, const MovieRequest
   return movie_times(*shown->run, {request.from, request.to, request.rate, request.factor});
 }
 
-void MovieExport::begin(App& app, const MovieRequest& request) {
-  std::unique_ptr<FilmedScene> scene = filmed_scene(app, request.of);
+void MovieExport::begin(const ViewContext& context, const MovieRequest& request) {
+  std::unique_ptr<FilmedScene> scene = filmed_scene(context.session, request.of);
   if (!scene) return;
-  const ViewFrame look = view_frame(app);
+  const ViewFrame look = view_frame(context.session, context.ui, context.tool, context.view);
   file_ = request.file;
-  film_.emplace(std::move(scene), requested_moments(app, request), request.file,
-                MovieFormat{request.width, request.height, request.rate, 0}, look, app.view.samples);
+  film_.emplace(std::move(scene), requested_moments(context.session, request), request.file,
+                MovieFormat{request.width, request.height, request.rate, 0}, look, context.view.samples);
 }
 
-void MovieExport::update(App& app, ViewRenderer& renderer) {
-  MovieState& state = app.movie;
+void MovieExport::update(const ViewContext& context, MovieState& state, ViewRenderer& renderer) {
   if (!film_ && !state.request) return; // a stage that draws a picture beside this one's film tells nothing
   if (std::exchange(state.cancel, false)) film_.reset();
   try {
@@ -68,10 +68,10 @@ void MovieExport::update(App& app, ViewRenderer& renderer) {
       film_.reset();
       state.problem.clear();
       state.done = false;
-      begin(app, *request);
+      begin(context, *request);
     }
     if (film_ && film_->step(renderer, longest_wait)) {
-      app.notice = saved_words(file_, film_->frames());
+      context.session.notice = saved_words(file_, film_->frames());
       film_.reset();
       state.done = true;
     }

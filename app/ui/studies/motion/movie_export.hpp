@@ -1,4 +1,4 @@
-// Makes the film that app.movie asks for, one of its frames between two of the window's, so that the window
+// Makes the film that the state asks for, one of its frames between two of the window's, so that the window
 // goes on. Needs a current OpenGL context for its whole life.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace flyball {
 
-struct App;
+struct ViewContext;
 
 // The moments that a film of the request shows: of the run (s), or phases of the mode (rad); none where none
 // is shown.
@@ -16,11 +16,11 @@ std::vector<double> requested_moments(const Session& session, const MovieRequest
 
 class MovieExport {
  public:
-  // Begins, draws the next frame, or gives up, and tells app.movie. The end is a notice.
-  void update(App& app, ViewRenderer& renderer);
+  // Begins, draws the next frame, or gives up, and tells the state. The end is a notice.
+  void update(const ViewContext& context, MovieState& state, ViewRenderer& renderer);
 
  private:
-  void begin(App& app, const MovieRequest& request);
+  void begin(const ViewContext& context, const MovieRequest& request);
 
   std::optional<Film> film_;
   std::filesystem::path file_;

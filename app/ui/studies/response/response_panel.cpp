@@ -1,13 +1,15 @@
 // The response curve's choices, design mode, and the plot.
+#include "app/session/resonance.hpp"
 #include "app/session/response_pull.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/studies/response/resonance_plot.hpp"
 #include "app/ui/studies/response/response_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -87,6 +89,32 @@ void quantity_choice(Session& session, Ui& ui) {
   ImGui::EndCombo();
 }
 
+// Of periodic motions: "65 points", and where there are none.
+void found_motions(Session& session, Ui& ui) {
+  constexpr std::size_t most_gaps = 4;
+  const auto& found = session.study.response.resonance.found;
+  if (!found) return;
+  const NumberStyle& numbers = session.options.numbers;
+  row(ui, resonance_words(session), numbers.run_times ? duration_text(found->run_time, numbers) : "", "",
+      "The balance turns with the drives: of the motion that comes back after each period the line is the "
+      "mean, the band reaches from least to most. Dashed where Floquet's multipliers say that it is left.\n"
+      "Points lie closer where the curve bends; a peak narrower than the first of them are apart, a 32nd of "
+      "the range, may lie between two: a shorter range shows it.");
+  note_widget(ui.widgets, "response/found");
+  const ShownUnit unit = shown_unit(parameter_unit(*found->of.mechanism, found->of.address), session.units);
+  const std::string after = unit.text.empty() ? "" : " " + unit.text;
+  const std::vector<ResonanceGap> gaps = resonance_gaps(found->result);
+  for (std::size_t i = 0; i < gaps.size() && i < most_gaps; ++i) {
+    const std::string from = short_text(unit.shown(gaps[i].from), 5),
+                      to = short_text(unit.shown(gaps[i].to), 5);
+    paragraph((from == to ? "At " + from : "From " + from + " to " + to) + after + ": " + gaps[i].why,
+              colors_of(ui).warn);
+    note_widget(ui.widgets, "response/gap/" + std::to_string(i + 1));
+  }
+  if (gaps.size() > most_gaps)
+    paragraph("And " + std::to_string(gaps.size() - most_gaps) + " more gaps.", colors_of(ui).dim);
+}
+
 // "3 branches, 277 points", and what they are bounded by.
 void found(Session& session, Ui& ui) {
   const ResponseState& state = session.study.response;
@@ -96,6 +124,7 @@ void found(Session& session, Ui& ui) {
     note_widget(ui.widgets, "response/problem");
     return;
   }
+  if (is_resonance(session)) return found_motions(session, ui);
   if (!state.curve.found) return;
   const ResponseResult& result = state.curve.found->result;
   std::size_t points = 0, apart = 0;
@@ -150,8 +179,9 @@ void progress(Session& session, Ui& ui, ResponseView& drawn) {
   ResponseCurve& curve = state.curve;
   auto& design = state.design.answer;
   auto& band = session.study.band.computed;
+  ResonanceStudy& resonance = state.resonance;
   double& waiting_since = drawn.waiting_since;
-  if (!curve.running() && !design.running() && !band.running()) {
+  if (!curve.running() && !design.running() && !band.running() && !resonance.running()) {
     waiting_since = -1;
     return;
   }
@@ -163,6 +193,8 @@ void progress(Session& session, Ui& ui, ResponseView& drawn) {
   };
   if (curve.running())
     bar(curve);
+  else if (resonance.running())
+    bar(resonance);
   else if (design.running())
     bar(design);
   else
@@ -170,6 +202,7 @@ void progress(Session& session, Ui& ui, ResponseView& drawn) {
   ImGui::SameLine();
   if (text_button(ui, "response/cancel", "Cancel")) {
     curve.stop();
+    resonance.stop();
     design.stop();
     band.stop();
   }
@@ -339,6 +372,10 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
   parameter_choice(session, ui);
   range_row(session, ui);
   quantity_choice(session, ui);
+  if (is_resonance(session)) {
+    progress(session, ui, drawn);
+    return found(session, ui);
+  }
   if (check_row(
           ui, "response/all", "Disconnected branches, too", session.study.response.choice.all,
           "Also looks for branches that nothing connects with the drawn pose's: a bounded search at both "
@@ -354,29 +391,39 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
 
 } // namespace
 
-void response_panel(App& app) {
-  const float s = app.scale;
+void response_panel(Session& session, Ui& ui, ResponseView& drawn) {
+  const float s = ui.scale;
   ImGui::BeginChild("choices", {response_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  response_choices(app, app, app.plots.response);
+  response_choices(session, ui, drawn);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  ResponseView& drawn = app.plots.response;
-  if (app.study.response.curve.found && response_refusal(app).empty()) {
-    draw_response(app, app.plots.response);
+  const bool resonance = is_resonance(session);
+  const bool found = resonance ? session.study.response.resonance.found != nullptr
+                               : session.study.response.curve.found != nullptr;
+  if (found && response_refusal(session).empty()) {
+    if (resonance)
+      draw_resonance(session, drawn);
+    else
+      draw_response(session, drawn);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotEvents events =
-        plot_view(app, "response", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+    const PlotEvents events = plot_view(session, ui, "response", drawn.view, drawn.plot,
+                                        {std::max(room.x, 40.f), std::max(room.y, 40.f)});
     const bool dragged = events.dragged_to.has_value();
     if (const auto hit = dragged ? events.dragged_to : events.clicked)
-      later(app, [&app, hit = *hit, dragged] { go_to_hit(app, app.plots.response, hit, dragged); });
+      later(ui, [&session, &drawn, hit = *hit, dragged, resonance] {
+        if (resonance)
+          go_to_resonance(session, drawn, hit);
+        else
+          go_to_hit(session, drawn, hit, dragged);
+      });
     if (const auto& to = events.pulled_to)
-      later(app, [&app, x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
-                  y = to->y / drawn.plot.y.factor] { pull_response(app, x, y); });
-  } else if (!app.mistakes.empty()) {
-    paragraph("The mechanism is not finished; see the line below the view.", colors_of(app).dim);
+      later(ui, [&session, x = to->x ? std::optional(*to->x / drawn.plot.x.factor) : std::nullopt,
+                 y = to->y / drawn.plot.y.factor] { pull_response(session, x, y); });
+  } else if (!session.mistakes.empty()) {
+    paragraph("The mechanism is not finished; see the line below the view.", colors_of(ui).dim);
   }
   ImGui::EndChild();
 }

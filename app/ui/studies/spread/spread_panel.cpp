@@ -2,7 +2,6 @@
 #include "app/plot/spread_plot.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
-#include "app/ui/app.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -293,32 +292,31 @@ void spread_words(Session& session, Ui& ui) {
   fate_rows(session, ui, found.result, *output);
 }
 
-void draw_histogram(App& app) {
-  const SpreadState& state = app.study.spread;
-  SpreadView& drawn = app.plots.spread;
-  const SpreadOutput* output = shown_output(app);
+void draw_histogram(Session& session, Ui& ui, SpreadView& drawn) {
+  const SpreadState& state = session.study.spread;
+  const SpreadOutput* output = shown_output(session);
   if (!output) return;
-  const SpreadView::Of of{state.samples.found, state.output, app.units};
+  const SpreadView::Of of{state.samples.found, state.output, session.units};
   if (drawn.of != of) {
     const auto& all = state.samples.found->result.outputs;
     Plot plot = histogram_plot(state.samples.found->result, static_cast<std::size_t>(output - all.data()));
-    show_axis(plot, 0, output->unit, app.units);
+    show_axis(plot, 0, output->unit, session.units);
     if (drawn.of.output != of.output) fit_plot(drawn.view);
     replace_plot(drawn.plot, std::move(plot));
     drawn.of = of;
   }
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  plot_view(app, "spread", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
+  plot_view(session, ui, "spread", drawn.view, drawn.plot, {std::max(room.x, 40.f), std::max(room.y, 40.f)});
 }
 
 } // namespace
 
-void spread_panel(App& app) {
-  const float s = app.scale;
+void spread_panel(Session& session, Ui& ui, SpreadView& drawn) {
+  const float s = ui.scale;
   const auto column = [&](const char* name, float width, auto contents) {
     ImGui::BeginChild(name, {width, 0});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-    contents(app, app);
+    contents(session, ui);
     ImGui::PopStyleVar();
     ImGui::EndChild();
     ImGui::SameLine(0, 14 * s);
@@ -326,7 +324,7 @@ void spread_panel(App& app) {
   column("choices", spread_choices_width * s, spread_choices);
   column("words", spread_words_width * s, spread_words);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  draw_histogram(app);
+  draw_histogram(session, ui, drawn);
   ImGui::EndChild();
 }
 

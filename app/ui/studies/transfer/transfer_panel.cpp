@@ -1,8 +1,7 @@
 // The transfer function of one input and one output: what is chosen, what it says, Bode's plots, poles and
 // zeros.
 #include "app/plot/transfer_plot.hpp"
-#include "app/ui/app.hpp"
-#include "app/ui/file_commands.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -62,68 +61,67 @@ void root_rows(Ui& ui, const char* title, const char* name, const std::vector<st
   if (number == 0) paragraph("None.", colors_of(ui).dim);
 }
 
-void transfer_words(App& app) {
-  TransferState& state = app.study.transfer;
-  const UiColors& colors = colors_of(app);
-  signal_row(app, app, "transfer/input", "Input", transfer_inputs(app), state.choice.input,
+void transfer_words(Session& session, Ui& ui, TransferView& drawn, const CommandRunner& commands) {
+  TransferState& state = session.study.transfer;
+  const UiColors& colors = colors_of(ui);
+  signal_row(session, ui, "transfer/input", "Input", transfer_inputs(session), state.choice.input,
              "What acts: a number, or a torque or force that is added.");
-  signal_row(app, app, "transfer/output", "Output", transfer_outputs(app), state.choice.output,
+  signal_row(session, ui, "transfer/output", "Output", transfer_outputs(session), state.choice.output,
              "What is looked at.");
-  bool hertz = app.plots.transfer.hertz;
-  if (text_button(app, "transfer/hertz", hertz ? "in rad/s" : "in Hz")) app.plots.transfer.hertz = !hertz;
+  bool hertz = drawn.hertz;
+  if (text_button(ui, "transfer/hertz", hertz ? "in rad/s" : "in Hz")) drawn.hertz = !hertz;
   help_on_hover("The unit of frequencies.");
   ImGui::SameLine();
-  const bool any = has_transfer(app);
+  const bool any = has_transfer(session);
   ImGui::BeginDisabled(!any);
-  if (text_button(app, "transfer/save", "Export the model…")) show_model_dialog(app);
+  if (text_button(ui, "transfer/save", "Export the model…")) commands.run("file.model");
   ImGui::EndDisabled();
   help_on_hover("A, B, C, D for MATLAB, Python or NumPy, or as JSON.");
   if (state.found.running() && state.found.seconds() > transfer_patience) {
-    if (text_button(app, "transfer/cancel", "Cancel")) state.found.stop();
+    if (text_button(ui, "transfer/cancel", "Cancel")) state.found.stop();
     ImGui::SameLine();
-    task_bar(app, "transfer/progress", state.found.progress(), state.found.seconds(),
-             std::max(ImGui::GetContentRegionAvail().x - margin_width(app), 20 * app.scale));
+    task_bar(ui, "transfer/progress", state.found.progress(), state.found.seconds(),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
   }
   if (!state.found.problem.empty()) {
     paragraph(state.found.problem, colors.warn);
-    note_widget(app.widgets, "transfer/problem");
-  } else if (!app.mistakes.empty())
+    note_widget(ui.widgets, "transfer/problem");
+  } else if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
-  else if (!converged(app) && !solving(app))
+  else if (!converged(session) && !solving(session))
     paragraph("There is no steady state to make a model about.", colors.warn);
   if (!any) return;
   const FoundTransfer& found = state.found.found->result;
   const LinearModel& model = found.model;
-  const NumberStyle& numbers = app.options.numbers;
+  const NumberStyle& numbers = session.options.numbers;
   const std::string unit = written_unit(transfer_unit(model.outputs[0], model.inputs[0]));
-  heading(app, "Transfer function");
+  heading(ui, "Transfer function");
   if (model.gain) {
     const double gain = (*model.gain)(0, 0);
-    row(app, "Static gain", value_text(gain, std::abs(gain) * 1e-6, numbers), unit.c_str(),
+    row(ui, "Static gain", value_text(gain, std::abs(gain) * 1e-6, numbers), unit.c_str(),
         "What a lasting change of the input by one unit comes to in the end, where the state is stable.");
-    note_widget(app.widgets, "transfer/gain");
+    note_widget(ui.widgets, "transfer/gain");
   } else {
     paragraph("Something integrates: there is no static gain.", colors.dim);
   }
-  row(app, "0 dB stands for", "1", unit.c_str(),
+  row(ui, "0 dB stands for", "1", unit.c_str(),
       "Of the magnitude: one SI unit of the output by one of the input.");
-  note_widget(app.widgets, "transfer/reference");
-  row(app, "States", std::to_string(model.states.size()), "", "Coordinates and their rates.");
+  note_widget(ui.widgets, "transfer/reference");
+  row(ui, "States", std::to_string(model.states.size()), "", "Coordinates and their rates.");
   if (model.output_error[0] > 0)
-    row(app, "Relative error", magnitude_text(model.output_error[0], numbers), "",
+    row(ui, "Relative error", magnitude_text(model.output_error[0], numbers), "",
         "Estimated, of the output's rows C and D; A and B are exact to rounding.");
   if (numbers.run_times)
-    row(app, "Run time", duration_text(model.steady.run_time_s + model.run_time_s, numbers), "");
-  root_rows(app, "Poles", "transfer/poles", model.poles, "Of the whole mechanism: its eigenvalues.");
+    row(ui, "Run time", duration_text(model.steady.run_time_s + model.run_time_s, numbers), "");
+  root_rows(ui, "Poles", "transfer/poles", model.poles, "Of the whole mechanism: its eigenvalues.");
   if (found.has_zeros)
-    root_rows(app, "Zeros", "transfer/zeros", found.zeros,
+    root_rows(ui, "Zeros", "transfer/zeros", found.zeros,
               "Where the output does not feel the input; one that a pole equals cancels it.");
 }
 
-void draw_transfer(App& app) {
-  const TransferState& state = app.study.transfer;
-  TransferView& drawn = app.plots.transfer;
-  if (!has_transfer(app)) return;
+void draw_transfer(Session& session, Ui& ui, TransferView& drawn) {
+  const TransferState& state = session.study.transfer;
+  if (!has_transfer(session)) return;
   const FoundTransfer& found = state.found.found->result;
   if (drawn.of != TransferView::Of{state.found.found, drawn.hertz}) {
     const bool other = drawn.fitted != state.found.found->of.choice || drawn.of.hertz != drawn.hertz;
@@ -137,28 +135,28 @@ void draw_transfer(App& app) {
         fit_plot(*view);
   }
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  const float gap = 8 * app.scale, left = std::max(0.62f * (room.x - gap), 40.f),
+  const float gap = 8 * ui.scale, left = std::max(0.62f * (room.x - gap), 40.f),
               right = std::max(room.x - gap - left, 40.f), high = std::max((room.y - gap) / 2, 40.f);
   ImGui::BeginGroup();
-  plot_view(app, "transfer magnitude", drawn.magnitude_view, drawn.magnitude, {left, high});
-  plot_view(app, "transfer phase", drawn.phase_view, drawn.phase, {left, high});
+  plot_view(session, ui, "transfer magnitude", drawn.magnitude_view, drawn.magnitude, {left, high});
+  plot_view(session, ui, "transfer phase", drawn.phase_view, drawn.phase, {left, high});
   ImGui::EndGroup();
   ImGui::SameLine(0, gap);
-  plot_view(app, "poles and zeros", drawn.roots_view, drawn.roots, {right, std::max(room.y, 40.f)});
+  plot_view(session, ui, "poles and zeros", drawn.roots_view, drawn.roots, {right, std::max(room.y, 40.f)});
 }
 
 } // namespace
 
-void transfer_panel(App& app) {
-  const float s = app.scale;
+void transfer_panel(Session& session, Ui& ui, TransferView& drawn, const CommandRunner& commands) {
+  const float s = ui.scale;
   ImGui::BeginChild("words", {transfer_words_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
-  transfer_words(app);
+  transfer_words(session, ui, drawn, commands);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("plot", {0, 0}, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  draw_transfer(app);
+  draw_transfer(session, ui, drawn);
   ImGui::EndChild();
 }
 

@@ -1,0 +1,129 @@
+#include "app/session/resonance.hpp"
+
+#include "app/session/number_text.hpp"
+#include "app/session/session.hpp"
+#include "engine/mechanism/address.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace flyball {
+namespace {
+
+constexpr double soon = 1.5; // s: until then the curve of the numbers before is worth more than a part
+
+ResonanceCurve find_resonance(const ResponseRequest& of, bool same_axis,
+                              const TaskContext<ResonanceCurve>& context) {
+  const auto begin = std::chrono::steady_clock::now();
+  ResonanceOptions options;
+  options.logarithmic = of.logarithmic;
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  options.publish = [&](const ResonanceCurve& so_far) {
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    const bool grown = so_far.points.size() >= static_cast<std::size_t>(options.coarse);
+    if (!same_axis || grown || taken.count() > soon) context.publish(so_far);
+  };
+  return resonance_curve(*of.mechanism, of.address, of.from, of.to, options);
+}
+
+ResponseQuantity quantity_of(const ResonanceOutput& output) {
+  switch (output.kind) {
+  case OutputKind::coordinate: return {"value " + output.name, output.name, "Coordinates", output.unit, 1};
+  case OutputKind::measure: return {"measure " + output.name, output.name, "Measures", output.unit, 1};
+  case OutputKind::drive:
+    return {"drive " + output.name,
+            (output.unit == "N m" ? "drive torque of " : "drive force of ") + output.name, "Drives",
+            output.unit, 1};
+  case OutputKind::motion: break;
+  }
+  return {"motion " + output.name,
+          output.name == "largest multiplier" ? "largest Floquet multiplier" : output.name, "Motion",
+          output.unit, 1};
+}
+
+const ResonancePoint* first_told(const ResonanceCurve& curve) {
+  const auto found = std::ranges::find_if(curve.points, [](const auto& point) { return point->found(); });
+  return found == curve.points.end() ? nullptr : found->get();
+}
+
+} // namespace
+
+bool is_resonance(const Session& session) {
+  return session.study.response.resonates;
+}
+
+void update_resonance(Session& session, const std::optional<ResponseRequest>& wanted) {
+  ResponseState& state = session.study.response;
+  ResonanceStudy& study = state.resonance;
+  study.take();
+  if (!wanted) {
+    study = {};
+    return;
+  }
+  if (study.asked == wanted) return;
+  const bool same_axis = study.found && study.found->of.address == wanted->address &&
+                         study.found->of.from == wanted->from && study.found->of.to == wanted->to;
+  study.ask(session.options, *wanted,
+            [same_axis](const ResponseRequest& of, const TaskContext<ResonanceCurve>& context) {
+              return find_resonance(of, same_axis, context);
+            });
+  study.take(); // in immediate mode it is there
+}
+
+std::vector<ResponseQuantity> resonance_quantities(const Session& session) {
+  const ResponseState& state = session.study.response;
+  std::optional<ResonancePoint> now = present_resonance(session, state.choice.address);
+  const ResonancePoint* point = now ? &*now : nullptr;
+  if (!point && state.resonance.found) point = first_told(state.resonance.found->result);
+  std::vector<ResponseQuantity> out;
+  if (!point) return out;
+  for (const ResonanceOutput& output : point->outputs)
+    out.push_back(quantity_of(output));
+  return out;
+}
+
+std::optional<ResonanceKey> resonance_key(const std::string& quantity) {
+  constexpr std::pair<const char*, OutputKind> kinds[] = {{"value ", OutputKind::coordinate},
+                                                          {"measure ", OutputKind::measure},
+                                                          {"drive ", OutputKind::drive},
+                                                          {"motion ", OutputKind::motion}};
+  for (const auto& [begin, kind] : kinds)
+    if (quantity.starts_with(begin))
+      return ResonanceKey{kind, quantity.substr(std::char_traits<char>::length(begin))};
+  return std::nullopt;
+}
+
+std::optional<ResonancePoint> present_resonance(const Session& session, const std::string& address) {
+  const PeriodicState* motion = periodic_motion(session);
+  // A motion may still be that of the number before.
+  const Mechanism* of = motion               ? session.study.periodic.search.found->of.mechanism.pointer.get()
+                        : converged(session) ? session.answer.mechanism.get()
+                                             : nullptr;
+  if (!of || !has_number(*of, address)) return std::nullopt;
+  const double number = get_parameter(*of, address);
+  return motion ? resonance_point(*motion, number) : resonance_point(session.answer.solution, number);
+}
+
+std::string resonance_words(const Session& session) {
+  const auto& found = session.study.response.resonance.found;
+  if (!found) return {};
+  const auto& points = found->result.points;
+  const auto without = std::ranges::count_if(points, [](const auto& point) { return !point->found(); });
+  const auto steady = std::ranges::count_if(points, [](const auto& point) { return point->steady; });
+  std::string words = std::to_string(points.size()) + (points.size() == 1 ? " point" : " points");
+  if (steady > 0) words += ", " + std::to_string(steady) + " steady";
+  if (without > 0) words += ", " + std::to_string(without) + " without a motion";
+  if (found->stopped) words += ", stopped";
+  return words;
+}
+
+std::string resonance_refusal(const Session& session) {
+  const ResonanceStudy& study = session.study.response.resonance;
+  if (!study.problem.empty()) return study.problem;
+  if (!study.found || study.running() || first_told(study.found->result)) return {};
+  const auto& points = study.found->result.points;
+  return points.empty() ? "Nothing was computed." : points.front()->trouble;
+}
+
+} // namespace flyball

@@ -1,0 +1,30 @@
+// Asks for a picture of what is seen.
+#pragma once
+
+#include "app/ui/export_request.hpp"
+#include "app/ui/widgets/file_query.hpp"
+
+#include <optional>
+
+namespace flyball {
+
+struct DialogState;
+struct Session;
+struct Ui;
+
+class ExportDialog {
+ public:
+  void open(const Session& session, DialogState& dialog, bool loads);
+  // Returns the picture that is asked for.
+  std::optional<ExportRequest> draw(Session& session, Ui& ui, DialogState& dialog);
+  FileQuery& query() { return query_; } // may be filled in beforehand
+
+  bool loads() const { return loads_; }
+
+ private:
+  FileQuery query_;
+  int width_ = 1920, height_ = 1080; // pixels
+  bool panels_ = false, loads_ = false;
+};
+
+} // namespace flyball
