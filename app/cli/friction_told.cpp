@@ -68,7 +68,8 @@ std::string band_lines(const FrictionBand& band) {
   for (const BandExtent& extent : band.extents)
     out += fmt::format("\n   friction holds {} from {} to {} {}", printable(extent.name), bound(extent.low),
                        bound(extent.high), extent.unit);
-  if (!band.message.empty()) out += "\n   " + printable(band.message);
+  if (!band.message.empty())
+    out += (band.found ? "\n   " : "\n   its band of friction is not found: ") + printable(band.message);
   return out;
 }
 

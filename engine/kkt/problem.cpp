@@ -3,6 +3,12 @@
 #include <algorithm>
 
 namespace flyball {
+namespace {
+
+constexpr double small_rate =
+    1e-3; // of the fastest: what an implied rate begins with tells nothing of its size
+
+} // namespace
 
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {
   out.column.resize(system.nv);
@@ -16,6 +22,17 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
       out.column.segment<3>(link.v).setOnes();
     else
       out.column[link.v] = link.type == LinkType::revolute ? 1 : p.length;
+  }
+  // A rate that loops and gears give may be small at first, as that of a planet whose neighbours begin alike:
+  // that is not its size.
+  double fastest_drive = 0;
+  for (const DriveTorqueElement& torque : system.torques)
+    fastest_drive = std::max(fastest_drive, std::abs(p.links[static_cast<std::size_t>(torque.link)].speed));
+  for (const DriveTorqueElement& torque : system.torques) {
+    const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+    if (torque.implied && finds_speed(link) && link.type == LinkType::revolute &&
+        out.column[link.v] < small_rate * fastest_drive)
+      out.column[link.v] = fastest_drive;
   }
   for (const CutJoint& cut : system.cuts)
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {

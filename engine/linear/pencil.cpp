@@ -121,25 +121,33 @@ Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::Matr
 // With x = P p + C c, C cyclic, and the velocities u: p' = P^T u, M u' = -D u - K P p.
 Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                                        const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic,
-                                       CancelFlag cancel) {
+                                       double massless, CancelFlag cancel) {
   const Eigen::Index n = mass.rows(), positions = n - cyclic.cols();
   const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
   if (n == 0 || !(m > 0) || !std::isfinite(m + k + d)) return {};
+  if (!(mass.diagonal().minCoeff() > massless * m)) return {};
   const auto all = orthonormal_completion(cyclic);
   if (!all || all->cols() != n) return {};
   const Eigen::MatrixXd p = all->rightCols(positions);
   const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
+  // A light part beside a heavy one is as well known as that: each is measured by its own inertia.
+  const Eigen::VectorXd own = (mass.diagonal() / m).cwiseSqrt().cwiseInverse();
+  const auto equilibrated = [&](const Eigen::MatrixXd& a) {
+    return Eigen::MatrixXd(own.asDiagonal() * a * own.asDiagonal());
+  };
   Cholesky l;
-  if (!l.compute((mass + mass.transpose()) / (2 * m)) || !(l.smallest_pivot() > 1e-13)) return {};
+  if (!l.compute(equilibrated((mass + mass.transpose()) / (2 * m))) || !(l.smallest_pivot() > 1e-13))
+    return {};
   // Whitened: M = L L^T, u = L^-T w.
   const auto whiten = [&](const Eigen::MatrixXd& a) {
     const Eigen::MatrixXd half = l.forward(a);
     return Eigen::MatrixXd(l.forward(half.transpose()).transpose());
   };
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(positions + n, positions + n);
-  companion.topRightCorner(positions, n) = l.forward(p).transpose();
-  companion.bottomLeftCorner(n, positions) = -l.forward(stiffness * p) / (m * rate * rate);
-  companion.bottomRightCorner(n, n) = -whiten(velocity) / (m * rate);
+  const Eigen::MatrixXd forces = own.asDiagonal() * (stiffness * p), moved = own.asDiagonal() * p;
+  companion.topRightCorner(positions, n) = l.forward(moved).transpose();
+  companion.bottomLeftCorner(n, positions) = -l.forward(forces) / (m * rate * rate);
+  companion.bottomRightCorner(n, n) = -whiten(equilibrated(velocity)) / (m * rate);
   auto s = eigenvalues(companion, cancel);
   if (!s) return {};
   for (Complex& x : *s)

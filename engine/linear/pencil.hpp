@@ -19,10 +19,11 @@ pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                    const Eigen::MatrixXd& stiffness, const std::atomic<bool>* cancel = nullptr);
 
 // The same where the orthonormal columns of `cyclic`, which K takes to nothing, are left out as positions:
-// each has an eigenvalue zero, and these are not among the result. M must be positive definite, else nothing.
+// each has an eigenvalue zero, and these are not among the result. M must be positive definite, else nothing:
+// a diagonal entry below `massless` of its size is rounding.
 std::optional<std::vector<std::complex<double>>>
 eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                           const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic,
+                           const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic, double massless,
                            const std::atomic<bool>* cancel = nullptr);
 
 } // namespace flyball

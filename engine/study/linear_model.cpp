@@ -7,6 +7,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/input_effect.hpp"
 #include "engine/study/motion_outputs.hpp"
@@ -158,7 +159,8 @@ class Builder {
     bind(steady_system_, mechanism_, steady_parameters_);
     place(out.steady);
     const MotionAt drawn(model_, at_phase(0));
-    chosen_ = choose_coordinates(steady_system_, drawn.basis(), options_.phases);
+    phases_ = options_.phases || angles_matter();
+    chosen_ = choose_coordinates(steady_system_, drawn.basis(), phases_);
     Matrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
@@ -211,6 +213,22 @@ class Builder {
       const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
       balance_q_[link.q] = u_[link.v];
     }
+  }
+
+  // Whether the angle of something that turns at a speed that is found is a state like others.
+  bool angles_matter() const {
+    if (steady_system_.torques.empty() || steady_parameters_.phase_free) return false;
+    Scaling scaling;
+    set_scaling(steady_system_, steady_parameters_, scaling);
+    const Problem problem{steady_system_, steady_parameters_, scaling};
+    Workspace w;
+    Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
+    if (steady_system_.rows > 0) {
+      evaluate(problem, z, 0, w);
+      factor_constraints(problem, w);
+      best_multipliers(problem, w, z.lambda);
+    }
+    return !phase_stiffness(problem, z, w).entries.empty();
   }
 
   // All at time t (s) after the drawn phase.
@@ -509,7 +527,7 @@ class Builder {
         throw Refusal{"The input " + signals_.inputs[static_cast<std::size_t>(j)].name +
                       " acts otherwise at every phase of the drives: no constant matrices tell of it."};
     }
-    const bool turn = options_.phases && !steady_system_.torques.empty(); // the angles themselves are states
+    const bool turn = phases_ && !steady_system_.torques.empty(); // the angles themselves are states
     for (Eigen::Index i = 0; i < a.values.size(); ++i) {
       const double size = same_phase * a.most[i];
       bool same =
@@ -598,6 +616,7 @@ class Builder {
   Parameters steady_parameters_;
   Eigen::VectorXd q_, u_, balance_q_;
   Chosen chosen_;
+  bool phases_ = false; // angles of what turns at found speeds are states
 };
 
 } // namespace

@@ -549,6 +549,35 @@ TEST_CASE("eigenvalues go with the unit of time, whatever turns at speeds that a
     }
 }
 
+TEST_CASE("the eigenvalues of a light bead on a heavy shaft are those of its own motion", "[torque]") {
+  // Hung at R by a massless wire, w^2 = 5 g / (2 R): cos a = 2 / 5 and s^2 + c / (m R^2) s + w^2 sin^2 a = 0.
+  constexpr double reach = 0.4, inertia = 50, drag = 0.3;
+  const double w = std::sqrt(2.5 * standard_gravity / reach), sine2 = 1 - 0.16;
+  for (const double mass : {1e-3, 1e-8, 1e-10, 1e-14, 1e-20}) {
+    CAPTURE(mass);
+    Mechanism m;
+    m.gravity = {0, 0, -standard_gravity};
+    m.bodies = {body("shaft", 1, {0, 0, 0}, Vec3::Constant(inertia)),
+                body("bead", mass, {reach * std::sqrt(sine2), 0, -0.4 * reach})};
+    m.joints = {
+        torque_driven(revolute("spin", "ground", "shaft", {0, 0, 0}), w,
+                      number_text(inertia * w) + " N m - " + number_text(inertia) + " N m s*rate(spin)"),
+        dampened(revolute("lean", "shaft", "bead", {0, 0, 0}, {0, -1, 0}), drag * mass * reach * reach)};
+    SolveOptions nearest;
+    nearest.nearest = true;
+    const Solution s = Analysis(m).solve(nearest);
+    REQUIRE(s.status == Status::converged);
+    CHECK(value(s, "lean") == Approx(0).margin(1e-9));
+    CHECK(s.stable == true);
+    REQUIRE(s.eigenvalues);
+    REQUIRE(s.eigenvalues->size() == 3);
+    // The shaft's own -1, to the share of the bead.
+    CHECK(std::abs((*s.eigenvalues)[0] + 1.) < 1e-4 * mass / 1e-3 + 1e-9);
+    const Complex swing(-drag / 2, std::sqrt(w * w * sine2 - drag * drag / 4));
+    CHECK(std::abs((*s.eigenvalues)[1] - swing) < (1e-3 * mass / 1e-3 + 1e-9) * std::abs(swing));
+  }
+}
+
 TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
   Mechanism m = shipped("governor_engine");
   Joint& spin = m.joints[0];
