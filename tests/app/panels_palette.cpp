@@ -93,6 +93,8 @@ TEST_CASE("a number that is found has its value and unit, and its slider or fiel
     const auto [group, words, address] = GENERATE(table<const char*, const char*, const char*>(
         {{"parameters/drives", "speed of spin", spin_speed},
          {"parameters/springs", "spring stiffness of slide", "joints.slide.spring.stiffness"}}));
+    edit(app.session, "Unpin", [](Mechanism& mechanism, Selection&) { mechanism.sliders.clear(); });
+    robot.frames(2);
     robot.click(group);
     robot.frames(2);
     const std::string slider = std::string("parameters/") + address;

@@ -238,7 +238,8 @@ TEST_CASE("a turn takes an expression, which is kept as one of the quaternion") 
     CHECK(shows(0, 0, angle));
   }
   SECTION("renamed") {
-    edit(d.app.session, "Rename", [](Mechanism& next, Selection&) { rename_parameter(next, "turn_z", "phi"); });
+    edit(d.app.session, "Rename",
+         [](Mechanism& next, Selection&) { rename_parameter(next, "turn_z", "phi"); });
     d.frames(2);
     CHECK(expression_at(d.m(), "bodies.ball1.turn.2") == "phi");
   }

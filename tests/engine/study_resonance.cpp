@@ -46,7 +46,7 @@ TEST_CASE("A resonance curve goes through the closed form, and is drawn close wh
   options.publish = [&](const ResonanceCurve& so_far) { published.push_back(so_far.points.size()); };
   const ResonanceCurve curve = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
   CHECK(curve.whole);
-  REQUIRE(curve.points.size() > 15);
+  REQUIRE(curve.points.size() > 9);
   CHECK(curve.points.size() < 60);
   REQUIRE(published.size() == curve.points.size()); // one after the other
   for (std::size_t i = 0; i < published.size(); ++i)
@@ -84,12 +84,12 @@ TEST_CASE("A resonance curve goes through the closed form, and is drawn close wh
 TEST_CASE("A resonance curve is even in the logarithm where its axis is") {
   ResonanceOptions options;
   options.logarithmic = true;
-  options.coarse = options.most = 5;
+  options.coarse = options.most = 3;
   const ResonanceCurve curve =
-      resonance_curve(resonant_rotor(), "joints.x.spring.stiffness", 1e2, 1e6, options);
-  REQUIRE(curve.points.size() == 5);
-  for (std::size_t i = 0; i < 5; ++i)
-    CHECK(curve.points[i]->number == Approx(std::pow(10, 2 + static_cast<double>(i))));
+      resonance_curve(resonant_rotor(), "joints.x.spring.stiffness", 1e3, 1e5, options);
+  REQUIRE(curve.points.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    CHECK(curve.points[i]->number == Approx(std::pow(10, 3 + static_cast<double>(i))));
   CHECK_FALSE(curve.whole); // more would bend
 }
 
@@ -115,9 +115,9 @@ TEST_CASE("A resonance curve that is cancelled keeps what it has, and bounds end
   std::atomic<bool> cancel = false;
   ResonanceOptions options;
   options.cancel = &cancel;
-  options.publish = [&](const ResonanceCurve& so_far) { cancel = so_far.points.size() == 4; };
+  options.publish = [&](const ResonanceCurve& so_far) { cancel = so_far.points.size() == 2; };
   const ResonanceCurve part = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
-  CHECK(part.points.size() == 4);
+  CHECK(part.points.size() == 2);
   CHECK_FALSE(part.whole);
   ResonanceOptions bounded;
   bounded.most_evaluations = 1;

@@ -43,9 +43,10 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
   std::string help = drawn.message;
   for (const HeldJoint& joint : drawn.joints) {
     const ShownUnit unit = shown_unit(joint.angle ? "N m" : "N", session.units);
-    help += "\n" + coordinate_label(joint) + ": at most " + short_text(unit.shown(joint.limit), extent_digits) +
-            " " + unit.text;
-    if (joint.force) help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
+    help += "\n" + coordinate_label(joint) + ": at most " +
+            short_text(unit.shown(joint.limit), extent_digits) + " " + unit.text;
+    if (joint.force)
+      help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
   }
   row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs", percent_words(*drawn.takes),
       "%", help.c_str());
