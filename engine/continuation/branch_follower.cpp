@@ -422,6 +422,7 @@ bool BranchFollower::narrow(const BranchState& state, double width, CrossingBrac
     BranchState probe;
     int iterations = 0;
     const double middle = (at.low + at.high) / 2;
+    if (middle <= at.low || middle >= at.high) break; // of a long step: next to each other
     if (!continuation_.step(state, middle, probe, iterations)) return false;
     const int right = right_of_axis(spectrum(probe), families_);
     (right == at.right_low ? at.low : at.high) = middle;
