@@ -159,7 +159,8 @@ class Builder {
     bind(steady_system_, mechanism_, steady_parameters_);
     place(out.steady);
     const MotionAt drawn(model_, at_phase(0));
-    phases_ = options_.phases || angles_matter();
+    angles_ = angles_matter();
+    phases_ = options_.phases || angles_;
     chosen_ = choose_coordinates(steady_system_, drawn.basis(), phases_);
     Matrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
@@ -573,7 +574,7 @@ class Builder {
       const Eigen::Index p = positions[static_cast<std::size_t>(i)];
       const auto v = static_cast<std::size_t>(chosen_.coordinates[static_cast<std::size_t>(p)]);
       x.a(i, np + p) = direct.a(i, np + p) = 1;
-      if (!turned[v]) { // nothing depends on the angle of a shaft, but rounding
+      if (!turned[v] || angles_) { // else nothing depends on the angle of a shaft, but rounding
         x.a.col(i).tail(k) = -m.stiffness.col(p);
         direct.a.col(i).tail(k) = m.explicit_stiffness.col(p);
       }
@@ -624,7 +625,8 @@ class Builder {
   Parameters steady_parameters_;
   Eigen::VectorXd q_, u_, balance_q_;
   Chosen chosen_;
-  bool phases_ = false; // angles of what turns at found speeds are states
+  bool angles_ = false; // some of what turns at found speeds matter
+  bool phases_ = false; // these angles are states
 };
 
 } // namespace
