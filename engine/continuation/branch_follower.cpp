@@ -227,9 +227,11 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
 }
 
 bool BranchFollower::out_of_reach(const BranchState& s) const {
+  const Problem problem = family_.problem();
   return std::ranges::any_of(system_.links, [&](const Link& link) {
+    if (finds_speed(link)) return std::abs(s.z.q[link.q]) > 1e4 * problem.scaling.column[link.v];
     return link.type == LinkType::prismatic && link.q >= 0 &&
-           std::abs(s.z.q[link.q]) > 100 * family_.problem().parameters.length;
+           std::abs(s.z.q[link.q]) > 100 * problem.parameters.length;
   });
 }
 
@@ -422,7 +424,6 @@ bool BranchFollower::narrow(const BranchState& state, double width, CrossingBrac
     BranchState probe;
     int iterations = 0;
     const double middle = (at.low + at.high) / 2;
-    if (middle <= at.low || middle >= at.high) break; // of a long step: next to each other
     if (!continuation_.step(state, middle, probe, iterations)) return false;
     const int right = right_of_axis(spectrum(probe), families_);
     (right == at.right_low ? at.low : at.high) = middle;
