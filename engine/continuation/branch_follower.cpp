@@ -335,7 +335,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       break;
     }
     if (out_of_reach(next)) {
-      out.end = "a coordinate leaves all bounds";
+      out.end = "a coordinate or a speed leaves all bounds";
       break;
     }
     state = std::move(next);

@@ -110,6 +110,7 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
       stiffness.col(v) =
           out.unit[v] * phases.columns.col(static_cast<Eigen::Index>(i)).cwiseProduct(out.unit);
     }
+    out.stiffness_terms = stiffness.norm();
     out.stiffness = large::projected(stiffness, out.basis);
   }
   const auto s = out.unit.asDiagonal();

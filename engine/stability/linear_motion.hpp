@@ -32,6 +32,7 @@ struct ReducedMotion {
   // Whether the angle of something that turns at a speed that is found matters (phase_stiffness.hpp): then it
   // is none of the cyclic ones.
   bool of_angles = false;
+  double stiffness_terms = 0; // where speeds are found: the norm of K before the loops take their part of it
 };
 ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w);
 

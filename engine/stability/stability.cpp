@@ -129,7 +129,7 @@ std::optional<Eigen::MatrixXd> free_phases(const Problem& problem, const Unknown
   if (!effect) return {};
   Eigen::MatrixXd out(phases.rows(), 0);
   for (Eigen::Index i = 0; i < phases.cols(); ++i) {
-    if (i < effect->values.size() && effect->values[i] > tolerance::neutral_force * motion.stiffness.norm())
+    if (i < effect->values.size() && effect->values[i] > tolerance::neutral_force * motion.stiffness_terms)
       continue;
     const Eigen::VectorXd direction = phases * effect->right.col(i);
     Eigen::VectorXd turned = (motion.basis * direction).cwiseProduct(motion.unit);
