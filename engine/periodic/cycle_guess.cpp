@@ -132,8 +132,10 @@ std::vector<std::string> drives_at_rest(const Flow& flow, const MotionState& sta
     const Link& link = model.system.links[static_cast<std::size_t>(drive.link)];
     if (std::abs(state.u[link.v]) > standing * rate * model.scaling.column[link.v]) continue;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    const bool angle = link.type == LinkType::revolute;
+    const double known = 1e-6 * (angle ? 1 : model.parameters.length), at = state.q[link.q];
     out.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
-                  rounded_text(state.q[link.q], 6) + (link.type == LinkType::revolute ? " rad" : " m"));
+                  rounded_text(std::abs(at) < known ? 0 : at, 6) + (angle ? " rad" : " m"));
   }
   return out;
 }

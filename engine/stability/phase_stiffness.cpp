@@ -7,8 +7,23 @@
 namespace flyball {
 namespace {
 
-constexpr double far[] = {0.9, -1.7}; // rad or reaches: of no particular mechanism
-constexpr double matters = 1e-11;     // of the largest force
+constexpr double far[] = {0.9, -1.7};   // rad or reaches: of no particular mechanism
+constexpr double matters = 1e-11;       // of the largest force
+constexpr double slope_rounding = 1e-9; // the same, of slopes as loops let the angles turn
+
+// Whether the slopes matter as the loops let the angles turn: one that they hold by others moves nothing
+// alone.
+bool matter_with_loops(const Problem& problem, const Unknowns& z, const PhaseStiffness& angles,
+                       Workspace& w) {
+  if (problem.system.rows == 0) return true;
+  evaluate(problem, z, 0, w);
+  factor_constraints(problem, w);
+  const Eigen::MatrixXd basis = problem.scaling.column.asDiagonal() * w.dense.constraints().basis();
+  if (basis.cols() == 0) return false;
+  const Eigen::MatrixXd stiffness = basis.transpose() * angles.columns * basis(angles.entries, Eigen::all);
+  return stiffness.cwiseAbs().maxCoeff() >
+         slope_rounding * largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+}
 
 } // namespace
 
@@ -53,6 +68,7 @@ PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Worksp
     out.columns.conservativeResize(system.nv, out.columns.cols() + 1);
     out.columns.rightCols<1>() = slope;
   }
+  if (!out.entries.empty() && !matter_with_loops(problem, z, out, w)) return {};
   return out;
 }
 

@@ -10,8 +10,10 @@
 namespace flyball {
 
 struct PhaseStiffness {
-  std::vector<int> entries; // of q_R: those whose angle matters by itself, most often none
-  Eigen::MatrixXd columns;  // (nv, entries), N or N m per rad or m: of the forces along all coordinates
+  // Of q_R: those whose angle matters by itself, most often none; nor where loops let none turn so that it
+  // would.
+  std::vector<int> entries;
+  Eigen::MatrixXd columns; // (nv, entries), N or N m per rad or m: of the forces along all coordinates
 };
 
 // At z and the drawn phase, with its multipliers: by differences of sixth order, to some 14 digits of the

@@ -224,20 +224,12 @@ class Builder {
     const Problem problem{steady_system_, steady_parameters_, scaling};
     Workspace w;
     Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
-    Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(steady_system_.nv, steady_system_.nv);
     if (steady_system_.rows > 0) {
       evaluate(problem, z, 0, w);
       factor_constraints(problem, w);
       best_multipliers(problem, w, z.lambda);
-      basis = w.dense.constraints().basis();
     }
-    const PhaseStiffness angles = phase_stiffness(problem, z, w);
-    if (angles.entries.empty() || basis.cols() == 0) return false;
-    // As the loops let them turn: one that they hold by others moves nothing alone.
-    basis = scaling.column.asDiagonal() * basis;
-    const Eigen::MatrixXd stiffness = basis.transpose() * angles.columns * basis(angles.entries, Eigen::all);
-    const double size = w.magnitudes.force.cwiseProduct(scaling.column).lpNorm<Eigen::Infinity>();
-    return stiffness.cwiseAbs().maxCoeff() > rounding * size;
+    return !phase_stiffness(problem, z, w).entries.empty();
   }
 
   // All at time t (s) after the drawn phase.
