@@ -60,20 +60,21 @@ void add_responses(const Problem& problem, const Eigen::VectorXd& size, Workspac
   }
 }
 
-// What the solution for the last step, |x|, rounds: that of a matrix beside K, by eps |K| (Higham, chapter
-// 9). A step is never shorter than the last digits of the coordinates, which a far one spreads to others
-// where K couples it with them (Skeel's condition, |K^-1| |K| |x|; ibid., chapter 7). `step` (scaled).
-void add_last_digits(const Problem& problem, const Unknowns& z, const DenseKkt& dense,
-                     const Eigen::VectorXd& step, Workspace& w, Eigen::VectorXd& error) {
+// What the solution for the last step rounds, x in w.step: that of a matrix beside K, by eps |K| |x| (Higham,
+// chapter 9). A step is never shorter than the last digits of the coordinates, which a far one spreads to
+// others where K couples it with them (Skeel's condition, |K^-1| |K| |x|; ibid., chapter 7).
+void add_last_digits(const Problem& problem, const Unknowns& z, const DenseKkt& dense, Workspace& w,
+                     Eigen::VectorXd& error) {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   constexpr double beside_the_rest = 0.01; // less adds nothing that is worth knowing
-  Eigen::VectorXd x = step.cwiseAbs();
+  const Eigen::VectorXd& scale = problem.scaling.column;
+  Eigen::VectorXd &x = w.step, &noise = w.projected;
+  x = x.cwiseQuotient(scale).cwiseAbs();
   for (const Link& link : problem.system.links)
     if (link.v >= 0 && link.type != LinkType::spherical)
-      x[link.v] = std::max(x[link.v], rounding * std::abs(z.q[link.q]) / problem.scaling.column[link.v]);
-  const Eigen::VectorXd noise = rounding * (dense.stiffness().cwiseAbs() * x);
-  const Eigen::VectorXd rest =
-      2 * extended_rounding * w.magnitudes.force.cwiseProduct(problem.scaling.column);
+      x[link.v] = std::max(x[link.v], rounding * std::abs(z.q[link.q]) / scale[link.v]);
+  noise = rounding * dense.stiffness().cwiseAbs().lazyProduct(x); // a product with gemv would allocate
+  const auto rest = 2 * extended_rounding * w.magnitudes.force.cwiseProduct(scale);
   if ((noise.array() > beside_the_rest * rest.array()).any()) add_responses(problem, noise, w, error);
 }
 
@@ -320,9 +321,9 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   }
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
-  const Eigen::VectorXd last_step = w.scaled_step;
+  const bool stepped = w.scaled_step.allFinite();
   add_noise(problem, left, opening, w, error);
-  if (dense && last_step.allFinite()) add_last_digits(problem, z, *dense, last_step, w, error);
+  if (dense && stepped) add_last_digits(problem, z, *dense, w, error);
   if (dense && dense->constraints().rank() < system.rows && error.allFinite())
     add_shared_loads(problem, z, *dense, w, error);
   add_rounding_of_data(problem, w, estimate.data);
