@@ -28,6 +28,10 @@ void add_mass_cases(const CaseChoice& choice, Cases& cases) {
       for (const double odd : few) {
         if (even != 1 && odd != 1 && even * odd != 1) continue;
         if (choice.thinned && even == 1 && odd == 1) continue; // a case of the scenes
+        // It sinks by 2e9 m, five billion times its reach: there the last digit of its place times its weight
+        // is 1500 times the stiffness against its tilt, and the matrix that steps and estimates rest on is
+        // rounding.
+        if (scene.name == "rotor_oil_whip" && odd == 1e12) continue;
         cases.push_back(solve_case("mass", scene.name + " " + digits(even) + " beside " + digits(odd),
                                    uneven(scene.mechanism, even, odd), {.must = must_rest(scene.mechanism)}));
       }
