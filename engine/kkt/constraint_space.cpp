@@ -34,15 +34,15 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
 void ConstraintSpace::dependence(int k, Eigen::VectorXd& combination, Eigen::VectorXd& left) const {
   const int column = rank_ + k;
   // J^T P = Q [R_11 R_12; 0 R_22]
-  const Eigen::VectorXd others = qr_.matrix()
-                                     .topLeftCorner(rank_, rank_)
-                                     .triangularView<Eigen::Upper>()
-                                     .solve(Eigen::VectorXd(qr_.matrix().col(column).head(rank_)));
+  left.setZero(n_);
+  auto others = left.head(rank_);
+  others = qr_.matrix().col(column).head(rank_);
+  qr_.matrix().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solveInPlace(others);
   combination.setZero(rows_);
   combination[qr_.permutation()[column]] = 1;
   for (int i = 0; i < rank_; ++i)
     combination[qr_.permutation()[i]] = -others[i];
-  left.setZero(n_);
+  others.setZero();
   const int above = std::min(column + 1, n_);
   left.segment(rank_, above - rank_) = qr_.matrix().col(column).segment(rank_, above - rank_);
   qr_.apply_q(left, std::min(rows_, n_));

@@ -85,11 +85,12 @@ void add_shared_loads(const Problem& problem, const Unknowns& z, const DenseKkt&
   constexpr double takes_part = 1e-9; // of a combination
   const ConstraintSpace& rows = dense.constraints();
   const double off = error.cwiseQuotient(problem.scaling.column).lpNorm<Eigen::Infinity>();
-  Eigen::VectorXd noise = Eigen::VectorXd::Zero(problem.system.nv), combination, left;
+  Eigen::VectorXd &noise = w.projected, &reach = w.step, &combination = w.scaled_phi, &left = w.scaled_force;
+  noise.setZero(problem.system.nv);
   for (int k = 0; k < rows.rows() - rows.rank(); ++k) {
     rows.dependence(k, combination, left);
     double load = 0;
-    Eigen::VectorXd reach = Eigen::VectorXd::Zero(noise.size());
+    reach.setZero(noise.size());
     for (Eigen::Index i = 0; i < combination.size(); ++i) {
       if (!(std::abs(combination[i]) > takes_part)) continue;
       load = std::max(load, std::abs(z.lambda[i] / problem.scaling.row[i]));
