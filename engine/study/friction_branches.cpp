@@ -16,7 +16,7 @@ namespace {
 
 constexpr int friction_intervals = 60; // of the range, of which each may be halved
 constexpr int most_friction_halvings = 7;
-constexpr double friction_bend = 2e-3; // of a value: how far from the straight line a point may lie
+constexpr double friction_bend = 2e-3;    // of a value: how far from the straight line a point may lie
 constexpr double friction_border = 1e-13; // of the range: how closely ends are located
 constexpr int most_edge_steps = 120;
 

@@ -517,7 +517,8 @@ TEST_CASE("reactions feel at once the acceleration that a number causes", "[line
 }
 
 TEST_CASE("static gains of reactions are the slopes of what solving tells", "[linear-model]") {
-  const Names outputs{"reaction_y(arm1)", "moment_y(arm1)", "reaction_y(slide)", "torque(spin)", "power(spin)"};
+  const Names outputs{"reaction_y(arm1)", "moment_y(arm1)", "reaction_y(slide)", "torque(spin)",
+                      "power(spin)"};
   for (const char* scene : {"governor", "governor_engine"}) {
     Mechanism m = shipped(scene);
     for (const std::string& text : outputs)
