@@ -106,6 +106,7 @@ std::string no_modes(const Solution& solution) {
     return "The linearised motion turns with the drives and has no modes of one shape; solve tells its "
            "Floquet "
            "multipliers.";
+  if (!solution.stability_reason && !solution.eigenvalues) return solution.message;
   return "No coordinate is free to swing.";
 }
 

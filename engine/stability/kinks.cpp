@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -18,6 +19,7 @@ constexpr double far = 1e-6, near = far / 64; // of the size of a number
 // The same: nearer to its limit a coordinate is just at its stop. Stiff stops give way by little, and one
 // that is pressed is on its one side.
 constexpr double at_stop = 1e-10;
+constexpr double at_rest = 1e-12; // of the terms of the forces along the coordinate
 
 // Slopes before and after a jump within some 1e-8 of `size` beside x, of a law with this slope.
 template <class Slope>
@@ -78,6 +80,14 @@ std::optional<std::array<double, 2>> stiffness_beside_stop(const CoordinateForce
   if (before == after) return {};
   const double spring = force.curvature(x) - stop(x);
   return std::array{spring + before, spring + after};
+}
+
+// The force by which a coordinate presses on its stop, or would at its other side of it.
+double force_at_stop(const CoordinateForce& force, double x) {
+  double away = std::numeric_limits<double>::infinity();
+  if (force.has_lower) away = std::abs(x - force.lower);
+  if (force.has_upper) away = std::min(away, std::abs(x - force.upper));
+  return force.stop_stiffness * away;
 }
 
 // Whether two inputs cross the same kink, be it in opposite directions.
@@ -186,6 +196,17 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
     look_at_polar(Search(Kink::Of::vane_in_turning_air, i, out), vane, k.at(e.ends.b).R,
                   turning_air_force<double>(e, vane, k).flow);
   }
+  // What is pressed by more than rounding leaves of the forces there is on one side for good, however little
+  // a stiff stop gives way.
+  Magnitudes terms;
+  const auto is_pressed = [&](const CoordinateForce& force, double x, double size, int v) {
+    if (terms.force.size() == 0) {
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(system.rows);
+      evaluate_magnitudes(system, p, q, none, k, terms);
+    }
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(x), size);
+    return force_at_stop(force, x) > std::max(at_rest * terms.force[v], force.stop_stiffness * rounding);
+  };
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const Link& link = system.links[l];
     if (link.v < 0 || link.drive >= 0 || !p.links[l].elastic) continue;
@@ -196,7 +217,8 @@ std::vector<Kink> find_kinks(const Problem& problem, const Eigen::VectorXd& q, c
       if (!has_stop(force)) continue;
       const double x =
           spherical ? rotation_vector(link, p.links[l], q)[static_cast<Eigen::Index>(i)] : q[link.q];
-      if (const auto slopes = stiffness_beside_stop(force, x, size))
+      const auto slopes = stiffness_beside_stop(force, x, size);
+      if (slopes && !is_pressed(force, x, size, link.v + static_cast<int>(i)))
         out.push_back({Kink::Of::stop, l, Kink::Law::spring, x, *slopes, i, {}});
     }
   }

@@ -205,11 +205,12 @@ class FrictionFollower {
       return least;
     };
     Edge edge{good, {}, false};
-    double low = margin(good), high = bad ? margin(*bad) : never;
+    const double bad_margin = bad ? margin(*bad) : never;
+    double low = margin(good), high = bad_margin;
     if (!(low > 0) || !(high < 0)) low = 1, high = never; // within the errors of a rate
     RootBracket bracket(good.number, low, bad_number, high);
     bool is_covered = covered(bad_number);
-    edge.slips = std::isfinite(high);
+    edge.slips = std::isfinite(bad_margin); // also where the border is that very number
     for (int i = 0; i < most_edge_steps && bracket.width() > friction_border * range(); ++i) {
       const double here = bracket.next();
       if (here == bracket.low() || here == bracket.high()) break;

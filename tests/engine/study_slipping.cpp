@@ -238,6 +238,21 @@ TEST_CASE(
   CHECK_THAT(held.back().parameter, WithinRel(2 / 0.09, 1e-9));
 }
 
+TEST_CASE("slipping begins at a place of the grid as well as between two") {
+  const double to = GENERATE(65., 66.3); // in sixty steps from 5: of 1, and of more
+  // The paddles take 0.09 w, friction holds 0.9: up to 10 rad/s.
+  const Mechanism m = disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 0.9})"), paddles);
+  const ResponseDiagram d = follow_response(m, "joints.shaft.drive.speed", 5, to);
+  INFO(d.message);
+  REQUIRE(d.branches.size() == 2);
+  for (const ResponseBranch& b : d.branches)
+    CHECK((b.begin == "a joint with friction begins to slip, or sticks" ||
+           b.end == "a joint with friction begins to slip, or sticks"));
+  REQUIRE(d.special.size() == 1);
+  CHECK(d.special[0].type == SpecialPointType::slip);
+  CHECK_THAT(d.special[0].at.parameter, WithinRel(10, 1e-9));
+}
+
 TEST_CASE("all steady states: what slips is listed, and bands tell of what friction holds") {
   const AllSolutions slipping =
       Analysis(disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 0.5})"), paddles)).solve_all();
