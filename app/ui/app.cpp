@@ -67,6 +67,7 @@ void show_document(App& app, bool same_file) {
   app.panels->outline = {};
   app.panels->inspector = {};
   app.panels->history.forget();
+  app.panels->palette.forget();
   app.ui.fields = {};
   app.ui.sections = {};
   app.tool = {.snap = app.tool.snap};

@@ -205,6 +205,22 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
   CHECK(app.ui.widgets.count("plot/motion/plot1/area") == 1);
 }
 
+TEST_CASE("plots show the speed that a drive by torque settles at") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_document(app.session, Document(shipped("windmill")));
+  robot.frames(4);
+  robot.key('M');
+  robot.frames(3);
+  const auto found = std::ranges::find_if(app.session.answer.solution.coordinates,
+                                          [](const CoordinateSolution& c) { return c.speed.has_value(); });
+  REQUIRE(found != app.session.answer.solution.coordinates.end());
+  const Plot rate = motion_plot(app.session, "rate " + found->joint);
+  REQUIRE(rate.references.size() == 1);
+  CHECK(rate.references[0].at == Approx(*found->speed));
+  CHECK(motion_plot(app.session, "value " + found->joint).references.empty()); // it goes on
+}
+
 TEST_CASE("the state that is shown can be kept and started from") {
   MotionRobot robot;
   App& app = robot.app;

@@ -7,6 +7,7 @@
 #include "app/ui/panels/palette_entries.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 
@@ -75,6 +76,22 @@ TEST_CASE("a part that is found is selected and brought into view") {
   const ImVec2 middle = robot.widget("view").center();
   CHECK(std::abs(at.x - middle.x) < 160); // its arm, too, is in view
   CHECK(std::abs(at.y - middle.y) < 160);
+}
+
+TEST_CASE("in another document its own parts and numbers are found") {
+  Finder robot;
+  App& app = robot.app;
+  robot.find("ball1");
+  robot.key(key_escape);
+  robot.frames(2);
+  const auto revision = app.session.document.revision();
+  open_document(app.session, Document(shipped("pendulum")));
+  REQUIRE(app.session.document.revision() == revision); // they begin anew
+  robot.frames(2);
+  robot.find("arm");
+  CHECK(robot.entry().name.starts_with("part/"));
+  for (const PaletteEntry& entry : app.panels->palette.found())
+    CHECK(entry.name.find("ball") == std::string::npos);
 }
 
 TEST_CASE("a number that is found has its value and unit, and its slider or field gets the keys") {

@@ -17,6 +17,8 @@ class CommandPalette {
   bool wanted() const { return wanted_; }
   bool showing() const { return showing_; }
   const std::vector<PaletteEntry>& found() const { return index_.found; } // in the last frame
+  // What it knows of a document; revisions of another begin anew.
+  void forget() { index_ = {}; }
   // Returns the entry that was chosen; see use_palette_entry().
   std::optional<PaletteEntry> draw(const Session& session, Ui& ui, const CommandRunner& commands);
 

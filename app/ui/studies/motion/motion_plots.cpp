@@ -116,9 +116,10 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
 std::optional<double> steady_value(const Session& session, const std::string& key) {
   if (!converged(session)) return std::nullopt;
   const Solution& s = session.answer.solution;
-  if (key.starts_with("rate ")) return 0;
-  for (const CoordinateSolution& c : s.coordinates)
-    if (key == "value " + coordinate_label(c) && !c.driven) return c.value;
+  for (const CoordinateSolution& c : s.coordinates) {
+    if (key == "rate " + coordinate_label(c)) return c.speed.value_or(0);
+    if (key == "value " + coordinate_label(c) && !c.driven && !c.speed) return c.value;
+  }
   for (const MeasureSolution& m : s.measures)
     if (key == "measure " + m.name) return m.value;
   for (const DriveTorque& d : s.drive_torques)
