@@ -349,7 +349,7 @@ SlowChange find_slow_change(const Mechanism& mechanism, const std::string& addre
     throw NoWay{
         "Loops tie joints with friction to each other: how they share the load, and which slips first, "
         "is open."};
-  const auto [low, high] = std::ranges::minmax({places.front().number, places.back().number});
+  const auto [low, high] = std::minmax({places.front().number, places.back().number});
   std::vector<FreeNumber> free{{address, low, high}};
   std::vector<std::string> wanted;
   for (const CoordinateReference& at : frictions) {

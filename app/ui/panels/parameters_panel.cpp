@@ -205,8 +205,8 @@ bool sliders_moved(const Session& session) {
 
 void ParametersPanel::draw_group(Session& session, Ui& ui, ParameterGroup which, const char* name,
                                  const char* title, bool& open) {
-  const auto [first, last] =
-      std::ranges::equal_range(session.parameters, which, {}, &ParameterControl::group);
+  const auto first = std::ranges::lower_bound(session.parameters, which, {}, &ParameterControl::group);
+  const auto last = std::ranges::upper_bound(session.parameters, which, {}, &ParameterControl::group);
   if (first == last || !section(ui, name, title, open)) return;
   if (const auto sought = std::find_if(
           first, last, [&](const ParameterControl& each) { return each.address == ui.keyboard.sought; });

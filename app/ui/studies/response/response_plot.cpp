@@ -165,8 +165,8 @@ void add_band(const Session& session, Plot& plot) {
     }
   }
   // The legend begins with what is the rule.
-  std::ranges::stable_partition(plot.bands,
-                                [](const PlotBand& band) { return band.color == plot_color::sky_blue; });
+  std::stable_partition(plot.bands.begin(), plot.bands.end(),
+                        [](const PlotBand& band) { return band.color == plot_color::sky_blue; });
 }
 
 // Where friction lets coordinates and measures stand; in SI units.
