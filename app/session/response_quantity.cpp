@@ -30,19 +30,6 @@ std::vector<double> sorted_parts(const ResponsePoint& point, Part part) {
 
 } // namespace
 
-ResponsePoint response_point(const Solution& solution, double parameter) {
-  ResponsePoint point;
-  point.parameter = parameter;
-  point.coordinates = solution.coordinates;
-  point.stable = solution.stable;
-  point.stability_reason = solution.stability_reason;
-  if (solution.eigenvalues) point.eigenvalues = *solution.eigenvalues;
-  point.reactions = solution.reactions;
-  point.drive_torques = solution.drive_torques;
-  point.measures = solution.measures;
-  return point;
-}
-
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   std::vector<ResponseQuantity> out;
   for (const CoordinateSolution& c : point.coordinates)

@@ -1,7 +1,7 @@
 // What the response curve can show over the parameter.
 #pragma once
 
-#include "engine/continuation/branches.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <string>
 #include <vector>
@@ -15,9 +15,6 @@ struct ResponseQuantity {
   std::string unit;  // before a person's choice (see units.hpp): "rad", "m", "N m", "Hz"
   double factor = 1; // from SI units to this
 };
-
-// A steady state as a point of a curve.
-ResponsePoint response_point(const Solution& solution, double parameter);
 
 // All that the point, with everything in it, can tell.
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point);

@@ -28,22 +28,6 @@ struct FrictionPlace {
   bool goes = false;
 };
 
-ResponsePoint response_point_of(const Solution& s, double number) {
-  ResponsePoint out;
-  out.parameter = number;
-  out.coordinates = s.coordinates;
-  out.stable = s.stable;
-  out.stability_reason = s.stability_reason;
-  if (s.eigenvalues) out.eigenvalues = *s.eigenvalues;
-  out.floquet = s.floquet;
-  out.reactions = s.reactions;
-  out.drive_torques = s.drive_torques;
-  out.measures = s.measures;
-  out.singular_loops = s.singular_loops;
-  out.frictions = s.frictions;
-  return out;
-}
-
 // What is followed of a state: where coordinates stand, or how fast they go on.
 std::vector<double> values_of(const FrictionPlace& place) {
   std::vector<double> out;
@@ -113,7 +97,7 @@ class FrictionFollower {
     if (beside) solve.start = start_values(beside->point.coordinates);
     auto state = solve_with_parts(with_parameter(mechanism_, address_, number), parts, solve);
     if (!state) return std::nullopt;
-    return FrictionPlace{number, response_point_of(state->solution, number), std::move(state->margins),
+    return FrictionPlace{number, response_point(state->solution, number), std::move(state->margins),
                          state->goes};
   } catch (const SceneError&) { // of numbers of which no mechanism can be made
     return std::nullopt;
@@ -258,6 +242,22 @@ class FrictionFollower {
 };
 
 } // namespace
+
+ResponsePoint response_point(const Solution& s, double parameter) {
+  ResponsePoint out;
+  out.parameter = parameter;
+  out.coordinates = s.coordinates;
+  out.stable = s.stable;
+  out.stability_reason = s.stability_reason;
+  if (s.eigenvalues) out.eigenvalues = *s.eigenvalues;
+  out.floquet = s.floquet;
+  out.reactions = s.reactions;
+  out.drive_torques = s.drive_torques;
+  out.measures = s.measures;
+  out.singular_loops = s.singular_loops;
+  out.frictions = s.frictions;
+  return out;
+}
 
 ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options) {

@@ -13,4 +13,7 @@ namespace flyball {
 ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options = {});
 
+// A steady state as a point of such a curve.
+ResponsePoint response_point(const Solution& solution, double parameter);
+
 } // namespace flyball
