@@ -5,20 +5,6 @@
 
 namespace flyball {
 
-std::vector<StopElement> list_stops(const System& system, const Parameters& p) {
-  std::vector<StopElement> out;
-  for (std::size_t i = 0; i < system.links.size(); ++i) {
-    if (system.links[i].v < 0) continue;
-    for (int k = 0; k < (system.links[i].type == LinkType::spherical ? 3 : 1); ++k) {
-      const CoordinateForce& f = p.links[i].force[static_cast<std::size_t>(k)];
-      if (f.stop_stiffness == 0) continue;
-      if (f.has_lower) out.push_back({static_cast<int>(i), k, false, f.lower, f.stop_stiffness});
-      if (f.has_upper) out.push_back({static_cast<int>(i), k, true, f.upper, f.stop_stiffness});
-    }
-  }
-  return out;
-}
-
 Equations::Equations(const MotionModel& model, const Watch& watch)
     : model_(model), watch_(watch), system_(model.released), parameters_(model.parameters),
       n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())),
@@ -34,22 +20,6 @@ Equations::Equations(const MotionModel& model, const Watch& watch)
   zero_lambda_.setZero(system_.rows);
   for (int i = 0; i < n_; ++i)
     regular_.push_back(i);
-}
-
-std::vector<FlipElement> list_flips(const System& system, const Parameters& p) {
-  std::vector<FlipElement> out;
-  for (std::size_t i = 0; i < system.links.size(); ++i) {
-    if (system.links[i].v < 0 || system.links[i].type != LinkType::spherical) continue;
-    if (p.links[i].elastic || p.links[i].force[0].damped() || p.links[i].force[1].damped() ||
-        p.links[i].force[2].damped())
-      out.push_back({static_cast<int>(i), true});
-  }
-  return out;
-}
-
-Quat joint_rotation(const Link& link, const LinkParameters& p, const Eigen::VectorXd& q) {
-  const Quat d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
-  return (link.reversed ? d.conjugate() : d) * p.drawn_rotation;
 }
 
 // With rotations that are past half a turn put back to it.

@@ -9,30 +9,13 @@
 #pragma once
 
 #include "engine/dynamics/dense_motion.hpp"
+#include "engine/dynamics/event_elements.hpp"
 #include "engine/dynamics/sparse_motion.hpp"
 #include "engine/dynamics/tree_motion.hpp"
 #include "engine/dynamics/watch.hpp"
 #include "engine/system/reactions.hpp"
 
 namespace flyball {
-
-// A rotation vector on which springs or dampers act: their forces jump where it turns over, at half a turn.
-// `side` says on which side to take them, by the sign of the rotation's scalar part.
-struct FlipElement {
-  int link = 0;
-  bool side = true;
-};
-std::vector<FlipElement> list_flips(const System& system, const Parameters& parameters);
-// The rotation whose vector the joint's coordinates are, of any length and sign.
-Quat joint_rotation(const Link& link, const LinkParameters& parameters, const Eigen::VectorXd& q);
-
-// A stop of a free coordinate.
-struct StopElement {
-  int link = 0, component = 0;
-  bool upper = false;
-  double limit = 0, stiffness = 0;
-};
-std::vector<StopElement> list_stops(const System& system, const Parameters& parameters);
 
 class Equations {
  public:

@@ -108,13 +108,6 @@ bool MotionOde::project(double t, double* y) {
   return true;
 }
 
-double value_at_stop(const MotionModel& model, const StopElement& stop, const Eigen::VectorXd& q) {
-  const auto l = static_cast<std::size_t>(stop.link);
-  const Link& link = model.system.links[l];
-  if (link.type != LinkType::spherical) return q[link.q] - stop.limit;
-  return rotation_vector(link, model.parameters.links[l], q)[stop.component] - stop.limit;
-}
-
 void MotionOde::event_values(double t, const double* y, double* out) {
   q_ = Eigen::Map<const Eigen::VectorXd>(y, nq_);
   for (std::size_t i = 0; i < stops_.size(); ++i) {

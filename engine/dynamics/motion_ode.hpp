@@ -8,9 +8,6 @@
 
 namespace flyball {
 
-// How far (rad, m) a coordinate is above the limit of a stop.
-double value_at_stop(const MotionModel& model, const StopElement& stop, const Eigen::VectorXd& q);
-
 class MotionOde : public Ode {
  public:
   // `rate_scale` (1/s): how fast a coordinate that moves through a radian or the reach is as a rule;

@@ -3,7 +3,9 @@
 #include "engine/dynamics/choose_method.hpp"
 #include "engine/dynamics/friction_modes.hpp"
 #include "engine/dynamics/motion_ode.hpp"
+#include "engine/dynamics/pace.hpp"
 #include "engine/dynamics/recorder.hpp"
+#include "engine/dynamics/runaway.hpp"
 #include "engine/dynamics/singular_position.hpp"
 #include "engine/dynamics/start.hpp"
 #include "engine/dynamics/watch.hpp"
@@ -11,25 +13,16 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/messages.hpp"
-#include "engine/system/bearing.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace flyball {
 namespace {
 
-// A coordinate this many radians or reaches away, or as many times too fast, has left the mechanism.
-constexpr double far_away = 1e8, far_too_fast = 1e10;
-
-// Steps over which their size is judged, and how many times more than are allowed the rest would have to
-// need.
-constexpr long judged_steps = 5000;
-constexpr double hopeless = 100;
 // Explicit steps after which the choice of a method is thought over for the first time.
 constexpr long first_review = 500;
 
@@ -45,11 +38,13 @@ std::string at_time(double t) {
 } // namespace
 
 struct Simulator::State {
-  State(const SimulationOptions& wanted) : options(wanted), damped(wanted.damped), watch(wanted.cancel) {}
+  State(const SimulationOptions& wanted)
+      : options(wanted), damped(wanted.damped), watch(wanted.cancel), pace(wanted.max_steps) {}
 
   SimulationOptions options;
   bool damped = true;
   Watch watch;
+  Pace pace;
   std::shared_ptr<const MotionModel> model;
   std::unique_ptr<Equations> equations;
   std::unique_ptr<MotionOde> ode;
@@ -57,7 +52,7 @@ struct Simulator::State {
   std::vector<StopElement> stops;
   std::vector<bool> touching; // by stop
   std::vector<FlipElement> flips;
-  std::vector<Vec3> bearing_turns;         // rad, by bearing: of those that resist turns, at the last step
+  BearingTurns bearing_turns;
   std::shared_ptr<const MotionModel> free; // without what friction adds; null where there is none
   std::vector<FrictionElement> frictions;
   std::vector<int> slips;             // by friction, see with_modes()
@@ -108,7 +103,7 @@ struct Simulator::State {
     equations = std::make_unique<Equations>(*model, watch);
     stops = list_stops(model->system, model->parameters);
     touching.assign(stops.size(), false);
-    bearing_turns.clear();
+    bearing_turns.forget();
     flips = list_flips(model->system, model->parameters);
     restructure(t, u);
     if (!equations->evaluate(t, q, s))
@@ -233,9 +228,8 @@ struct Simulator::State {
     ode->set_inner_projection(method == Integrator::adams && equations->needs_projection());
     stepper = method == Integrator::runge_kutta ? make_runge_kutta_stepper(*ode, options.fixed_step)
                                                 : make_cvode_stepper(*ode, method);
-    review_at = taken + first_review;
-    judged_at = taken;
-    judged_from = stepped_to;
+    review_at = pace.taken + first_review;
+    pace.judge_from(stepped_to);
   }
 
   void start_stepper(double t) {
@@ -248,7 +242,7 @@ struct Simulator::State {
   // Stops by where q stands and goes; then independent rows and idle coordinates. Leaves s.
   void restructure(double t, const Eigen::VectorXd& u) {
     for (FlipElement& flip : flips)
-      flip.side = rotation(flip, q).w() >= 0;
+      flip.side = joint_rotation(*model, flip, q).w() >= 0;
     // What stands in balance may come upon a stop on the way there.
     equations->latch({}, {}, flips);
     equations->analyse(t, q, u);
@@ -284,7 +278,8 @@ struct Simulator::State {
     const bool late = watch.out_of_time();
     run.status = late ? RunStatus::time_limit : RunStatus::cancelled;
     run.message = late ? "The motion stopped " + where + ": the time limit of " +
-                             rounded_text(options.time_limit, 4) + " s was reached" + pace() + "."
+                             rounded_text(options.time_limit, 4) + " s was reached" +
+                             pace.text(stepped_to, fastest) + "."
                        : "Cancelled " + where + ".";
     return true;
   }
@@ -297,44 +292,9 @@ struct Simulator::State {
   }
 
   // What has run away, as a clause; empty as a rule.
-  std::string runaway(const Eigen::VectorXd& state) const {
-    double worst = 1;
-    std::string out;
-    for (const Link& link : model->system.links) {
-      if (link.v < 0) continue;
-      const bool rotation = link.type == LinkType::spherical;
-      for (int k = 0; k < (rotation ? 3 : 1); ++k) {
-        const double scale = model->scaling.column[link.v + k];
-        const double place = rotation ? 0 : std::abs(state[link.q]) / (far_away * scale);
-        const double speed =
-            std::abs(state[model->system.nq + link.v + k]) / (far_too_fast * scale * rate_scale);
-        if (!(std::max(place, speed) > worst)) continue;
-        worst = std::max(place, speed);
-        out = name_of_coordinate(*model, link.v + k) + " runs away";
-      }
-    }
-    if (!out.empty() && equations->independence() < 1e-3 * best_independence) return locked;
-    return out;
-  }
-
-  // The bearing that resists turns whose rotation vector went over half a turn since the last step, as a
-  // clause; empty as a rule.
-  std::string turned_over() {
-    const System& system = model->system;
-    bearing_turns.resize(system.bearings.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < system.bearings.size(); ++i) {
-      const BearingElement& e = system.bearings[i];
-      if (!model->parameters.bearings[i].resists_turns()) continue;
-      const Vec3 before = bearing_turns[i];
-      bearing_turns[i] =
-          bearing_state<double>(e, model->parameters.bearings[i], equations->kinematics()).x.tail<3>();
-      constexpr double quarter = std::numbers::pi / 2;
-      if (bearing_turns[i].dot(before) < -quarter * quarter)
-        return "the bodies of the bearing " +
-               model->mechanism.forces[static_cast<std::size_t>(e.force)].name +
-               " turned by more than half a turn against each other, where its moments jump";
-    }
-    return {};
+  std::string runaway() const {
+    const std::string out = runaway_coordinate(*model, y, rate_scale);
+    return !out.empty() && equations->independence() < 1e-3 * best_independence ? locked : out;
   }
 
   void handle_event(const StepOutcome& outcome) {
@@ -353,10 +313,10 @@ struct Simulator::State {
       // A rotation vector turned over, and with it the forces of its springs.
       FlipElement& flip = flips[i - stops.size()];
       flipped.push_back(flip.link);
-      const bool side = flip_rate(flip, u) > 0;
+      const bool side = flip_rate(*model, flip, q, u) > 0;
       if (side == flip.side) continue;
-      const bool beyond = (rotation(flip, q).w() >= 0) == side; // as log_rotation takes it
-      recorder->absorb((beyond ? 1 : -1) * flip_energy(flip.link));
+      const bool beyond = (joint_rotation(*model, flip, q).w() >= 0) == side; // as log_rotation takes it
+      recorder->absorb((beyond ? 1 : -1) * flip_energy(*model, flip, q));
       flip.side = side;
       changed = true;
       for (std::size_t k = 0; k < stops.size(); ++k) { // as the vector now says
@@ -369,7 +329,7 @@ struct Simulator::State {
       const auto i = static_cast<std::size_t>(e);
       if (i >= stops.size() || std::ranges::find(flipped, stops[i].link) != flipped.end()) continue;
       const StopElement& stop = stops[i];
-      const double rate = rate_of(stop, u);
+      const double rate = rate_at_stop(*model, stop, q, u);
       const bool touches = stop.upper ? rate > 0 : rate < 0;
       if (touches == touching[i]) continue;
       set_stop(i, touches, t);
@@ -414,21 +374,6 @@ struct Simulator::State {
     return missed;
   }
 
-  Quat rotation(const FlipElement& flip, const Eigen::VectorXd& at) const {
-    const auto l = static_cast<std::size_t>(flip.link);
-    return joint_rotation(model->system.links[l], model->parameters.links[l], at);
-  }
-  // 1/s, of the scalar part.
-  double flip_rate(const FlipElement& flip, const Eigen::VectorXd& u) const {
-    const Link& link = model->system.links[static_cast<std::size_t>(flip.link)];
-    const Quat turning(0, u[link.v], u[link.v + 1], u[link.v + 2]);
-    Eigen::VectorXd turned = q;
-    const Quat d(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
-    const Quat rate = turning * d;
-    turned.segment<4>(link.q) << rate.w(), rate.vec();
-    return rotation(flip, turned).w() / 2;
-  }
-
   bool some_slip_has_turned(const Eigen::VectorXd& u) const {
     for (std::size_t i = 0; i < frictions.size(); ++i)
       if (slips[i] * u[v_of(frictions[i])] < 0) return true;
@@ -453,31 +398,11 @@ struct Simulator::State {
     return true;
   }
 
-  // J, by which the springs of a rotation vector differ from what they were at the other side of half a turn.
-  double flip_energy(int link) const {
-    const auto l = static_cast<std::size_t>(link);
-    const LinkParameters& p = model->parameters.links[l];
-    const Vec3 r = rotation_vector(model->system.links[l], p, q);
-    double change = 0;
-    for (int k = 0; k < 3; ++k) {
-      const CoordinateForce& f = p.force[static_cast<std::size_t>(k)];
-      change += f.energy(r[k]) - f.energy(-r[k]);
-    }
-    return change;
-  }
-
-  double rate_of(const StopElement& stop, const Eigen::VectorXd& u) const {
-    const auto l = static_cast<std::size_t>(stop.link);
-    const Link& link = model->system.links[l];
-    if (link.type != LinkType::spherical) return u[link.v];
-    return rotation_vector_rate(link, model->parameters.links[l], q).row(stop.component) *
-           u.segment<3>(link.v);
-  }
-
   // After a step: whether all is well.
   bool check_step(double t) {
-    if (const std::string what = runaway(y); !what.empty()) return diverge(t, what);
-    if (const std::string what = turned_over(); !what.empty()) return diverge(t, what);
+    if (const std::string what = runaway(); !what.empty()) return diverge(t, what);
+    if (const std::string what = bearing_turns.turned_over(*model, equations->kinematics()); !what.empty())
+      return diverge(t, what);
     if (!stops.empty() && find_missed_stops(t)) {
       equations->latch(stops, touching, flips);
       ode->set_touching(touching);
@@ -549,30 +474,9 @@ struct Simulator::State {
     return true;
   }
 
-  // How long the last steps were, as a clause; empty before there are enough of them.
-  std::string pace() const {
-    if (taken - judged_at < 10) return "";
-    std::string out = "; its last steps took " +
-                      rounded_text((stepped_to - judged_from) / static_cast<double>(taken - judged_at), 2) +
-                      " s each";
-    if (fastest > 0) out += ", the fastest motion about the start is at " + rounded_text(fastest, 2) + " 1/s";
-    return out;
-  }
-
-  // Steps so short that the rest would never be done, however many were allowed: reported at once.
-  bool is_hopeless(double t) {
-    if (taken - judged_at < judged_steps) return false;
-    const double rest = std::max(t, begin + options.duration) - stepped_to;
-    const double each = (stepped_to - judged_from) / judged_steps;
-    if (rest > hopeless * static_cast<double>(options.max_steps) * each) return true;
-    judged_at = taken;
-    judged_from = stepped_to;
-    return false;
-  }
-
   // A motion may become stiff on its way. Thought over after ever more steps; to BDF where that suits it now.
   void review_method() {
-    review_at = 2 * taken;
+    review_at = 2 * pace.taken;
     if (method != Integrator::runge_kutta || options.method != Integrator::automatic ||
         options.fixed_step > 0)
       return;
@@ -600,13 +504,12 @@ struct Simulator::State {
       }
       if (!finish_step()) return false;
       if (stepped_to >= t) break; // over a singular position
-      if (++taken > options.max_steps)
+      if (++pace.taken > options.max_steps)
         return diverge(stepped_to, "more than " + std::to_string(options.max_steps) + " steps were needed");
-      if (is_hopeless(t))
-        return diverge(stepped_to, "it would need more than " +
-                                       rounded_text(hopeless * static_cast<double>(options.max_steps), 2) +
-                                       " steps" + pace());
-      if (taken >= review_at) review_method();
+      if (pace.is_hopeless(stepped_to, std::max(t, begin + options.duration)))
+        return diverge(stepped_to, "it would need more than " + rounded_text(pace.given_up_at(), 2) +
+                                       " steps" + pace.text(stepped_to, fastest));
+      if (pace.taken >= review_at) review_method();
       stepper->state_at(stepped_to, whole);
       began = stepped_to;
       const double end = before_singular > began ? std::min(t, before_singular) : t;
@@ -625,17 +528,15 @@ struct Simulator::State {
   // Why a step failed, from where it was well last.
   std::string reason_of(const StepOutcome& failure) {
     stepper->state_at(failure.time, y);
-    if (const std::string what = runaway(y); !what.empty()) return what;
+    if (const std::string what = runaway(); !what.empty()) return what;
     ode->unpack(y.data(), q, s);
     if (equations->project(failure.time, q, s) && equations->evaluate(failure.time, q, s))
       if (const std::string what = equations->trouble(); !what.empty()) return what;
     return equations->independence() < 0.01 * best_independence ? locked : failure.message;
   }
-  long taken = 0; // steps
-  long review_at = 0, judged_at = 0;
-  double judged_from = 0; // s
-  Eigen::VectorXd whole;  // where the last step began
-  double began = 0;       // s, when
+  long review_at = 0;    // steps
+  Eigen::VectorXd whole; // where the last step began
+  double began = 0;      // s, when
   // The next step goes no further (s); how often it was cut short since a singular position was passed.
   double before_singular = -std::numeric_limits<double>::infinity();
   int halvings = 0;
