@@ -29,7 +29,7 @@ void distances(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Ve
     }
     double d = a[link.q] - b[link.q];
     if (link.type == LinkType::revolute && !finds_speed(link) &&
-        (all_turns || !problem.parameters.links[l].elastic))
+        (all_turns || !turns_matter(problem.system, problem.parameters, static_cast<int>(l))))
       d = std::remainder(d, turn);
     visit(link.v, 1, d / problem.scaling.column[link.v]);
   }
@@ -71,7 +71,8 @@ Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd&
       continue;
     }
     double d = to[link.q] - from[link.q];
-    if (link.type == LinkType::revolute && !finds_speed(link) && !problem.parameters.links[l].elastic)
+    if (link.type == LinkType::revolute && !finds_speed(link) &&
+        !turns_matter(problem.system, problem.parameters, static_cast<int>(l)))
       d = std::remainder(d, turn);
     out[link.v] = d / problem.scaling.column[link.v];
   }

@@ -44,9 +44,9 @@ std::complex<double> coordinate_change(const System& system, const Parameters& p
 
 double away_from(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate,
                  double value, double wanted) {
-  const auto link = static_cast<std::size_t>(coordinate.link);
-  const bool turns = system.links[link].type == LinkType::revolute && !parameters.links[link].elastic &&
-                     !finds_speed(system.links[link]);
+  const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
+  const bool turns = link.type == LinkType::revolute && !turns_matter(system, parameters, coordinate.link) &&
+                     !finds_speed(link);
   return turns ? std::remainder(value - wanted, 2 * std::numbers::pi) : value - wanted;
 }
 

@@ -15,6 +15,7 @@
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/tied_motions.hpp"
+#include "engine/system/elastic_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,13 +149,19 @@ std::string without_standing(const Mechanism& mechanism, std::string_view law,
       return x.at.joint == asked.joint && x.at.coordinate == asked.coordinate;
     });
     if (found == standing.end()) continue;
-    const bool angle =
-        is_angle(mechanism.joints[static_cast<std::size_t>(asked.joint)].type, asked.coordinate);
+    const Joint& joint = mechanism.joints[static_cast<std::size_t>(asked.joint)];
+    const bool angle = is_angle(joint.type, asked.coordinate);
+    const auto held = [&]() -> std::string {
+      if (call->result == Result::rate) return angle ? "(0 rad/s)" : "(0 m/s)";
+      if (call->result == Result::coordinate)
+        return "(" + number_text(found->value) + (angle ? " rad)" : " m)");
+      const double free = joint.coordinates[static_cast<std::size_t>(asked.coordinate)].spring->free;
+      const ElasticForce spring = elastic_force(mechanism, joint, asked.coordinate, found->value - free);
+      return "(" + number_text(-spring.force) + (angle ? " N m)" : " N)");
+    };
     const ResultCall::Argument& last = call->arguments.back();
     const std::size_t end = text.find(')', last.begin + last.length);
-    text.replace(call->begin, end + 1 - call->begin,
-                 call->result == Result::rate ? (angle ? "(0 rad/s)" : "(0 m/s)")
-                                              : "(" + number_text(found->value) + (angle ? " rad)" : " m)"));
+    text.replace(call->begin, end + 1 - call->begin, held());
   }
   return text;
 }

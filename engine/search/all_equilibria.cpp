@@ -43,11 +43,7 @@ class Searcher {
     arrive(drawn_);
     deflate_from(drawn_, 8);
     look_in_ranges();
-    for (int times = 0; times < 3 && list_.states.empty() && !ended(); ++times) {
-      if (!widen_speeds(p_, 10, report_.ranges)) break;
-      spread_ = 0;
-      look_in_ranges();
-    }
+    look_at_all_speeds();
     report_.unseen = unseen();
     note_fastest();
     list_.report = std::move(report_);
@@ -89,6 +85,33 @@ class Searcher {
     }
   }
 
+  // Laws of torques have states at any speed: far from where they begin, of every order of magnitude, until
+  // as many starts as tell what the ranges hold find nothing more, or so many that there is no end of them.
+  void look_at_all_speeds() {
+    constexpr double times = 1000;
+    const std::size_t most = list_.states.size() + 50;
+    const bool none = list_.states.empty();
+    if (ended() || !widen_speeds(p_, times, none, report_.ranges)) return;
+    SearchStarts starts(p_, report_.ranges, options_.seed);
+    Eigen::VectorXd q = drawn_;
+    const int enough = (none ? 10 : 1) * least_arrivals();
+    std::size_t known = list_.states.size();
+    for (int vain = 0; vain < enough && known < most && !ended(); ++vain) {
+      starts.next(q);
+      spend(closing);
+      if (!assemble(p_, q, 0, w_)) continue;
+      if (arrive(q)) ++report_.arrivals;
+      deflate_from(q, 1);
+      if (list_.states.size() == known) continue;
+      known = list_.states.size();
+      vain = 0;
+    }
+    while (deflated_from_ < list_.states.size() && !ended())
+      deflate_from(Eigen::VectorXd(list_.states[deflated_from_++].q), 8);
+  }
+
+  int least_arrivals() const { return 20 + 10 * p_.system.nv; }
+
   void spend(double iterations) { spent_ += iterations * cost_; }
 
   // Whether to stop short, and why.
@@ -115,9 +138,8 @@ class Searcher {
   }
 
   bool settled() const {
-    const int least = 20 + 10 * p_.system.nv;
-    if (report_.arrivals == 0) return spread_ >= 10 * least;
-    return report_.arrivals >= least && unseen() <= options_.unseen;
+    if (report_.arrivals == 0) return spread_ >= 10 * least_arrivals();
+    return report_.arrivals >= least_arrivals() && unseen() <= options_.unseen;
   }
 
   // What solving answers belongs to the list: the ranges reach as far.

@@ -47,8 +47,8 @@ struct EquilibriumList {
   SearchReport report;
 };
 
-// From `drawn` and all over the ranges; where nothing is found, speeds that torques give in ranges ten, a
-// hundred and a thousand times as wide. The same options give the same list, whatever the computer does
+// From `drawn` and all over the ranges; then speeds that torques give up to a thousand times as fast, and
+// where nothing was found either way. The same options give the same list, whatever the computer does
 // besides, unless it ends by time.
 EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn,
                                     const SearchOptions& options, Workspace& w);

@@ -61,7 +61,9 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       ranges.push_back({value, value});
     } else if (c.angle) {
       const double half = link.type == LinkType::revolute ? pi * turns_of(problem, link) : pi;
-      const bool elsewhere = link.type == LinkType::revolute && lp.elastic && std::abs(value) > half;
+      const bool elsewhere = link.type == LinkType::revolute &&
+                             turns_matter(problem.system, problem.parameters, c.link) &&
+                             std::abs(value) > half;
       const double middle = elsewhere ? value : 0;
       ranges.push_back({middle - half, middle + half});
     } else {
@@ -81,12 +83,13 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
   return ranges;
 }
 
-bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges) {
+bool widen_speeds(const Problem& problem, double times, bool either_way, std::vector<SearchRange>& ranges) {
   bool any = false;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (!finds_speed(link_of(problem, problem.system.coordinates[i]))) continue;
-    const double most = times * std::max(std::abs(ranges[i].lower), std::abs(ranges[i].upper));
-    ranges[i] = {-most, most};
+    const double even = std::max(std::abs(ranges[i].lower), std::abs(ranges[i].upper)), most = times * even;
+    ranges[i] = either_way ? SearchRange{-most, most, even}
+                           : SearchRange{times * ranges[i].lower, times * ranges[i].upper, even};
     any = true;
   }
   return any;
@@ -155,7 +158,14 @@ void SearchStarts::next(Eigen::VectorXd& q) {
     if (link.v < 0) continue;
     const auto v = static_cast<std::size_t>(link.v);
     if (link.type != LinkType::spherical) {
-      q[link.q] = ranges_[i].lower + (ranges_[i].upper - ranges_[i].lower) * place_[v];
+      const SearchRange& range = ranges_[i];
+      if (range.even > 0) {
+        const double lower = std::asinh(range.lower / range.even),
+                     upper = std::asinh(range.upper / range.even);
+        q[link.q] = range.even * std::sinh(lower + (upper - lower) * place_[v]);
+      } else {
+        q[link.q] = range.lower + (range.upper - range.lower) * place_[v];
+      }
     } else if (c.index == link.coordinate) {
       const double a = std::sqrt(1 - place_[v]), b = std::sqrt(place_[v]);
       const double x = 2 * pi * place_[v + 1], y = 2 * pi * place_[v + 2];

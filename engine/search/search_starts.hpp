@@ -10,6 +10,9 @@ namespace flyball {
 
 struct SearchRange {
   double lower = 0, upper = 0; // rad or m, as the joint labels its coordinate
+  // Starts lie evenly up to here from zero, and beyond it as many in each order of magnitude; 0: evenly
+  // everywhere.
+  double even = 0;
 };
 
 // By coordinate in System::coordinates. Angles: one turn about zero, or about the drawn value where that lies
@@ -18,8 +21,9 @@ struct SearchRange {
 // speeds (rad/s or m/s) from rest to three times that at which the search for them begins.
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
 
-// Widens those of speeds that are found to `times` as much, either way. False where there are none.
-bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges);
+// Widens those of speeds that are found to `times` as much, and `either_way` or as they go, with starts of
+// every order of magnitude. False where there are none.
+bool widen_speeds(const Problem& problem, double times, bool either_way, std::vector<SearchRange>& ranges);
 
 // Widens the ranges of slides, and of angles with springs or stops, so that they contain `q`.
 void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<SearchRange>& ranges);

@@ -1,5 +1,6 @@
 #include "engine/stability/kinks.hpp"
 
+#include "engine/stability/moved_inputs.hpp"
 #include "engine/system/air_force.hpp"
 #include "engine/system/cut_damper.hpp"
 #include "engine/system/drive_torque.hpp"
@@ -30,6 +31,12 @@ std::optional<std::array<double, 2>> jump_at(const Slope& slope, double x, doubl
   const double largest = std::max(std::abs(close[0]), std::abs(close[1]));
   // A smooth slope differs by 1/64 as much.
   if (!(difference(close) > 1e-6 * largest) || difference(close) < 0.5 * difference(wide)) return {};
+  // Where it jumps it is as before or as after in between, too; a smooth law that bends within so little has
+  // slopes of its own there.
+  for (int i = -3; i <= 3; ++i) {
+    const double there = slope(x + i / 4. * near * size);
+    if (std::min(std::abs(there - close[0]), std::abs(there - close[1])) > 0.1 * difference(close)) return {};
+  }
   return close;
 }
 
@@ -117,6 +124,7 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
     const DriveLaw::Input& input = law.inputs[i];
     const double at = law_input(system, p, law, numbers, i, q, k);
     if (stands_on_own_kink(system, p, law, numbers, i, q, k)) {
+      if (!is_moved(problem, law, numbers, i, q, k)) continue;
       const double slope = drive_law_slopes(system, p, law, numbers, q, k, i, 0)[i];
       if (slope != 0) out.push_back({Kink::Of::drive, drive, which, at, {-slope, slope}, i, {}});
       continue;
@@ -129,6 +137,8 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
       if (link.v < 0) continue;
       size = (link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v]) / 64;
     }
+    if (is_spring_force(input.quantity.result) || input.quantity.result == Result::spring)
+      size = law_input_size(system, p, law, numbers, i, q, k) / 64;
     const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
     const auto slope = [&](double by) { // of all that ask for the same
       const std::vector<double> all = slopes(by);
@@ -138,7 +148,7 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
       return sum;
     };
     const auto jump = jump_at(slope, 0, size);
-    if (!jump) continue;
+    if (!jump || !is_moved(problem, law, numbers, i, q, k)) continue;
     Kink kink{Kink::Of::drive, drive, which, at, *jump, i, {slopes(-near * size), slopes(near * size)}};
     if (std::none_of(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
                      [&](const Kink& other) { return same_sides(kink, other); }))

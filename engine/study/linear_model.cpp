@@ -401,7 +401,7 @@ class Builder {
                                                : " has no value in the steady state.")};
     const double rate = out.speed_size;
     // Rates per unit, and in units of what a direction is measured by.
-    Eigen::MatrixXd normalised(outputs, 2 * k + inputs), error = normalised;
+    Eigen::MatrixXd normalised(outputs, 2 * k + inputs), error = normalised, kink = normalised;
     Eigen::VectorXd sizes(2 * k + inputs);
     const auto take = [&](Eigen::Index i, MotionDirection d, double least) {
       const double size = std::max(size_of(motion, d, rate), least);
@@ -409,6 +409,7 @@ class Builder {
       if (!(size > 0)) { // nothing moves
         normalised.col(i).setZero();
         error.col(i).setZero();
+        kink.col(i).setZero();
         return;
       }
       for (Eigen::VectorXd* x : {&d.q, &d.u, &d.a, &d.lambda})
@@ -417,6 +418,7 @@ class Builder {
       const MotionOutputs::Rates rates = h.along(motion.at, d);
       normalised.col(i) = rates.value;
       error.col(i) = rates.error;
+      kink.col(i) = rates.kink;
     };
     const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(all)); };
     const auto free = [&](const Eigen::VectorXd& x) {
@@ -450,6 +452,11 @@ class Builder {
           normalised(i, s) = 0;
         else
           out.error[i] = std::max(out.error[i], error(i, s) / out.most[i]);
+    for (Eigen::Index i = 0; i < outputs && kink.cols() > 0; ++i)
+      if (kink.row(i).maxCoeff() > nothing * out.most[i])
+        throw Refusal{"The output " + output(i) +
+                      " has no slope in the steady state, where it stands on a kink, as the size of a vector "
+                      "does that vanishes there. Its components may have one."};
     refuse_rates(motion, effects, h, rate, out.most);
     out.normalised = normalised;
     const Eigen::MatrixXd per_unit = normalised * sizes.asDiagonal();

@@ -69,7 +69,7 @@ Eigen::VectorXd MotionOutputs::values(const MotionOfAll& at) {
 }
 
 MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDirection& direction) {
-  values(at); // for whole turns
+  const Eigen::VectorXd here = values(at); // and for whole turns
   MotionOfAll moved;
   const auto beside = [&](double step) {
     moved.q = at.q;
@@ -90,19 +90,27 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
     measures_.bind(varied_, model_.system, model_.parameters);
     return out;
   };
+  // And how the slope changes over twice the step: in its proportion, but on a kink, and as one over it where
+  // it is rounding.
+  Eigen::VectorXd bend;
   const auto difference = [&](double step) {
-    const Eigen::VectorXd forth = beside(step);
-    return Eigen::VectorXd((forth - beside(-step)) / (2 * step));
+    const Eigen::VectorXd forth = beside(step), back = beside(-step);
+    bend = (forth + back - 2 * here) / (2 * step);
+    return Eigen::VectorXd((forth - back) / (2 * step));
   };
   // Smaller ones where a curve is sharp, as the size of a vector that nearly vanishes.
   constexpr double good = 1e-10;
+  constexpr double steps[] = {4e-3, 4e-4, 4e-5};
   Rates out;
-  for (const double h : {4e-3, 4e-4, 4e-5}) {
-    const Eigen::VectorXd d1 = difference(h), d2 = difference(h / 2), d3 = difference(h / 4);
+  bool straight = true; // the slope changes less and less
+  for (const double h : steps) {
+    const Eigen::VectorXd d1 = difference(h), wide = bend.cwiseAbs(), d2 = difference(h / 2),
+                          d3 = difference(h / 4);
     const Eigen::VectorXd once = (4 * d2 - d1) / 3, twice = (4 * d3 - d2) / 3,
                           last = twice + (twice - once) / 15, changed = (last - twice).cwiseAbs();
     if (out.value.size() == 0) {
-      out = {last, changed};
+      out = {last, changed, wide};
+      straight = (bend.array().abs() <= wide.array() / 2).all();
     } else {
       for (Eigen::Index i = 0; i < last.size(); ++i)
         if (changed[i] < out.error[i]) {
@@ -111,6 +119,15 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
         }
     }
     if ((out.error.array() <= good * out.value.array().abs()).all()) break;
+  }
+  if (straight) {
+    out.kink.setZero();
+    return out;
+  }
+  difference(steps[2]);
+  for (Eigen::Index i = 0; i < bend.size(); ++i) {
+    const double near = std::abs(bend[i]), far = out.kink[i];
+    if (!(near > far / 4 && near < 4 * far)) out.kink[i] = 0;
   }
   return out;
 }

@@ -15,7 +15,7 @@ namespace {
 
 // A spring's length is the distance of its ends.
 Result of_points(const DriveLaw::Input& input) {
-  return input.spring >= 0 ? Result::distance : input.quantity.result;
+  return input.quantity.result == Result::length ? Result::distance : input.quantity.result;
 }
 
 constexpr std::size_t most_inputs = 32; // see read_drive_law
@@ -36,15 +36,40 @@ struct LawState {
 
   N input(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t i) const {
     const DriveLaw::Input& input = law.inputs[i];
+    if (is_spring_force(input.quantity.result)) {
+      const auto s = static_cast<std::size_t>(input.spring);
+      return static_cast<N>(spring_force<S>(input.quantity.result, system.springs[s], p.springs[s], k));
+    }
     if (input.coordinate < 0) return point_quantity<S>(of_points(input), numbers.points[i], p, k);
     const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-    if (!input.rate()) return coordinate_value<N>(system, p, q, c);
+    if (!input.rate()) {
+      const N value = coordinate_value<N>(system, p, q, c);
+      return input.quantity.result == Result::spring ? spring_of(c).value(value) : value;
+    }
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
     if (finds_speed(link)) return q[link.q];
     if (link.drive >= 0) return p.links[static_cast<std::size_t>(c.link)].speed * p.speed_scale;
     if constexpr (std::is_same_v<S, double>)
       if (system.drives.empty()) return turning_rate(system, c.link, k);
     return 0; // at rest in a steady state
+  }
+
+  // A coordinate's spring: its force along the coordinate, and how that changes with it.
+  struct CoordinateSpringForce {
+    const BasicCoordinateForce<N>& force;
+    bool by_law() const { return force.laws && force.laws->spring; }
+    N value(N at) const {
+      return by_law() ? -force.laws->spring.value(N(at - force.laws->free))
+                      : -force.stiffness * (at - force.free);
+    }
+    N slope(N at) const {
+      return by_law() ? N(-force.laws->spring.slope(static_cast<double>(at - force.laws->free)))
+                      : -force.stiffness;
+    }
+  };
+  CoordinateSpringForce spring_of(const CoordinateInfo& c) const {
+    const auto l = static_cast<std::size_t>(c.link);
+    return {p.links[l].force[static_cast<std::size_t>(c.index - system.links[l].coordinate)]};
   }
 
   // With the rates of the numbers, and the rate 1 at one input; all that ask for the same as another are `by`
@@ -93,7 +118,9 @@ struct LawState {
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
       const Link& link = system.links[static_cast<std::size_t>(c.link)];
       if (link.v < 0) continue;
-      const double change = factor * slope(law, numbers, i);
+      double change = factor * slope(law, numbers, i);
+      if (input.quantity.result == Result::spring)
+        change *= spring_of(c).slope(coordinate_value<N>(system, p, q, c));
       if (link.type != LinkType::spherical) {
         add(row, link.v, change);
         continue;
@@ -107,9 +134,7 @@ struct LawState {
   template <class Add>
   void add_derivatives_of_points(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
                                  bool rates, double factor, int row, const Add& add) const {
-    const Result asked = of_points(law.inputs[i]);
-    if (rates && !is_of_velocity(asked)) return;
-    const PointQuantityRates by = point_rates_of(asked, numbers.points[i], k);
+    const PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
     const double change = factor * slope(law, numbers, i);
     // On the kink of an angle at 0 and pi there is no rate; see kinks.hpp.
     const auto act = [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); };
@@ -179,13 +204,33 @@ double law_input(const System& system, const Parameters& p, const DriveLaw& law,
   return LawState<double>{system, p, q, k}.input(law, numbers, input);
 }
 
+PointQuantityRates input_rates(const System& system, const Parameters& p, const DriveLaw& law,
+                               const DriveLawParameters& numbers, std::size_t i,
+                               const Kinematics<double>& k) {
+  const DriveLaw::Input& input = law.inputs[i];
+  if (!is_spring_force(input.quantity.result)) return point_rates_of(of_points(input), numbers.points[i], k);
+  const auto s = static_cast<std::size_t>(input.spring);
+  return spring_force_rates(input.quantity.result, system.springs[s], p.springs[s], k);
+}
+
 double law_input_size(const System& system, const Parameters& p, const DriveLaw& law,
                       const DriveLawParameters& numbers, std::size_t i, const Eigen::VectorXd& q,
                       const Kinematics<double>& k) {
   const DriveLaw::Input& input = law.inputs[i];
   const double value = std::abs(law_input(system, p, law, numbers, i, q, k));
   const Result asked = of_points(input);
+  if (asked == Result::spring) {
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+    const double slope =
+        LawState<double>{system, p, q, k}.spring_of(c).slope(coordinate_value(system, p, q, c));
+    return value + std::abs(slope) * (c.angle ? 1 : p.length);
+  }
   if (input.coordinate >= 0 || asked == Result::angle) return std::max(value, 1.);
+  if (is_spring_force(asked)) {
+    const auto s = static_cast<std::size_t>(input.spring);
+    const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
+    return std::abs(spring.tension) + std::abs(p.springs[s].pull_slope(spring.length)) * p.length;
+  }
   if (!is_of_velocity(asked)) return value + p.length;
   const LinkState<double>& x = k.at(numbers.points[i][0].link);
   return x.v.norm() + x.w.norm() * p.length;
@@ -196,6 +241,15 @@ bool stands_on_own_kink(const System& system, const Parameters& p, const DriveLa
                         const Kinematics<double>& k) {
   constexpr double near = 1e-8;
   const Result asked = of_points(law.inputs[i]);
+  if (is_spring_force(asked)) {
+    const auto s = static_cast<std::size_t>(law.inputs[i].spring);
+    const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
+    const bool meets = spring.length <= near * p.length,
+               smooth = p.springs[s].without_length() && asked != Result::tension && asked != Result::force;
+    return (meets && !smooth) ||
+           (asked == Result::force &&
+            std::abs(spring.tension) <= near * law_input_size(system, p, law, numbers, i, q, k));
+  }
   if (asked != Result::distance && asked != Result::angle && asked != Result::speed) return false;
   const double value = law_input(system, p, law, numbers, i, q, k);
   const double from_end = asked == Result::angle ? std::min(value, std::numbers::pi - value) : value;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "engine/system/kinematics.hpp"
+#include "engine/system/point_quantity.hpp"
 
 namespace flyball {
 
@@ -28,7 +29,8 @@ double drive_torque(const System& system, const Parameters& parameters, std::siz
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
 // What the law of a torque or load is given for one of its inputs, what it may be in size, and whether it
-// stands where that has no slope: a distance or the speed of a point of zero, an angle of 0 or pi.
+// stands where that has no slope: a distance or the speed of a point of zero, an angle of 0 or pi, the size
+// of a spring's force that vanishes, what a spring exerts whose points meet.
 double law_input(const System& system, const Parameters& parameters, const DriveLaw& law,
                  const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
                  const Kinematics<double>& kinematics);
@@ -38,6 +40,11 @@ double law_input_size(const System& system, const Parameters& parameters, const 
 bool stands_on_own_kink(const System& system, const Parameters& parameters, const DriveLaw& law,
                         const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
                         const Kinematics<double>& kinematics);
+
+// How an input of points or of a spring between two changes with them.
+PointQuantityRates input_rates(const System& system, const Parameters& parameters, const DriveLaw& law,
+                               const DriveLawParameters& numbers, std::size_t input,
+                               const Kinematics<double>& kinematics);
 
 // The derivatives of the law of a torque or load with its inputs, where one of them is `by` further on.
 std::vector<double> drive_law_slopes(const System& system, const Parameters& parameters, const DriveLaw& law,

@@ -139,9 +139,22 @@ S coordinate_value(const System& system, const ParametersOf<S>& parameters, cons
   return q[link.q];
 }
 
+bool turns_matter(const System& system, const Parameters& p, int l) {
+  if (p.links[static_cast<std::size_t>(l)].elastic) return true;
+  const auto asks = [&](const DriveLaw& law) {
+    return std::ranges::any_of(law.inputs, [&](const DriveLaw::Input& input) {
+      return input.quantity.result == Result::coordinate &&
+             system.coordinates[static_cast<std::size_t>(input.coordinate)].link == l;
+    });
+  };
+  return std::ranges::any_of(system.torques, [&](const DriveTorqueElement& drive) {
+    return asks(drive.torque) || asks(drive.load);
+  });
+}
+
 bool turns_freely(const System& system, const Parameters& p, int l) {
   const Link& link = system.links[static_cast<std::size_t>(l)];
-  return link.type == LinkType::revolute && link.drive < 0 && !p.links[static_cast<std::size_t>(l)].elastic &&
+  return link.type == LinkType::revolute && link.drive < 0 && !turns_matter(system, p, l) &&
          std::ranges::none_of(system.cuts, [&](const CutJoint& cut) {
            return cut.type == JointType::gear && (cut.gear_va == link.v || cut.gear_vb == link.v);
          });

@@ -66,8 +66,11 @@ void retract(const System& system, const Configuration<S>& step, Configuration<S
 template <class S>
 S coordinate_value(const System& system, const ParametersOf<S>& parameters, const Configuration<S>& q,
                    const CoordinateInfo& coordinate);
-// Whether whole turns of a link's coordinate do not matter: nothing springs back, stops, gears or drives it.
-// Such an angle is reported in (-pi, pi].
+// Whether whole turns of a link's angle change forces: something springs back or stops, or the law of a drive
+// asks for it.
+bool turns_matter(const System& system, const Parameters& parameters, int link);
+// Whether whole turns of a link's coordinate do not matter, nor do gears or drives turn it. Such an angle is
+// reported in (-pi, pi].
 bool turns_freely(const System& system, const Parameters& parameters, int link);
 
 // The rotation vector of a spherical link, in the joint's own order.

@@ -40,17 +40,28 @@ double largest_speed(const System& system, const Parameters& p) {
   return largest > 0 ? largest : 1;
 }
 
-// An input's value, and how it changes with the rates of the coordinates.
+// An input's value, and how it changes with the rates of the coordinates. Of what a spring exerts its length,
+// and how much of its direction a component takes: some laws have no value for any length.
 struct AtPhase {
-  double value = 0;
+  double value = 0, direction = 0;
   Eigen::VectorXd by_rates;
 };
 
 AtPhase at_phase(const System& system, const Parameters& p, const DriveLaw& law,
                  const DriveLawParameters& numbers, std::size_t i, const Eigen::VectorXd& q,
                  const Kinematics<double>& k) {
-  AtPhase out{law_input(system, p, law, numbers, i, q, k), Eigen::VectorXd::Zero(system.nv)};
-  if (const Result asked = law.inputs[i].quantity.result; is_of_velocity(asked))
+  AtPhase out{0, 0, Eigen::VectorXd::Zero(system.nv)};
+  const Result asked = law.inputs[i].quantity.result;
+  if (is_spring_force(asked)) {
+    const auto s = static_cast<std::size_t>(law.inputs[i].spring);
+    const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
+    out.value = spring.length;
+    if (asked != Result::tension && asked != Result::force)
+      out.direction = spring.direction[static_cast<int>(asked) - static_cast<int>(Result::force_x)];
+    return out;
+  }
+  out.value = law_input(system, p, law, numbers, i, q, k);
+  if (is_of_velocity(asked))
     add_velocity_rates(system, point_rates_of(asked, numbers.points[i], k), numbers.points[i], k,
                        [&](int v, double rate) { out.by_rates[v] += rate; });
   return out;
@@ -66,7 +77,7 @@ bool asks_for_points(const System& system) {
 }
 
 void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& p) {
-  if (!p.moving || !asks_for_points(system)) return;
+  if (!asks_for_points(system)) return;
   const double speed = largest_speed(system, p);
   const Eigen::VectorXd q = some_configuration(system, p, speed);
   Kinematics<double> here, later;
@@ -78,16 +89,24 @@ void refuse_turning_laws(const System& system, const Mechanism& mechanism, const
       if (!is_of_points(law.inputs[i])) continue;
       const AtPhase a = at_phase(system, p, law, numbers, i, q, here);
       const AtPhase b = at_phase(system, p, law, numbers, i, q, later);
-      const double size = law_input_size(system, p, law, numbers, i, q, here);
-      if (std::abs(a.value - b.value) <= rounding * size &&
+      const Result result = law.inputs[i].quantity.result;
+      const bool armless = result == Result::angle && std::isnan(a.value);
+      if (!armless && !p.moving) continue;
+      const double size =
+          is_spring_force(result) ? a.value + p.length : law_input_size(system, p, law, numbers, i, q, here);
+      if (std::abs(a.value - b.value) <= rounding * size && std::abs(a.direction - b.direction) <= rounding &&
           (a.by_rates - b.by_rates).lpNorm<Eigen::Infinity>() <= rounding * std::max(1., p.length))
         continue;
       const Joint& of = mechanism.joints[static_cast<std::size_t>(
           system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)];
       const std::string text = drive_law(mechanism, of, link.coordinate, which)->text;
+      const std::string asked = quantity_text(mechanism, law.inputs[i].quantity);
       throw SceneError("joints." + of.name + ".drive." + which,
-                       "\"=" + text + "\": expected what stays as it is while drives turn, found " +
-                           quantity_text(mechanism, law.inputs[i].quantity) + ", which changes with them");
+                       "\"=" + text + "\": expected " +
+                           (armless ? "an angle between two arms, found " + asked +
+                                          ", of which one end stands where its corner does"
+                                    : "what stays as it is while drives turn, found " + asked +
+                                          ", which changes with them"));
     }
   };
   for (std::size_t t = 0; t < system.torques.size(); ++t) {

@@ -12,8 +12,8 @@ namespace flyball {
 // Whether some law asks for places or velocities of points.
 bool asks_for_points(const System& system);
 
-// Throws SceneError for a law that asks for a place, distance, angle or velocity that changes with the phase
-// of the drives. Drives that stand still change none.
+// Throws SceneError for a law that asks for a place, distance, angle, velocity or force of a spring that
+// changes with the phase of the drives, and for an angle without an arm. Drives that stand still change none.
 void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& parameters);
 
 } // namespace flyball

@@ -76,8 +76,8 @@ PointQuantityRates point_rates_of(Result result, const TrackedPoints& points, co
   case Result::z: out.place[0] = Vec3::Unit(axis_of(result, Result::x)); break;
   case Result::vx:
   case Result::vy:
-  case Result::vz: out.velocity = Vec3::Unit(axis_of(result, Result::vx)); break;
-  case Result::speed: out.velocity = direction(velocity_of(k, points[0])); break;
+  case Result::vz: out.velocity[0] = Vec3::Unit(axis_of(result, Result::vx)); break;
+  case Result::speed: out.velocity[0] = direction(velocity_of(k, points[0])); break;
   case Result::distance:
     out.place[1] = direction(from_to(k, points[0], points[1]));
     out.place[0] = -out.place[1];
@@ -85,14 +85,57 @@ PointQuantityRates point_rates_of(Result result, const TrackedPoints& points, co
   case Result::angle: {
     const Vec3 u = from_to(k, points[1], points[0]), w = from_to(k, points[1], points[2]);
     const Vec3 a = u.normalized(), b = w.normalized();
-    const double sine = a.cross(b).norm(), cosine = a.dot(b);
-    out.place[0] = -(b - cosine * a) / (u.norm() * sine);
-    out.place[2] = -(a - cosine * b) / (w.norm() * sine);
+    const Vec3 across = a.cross(b);
+    const double sine = across.norm(), cosine = a.dot(b);
+    // By the normal of its plane, which keeps an angle of 0 or pi that nothing moves without rates although
+    // rounding alone gives that normal.
+    const Vec3 n = across / sine;
+    const auto turned = [](const Vec3& by, const Vec3& arm, double length) {
+      return Vec3((by - by.dot(arm) * arm) / length);
+    };
+    out.place[0] = turned(cosine * b.cross(n) - sine * b, a, u.norm());
+    out.place[2] = turned(cosine * n.cross(a) - sine * a, b, w.norm());
     out.place[1] = -out.place[0] - out.place[2];
     break;
   }
   default: break;
   }
+  return out;
+}
+
+bool is_spring_force(Result result) {
+  return result >= Result::tension && result <= Result::force;
+}
+
+PointQuantityRates spring_force_rates(Result result, const PointSpringElement& element,
+                                      const PointSpringParameters& p, const Kinematics<double>& k) {
+  const SpringState<double> s = spring_state(element, p, k);
+  const Vec3 relative = k.velocity(element.ends.b, s.b) - k.velocity(element.ends.a, s.a);
+  const double along = s.direction.dot(relative);
+  // Of the direction with the way between the points.
+  const auto across = [&](const Vec3& n) {
+    return s.length > 0 ? Vec3((n - n.dot(s.direction) * s.direction) / s.length) : Vec3(Vec3::Zero());
+  };
+  const double damping = p.damped() ? p.resistance_slope(along) : 0;
+  Vec3 place = p.pull_slope(s.length) * s.direction + damping * across(relative),
+       velocity = damping * s.direction;
+  if (result == Result::force) {
+    const double sign = s.tension > 0 ? 1 : s.tension < 0 ? -1 : 0;
+    place *= sign;
+    velocity *= sign;
+  } else if (result != Result::tension) {
+    const int axis = axis_of(result, Result::force_x);
+    if (p.without_length()) // where its points meet, too
+      place = -p.stiffness * Vec3::Unit(axis);
+    else
+      place = -s.direction[axis] * place - s.tension * across(Vec3::Unit(axis));
+    velocity *= -s.direction[axis];
+  }
+  PointQuantityRates out;
+  out.place[0] = -place;
+  out.place[1] = place;
+  out.velocity[0] = -velocity;
+  out.velocity[1] = velocity;
   return out;
 }
 

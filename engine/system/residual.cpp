@@ -456,6 +456,10 @@ template AppliedForce<double> applied_force(const BodyForceElement&, const BodyF
                                             const Kinematics<double>&);
 template SpringState<double> spring_state(const PointSpringElement&, const PointSpringParameters&,
                                           const Kinematics<double>&);
+template SpringState<Extended> spring_state(const PointSpringElement&, const PointSpringParameters&,
+                                            const Kinematics<Extended>&);
+template SpringState<Dual> spring_state(const PointSpringElement&, const BasicPointSpringParameters<Dual>&,
+                                        const Kinematics<Dual>&);
 template void evaluate_constraints<double>(const System&, const Parameters&, const Configuration<double>&,
                                            const Kinematics<double>&, Configuration<double>&);
 template void evaluate_residual<double>(const System&, const Parameters&, const Configuration<double>&,

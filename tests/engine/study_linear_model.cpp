@@ -599,6 +599,21 @@ TEST_CASE("what has no linear model is refused with the reason", "[linear-model]
              ContainsSubstring("turns with the drives"));
 }
 
+TEST_CASE("the size of a vector that vanishes is no output, unless it stays so", "[linear-model]") {
+  const Mechanism engine = shipped("governor_engine");
+  const Names mass{"bodies.ball1.mass"};
+  CHECK_THAT(refusal(engine, mass, {"reaction(slide)"}), ContainsSubstring("kink"));
+  CHECK_THAT(refusal(engine, mass, {"moment(arm1)"}), ContainsSubstring("kink"));
+  CHECK(refusal(engine, {"joints.spin.drive.load"}, {"reaction(slide)", "reaction(arm1)"}).empty());
+  const LinearModel none = made(engine, mass, {"moment(slide)"});
+  CHECK(none.gain->isZero(0));
+  Mechanism still;
+  still.bodies = {body("bob", 2, {0, 0, 0})};
+  still.joints = {dampened(sprung(prismatic("slide", "ground", "bob", {0, 0, 0}, {1, 0, 0}), 50), 3)};
+  CHECK_THAT(refusal(still, {"force_x(bob)"}, {"speed(bob)"}), ContainsSubstring("kink"));
+  CHECK(refusal(still, {"force_x(bob)"}, {"vx(bob)"}).empty());
+}
+
 TEST_CASE("bodies without mass leave E singular", "[linear-model]") {
   // A massless slider between a spring to ground and one, with a damper, to a mass.
   const double k1 = 30, k2 = 70, c2 = 2, mass = 1.5, c1 = 0.6;

@@ -242,6 +242,37 @@ TEST_CASE("a shaft with several steady speeds: all are found, with their eigenva
   CHECK(all.bounds[0].upper >= 6);
 }
 
+TEST_CASE("steady speeds are found orders of magnitude from where the search begins", "[torque]") {
+  // T = 3 w exp(-w) + w / 10: three roots for this torque, of which the start is near none.
+  const auto load = [](double w) { return 3 * w * std::exp(-w) + 0.1 * w; };
+  for (const double start : {0.02, 0.1, 4., 900.}) {
+    CAPTURE(start);
+    Mechanism m;
+    m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+    m.joints = {
+        torque_driven(revolute("a", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), start,
+                      "0.9 N m - 1 N m*(3*rate(a)/(1 rad/s)*exp(-rate(a)/(1 rad/s)) + rate(a)/(10 rad/s))")};
+    validate(m);
+    const AllSolutions all = Analysis(m).solve_all();
+    REQUIRE(all.equilibria.size() == 3);
+    std::vector<double> found;
+    for (const Solution& s : all.equilibria) {
+      found.push_back(speed(s, "a"));
+      CHECK(std::abs(load(found.back()) - 0.9) < 1e-12);
+      CHECK(s.stable == (found.back() < 1 || found.back() > 5));
+    }
+    CHECK(all.bounds.at(0).upper >= 2900 * start);
+  }
+  // There is no end of them.
+  Mechanism wavy;
+  wavy.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+  wavy.joints = {
+      torque_driven(revolute("a", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), 2, "1 N m*sin(rate(a)*1 s)")};
+  const std::size_t count = Analysis(wavy).solve_all().equilibria.size();
+  CHECK(count > 20);
+  CHECK(count < 100);
+}
+
 TEST_CASE("Watt's height of the cone with the speed unknown", "[torque]") {
   Mechanism m = conical(0.5, 0, 5, 0.4);
   m.joints[0] = torque_driven(m.joints[0], 6, "20 N m * (0.9 - coordinate(swing))");

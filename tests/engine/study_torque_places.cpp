@@ -105,6 +105,23 @@ Eigen::VectorXd slope(const Function& f) {
   return ((16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15).template cast<double>();
 }
 
+// Two springs, one with a damper, and joints with springs by numbers and by laws.
+Mechanism strung(Mechanism m) {
+  m.forces.push_back(point_spring("string", "shaft", "bob", {0, 0.3, 0}, {0.4, -0.5, 0.1}, 12, 0.3));
+  m.forces.back().damping = 0.7;
+  m.forces.push_back(point_spring("band", "collar", "arm", {0, 0.2, 0}, {0.3, -0.4, 0.1}, 0, 0.2));
+  m.forces.back().force = 0;
+  m.forces.back().formulas.push_back({"force", "8 N/m*deflection + 20 N/m^3*deflection^3"});
+  return m;
+}
+
+const std::vector<std::string> by_springs{"1 m * tension(string)",
+                                          "1 m * force(string) + 0.5 m * tension(band)",
+                                          "0.4 m * force_y(band)",
+                                          "2 m * spring(slide)",
+                                          "1 N m * sin(spring(hinge)/(1 N m)) + spring(ball.1)",
+                                          "0.3 m*tension(string)*tension(band)/(1 N) + 1 m*force_y(string)"};
+
 // A shaft whose balls swing on arms and joints of their own, with a collar that slides.
 Mechanism swinging(const std::string& law) {
   Mechanism m;
@@ -250,9 +267,11 @@ TEST_CASE("laws by velocities of points", "[torque][places]") {
 
 TEST_CASE("how laws by places change with the state, against differences", "[torque][places]") {
   Dice dice(5);
-  for (const std::string& law : all_kinds) {
+  std::vector<std::string> laws = all_kinds;
+  laws.insert(laws.end(), by_springs.begin(), by_springs.end());
+  for (const std::string& law : laws) {
     CAPTURE(law);
-    const Mechanism m = swinging(law);
+    const Mechanism m = strung(swinging(law));
     validate(m);
     const System system = compile(m);
     Parameters p;
@@ -287,9 +306,11 @@ TEST_CASE("how laws by places change with the state, against differences", "[tor
 
 TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the state", "[torque][places]") {
   std::size_t settled = 0;
-  for (const std::string& law : all_kinds) {
+  std::vector<std::string> laws = all_kinds;
+  laws.insert(laws.end(), by_springs.begin(), by_springs.end());
+  for (const std::string& law : laws) {
     CAPTURE(law);
-    Mechanism m = swinging("3 N m - 0.6 N m s*rate(spin) + 0.2*(" + law + ")");
+    Mechanism m = strung(swinging("3 N m - 0.6 N m s*rate(spin) + 0.2*(" + law + ")"));
     for (Joint& each : m.joints)
       for (std::size_t i = 0; i < each.coordinates.size(); ++i)
         if (each.name != "spin") each = dampened(each, 0.5, i);
@@ -328,7 +349,83 @@ TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the
     CHECK(distance_from(run, run.time.size() - 1, s) < 1e-5);
     ++settled;
   }
-  CHECK(settled > 5);
+  CHECK(settled > 10);
+}
+
+TEST_CASE("laws by forces of springs answer as those by what these follow from",
+          "[torque][places][springs]") {
+  // The collar's spring: 1000 N/m from 0.15 m. Free of load it is slack.
+  const Mechanism direct = governor(by_coordinate);
+  const Solution wanted = Analysis(direct).solve();
+  SimulationOptions options;
+  options.duration = 2;
+  options.rate = 4;
+  options.at = {{"slide", 0.14}};
+  const Run motion = simulate(direct, options);
+  const auto same = [&](const Mechanism& m) {
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "spin"), WithinRel(speed(wanted, "spin"), 1e-12));
+    CHECK(difference(*s.eigenvalues, *wanted.eigenvalues) < 1e-9);
+    CHECK(s.stable == true);
+    const Run moved = simulate(m, options);
+    REQUIRE(moved.status == RunStatus::completed);
+    for (std::size_t c = 0; c < moved.coordinates.size(); ++c)
+      for (std::size_t i = 0; i < moved.time.size(); ++i)
+        CHECK(std::abs(moved.coordinates[c].value[i] - motion.coordinates[c].value[i]) < 1e-6);
+  };
+  same(governor("gain*spring(slide)/(-1000 N/m)"));
+  Mechanism by_law = governor("gain*spring(slide)/(-1000 N/m)");
+  for (Joint& joint : by_law.joints)
+    if (joint.name == "slide") {
+      joint.coordinates[0].spring->stiffness = 0;
+      joint.coordinates[0].spring->force = 0;
+      joint.formulas.push_back({"spring.force", "1000 N/m*deflection"});
+    }
+  same(by_law);
+  // A spring of no stiffness to speak of, stretched along the axis: its length is 0.5 m less the way up.
+  // Its other end lies below.
+  for (const bool table : {false, true})
+    for (const std::string of : {"tension(feeler)", "force_y(feeler)", "force(feeler)"}) {
+      CAPTURE(of, table);
+      Mechanism m = governor("gain*(" + of + "/(1e-9 N/m) + 0.1 m - 0.15 m)");
+      m.forces.push_back(point_spring("feeler", "spindle", "collar", {0, 0.2, 0}, {0, 0.1256, 0}, 1e-9, 0.1));
+      if (table) {
+        m.forces.back().stiffness = 0;
+        m.forces.back().force = 0;
+        m.forces.back().formulas.push_back({"force", "table(deflection, [-1 m, -1e-9 N], [1 m, 1e-9 N])"});
+      }
+      same(m);
+    }
+}
+
+TEST_CASE("a damper in what a law asks for is felt in motion alone", "[torque][places][springs]") {
+  // tension = k (s - free) + c s' of the spring along the axis.
+  Mechanism m = governor("");
+  m.forces.push_back(point_spring("feeler", "spindle", "collar", {0, 0.2, 0}, {0, 0.1256, 0}, 50, 0.1));
+  m.forces.back().damping = 4;
+  const Mechanism by_force = with_torque(m, "150 m*(tension(feeler) - 2.5 N)"),
+                  by_rate =
+                      with_torque(m, "150 m*(50 N/m*(coordinate(slide) - 0.15 m) + 4 N s/m*rate(slide))");
+  const Solution a = Analysis(by_force).solve(), b = Analysis(by_rate).solve();
+  CHECK_THAT(speed(a, "spin"), WithinRel(speed(b, "spin"), 1e-12));
+  CHECK(difference(*a.eigenvalues, *b.eigenvalues) < 1e-9);
+  CHECK(
+      difference(*a.eigenvalues,
+                 *Analysis(with_torque(m, "150 m*50 N/m*(coordinate(slide) - 0.15 m)")).solve().eigenvalues) >
+      1e-3);
+  SimulationOptions options;
+  options.duration = 2;
+  options.rate = 4;
+  options.at = {{"slide", 0.14}};
+  const Run one = simulate(by_force, options), other = simulate(by_rate, options);
+  for (std::size_t c = 0; c < one.coordinates.size(); ++c)
+    for (std::size_t i = 0; i < one.time.size(); ++i)
+      CHECK(std::abs(one.coordinates[c].value[i] - other.coordinates[c].value[i]) < 1e-6);
+  const LinearModel model = linearize(by_force, std::vector<std::string>{"forces.feeler.damping"},
+                                      std::vector<std::string>{"slide"}, {});
+  CHECK(model.refusal.empty());
 }
 
 TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]") {
@@ -340,6 +437,10 @@ TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]
                    ContainsSubstring("expected what stays as it is while drives turn"));
     CHECK_THROWS_AS(simulate(governor(law), {}), SceneError);
   }
+  CHECK_THAT(
+      refusal(governor("1 N m*angle(ball1, ground@top, spindle)")),
+      ContainsSubstring("expected an angle between two arms, found angle(ball1, ground@top, spindle), of "
+                        "which one end stands where its corner does"));
   for (const char* law : {"gain*x(collar)", "gain*distance(ball1, ground@top)", "1 N s*speed(ball1)",
                           "1 N m*angle(ball1, collar, ground@top)", "gain*distance(ball1, collar)"}) {
     CAPTURE(law);
@@ -352,12 +453,53 @@ TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]
   CHECK_THAT(refusal(leaning), ContainsSubstring("y(ball1), which changes with them"));
 }
 
+TEST_CASE("whole turns of an angle count that a law asks for", "[torque][places][turns]") {
+  // w = 5 - a / 10, and the pendulum's balance by it.
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("h", 1, {0, 0, 0}, {0.3, 0.4, 0.3}), body("b", 1, {0.1, -0.3, 0}, {0.001, 0.001, 0.001})};
+  m.joints = {driven(revolute("spin", "ground", "h", {0, 0, 0}, {0, 1, 0}), 5),
+              dampened(revolute("a", "h", "b", {0.05, 0, 0}, {0, 0, 1}), 0.2)};
+  m = with_torque(m, "5 N m - 1 N m s*rate(spin) - 0.1 N m*coordinate(a)");
+  m.measures.push_back({"law", "", "5 N m - 1 N m s*rate(spin) - 0.1 N m*coordinate(a)", "N m"});
+  validate(m);
+  for (const double start : {0.1, 6.3, 20., -40.}) {
+    CAPTURE(start);
+    SolveOptions options;
+    options.start = {{"a", start}};
+    const Solution s = Analysis(m).solve(options);
+    REQUIRE(s.status == Status::converged);
+    CHECK(std::abs(5 - speed(s, "spin") - 0.1 * value(s, "a")) < 1e-12);
+    CHECK(std::abs(s.measures.at(0).value.value()) < 1e-12);
+  }
+  const AllSolutions all = Analysis(m).solve_all();
+  CHECK(all.equilibria.size() == 2);
+  for (const Solution& s : all.equilibria) {
+    CHECK(std::abs(5 - speed(s, "spin") - 0.1 * value(s, "a")) < 1e-12);
+    CHECK(coordinate(s, "a").error < 1e-9);
+  }
+  // A label beyond a turn.
+  m.joints[1].coordinates[0].drawn = 10;
+  const Solution labelled = Analysis(m).solve();
+  CHECK(std::abs(5 - speed(labelled, "spin") - 0.1 * value(labelled, "a")) < 1e-12);
+  CHECK(std::abs(value(labelled, "a") - 10) < 3);
+}
+
 TEST_CASE("forces and accelerations are refused in laws", "[torque][places]") {
   for (const char* law :
-       {"1 m*reaction(slide)", "1 m*spring(slide)", "1 kg m*ay(collar)", "1 m^2/s^2*mass(collar)*1"}) {
+       {"1 m*reaction(slide)", "1 kg m*ay(collar)", "1 m^2/s^2*mass(collar)*1", "1 s*power(spin)"}) {
     CAPTURE(law);
     CHECK_THAT(refusal(governor(law)), ContainsSubstring("follow from the balance"));
   }
+  Mechanism held = governor("1 m*force_y(seat)");
+  held.forces.push_back({});
+  held.forces.back().name = "seat";
+  held.forces.back().type = ForceType::bearing;
+  held.forces.back().bodies = {"spindle", "collar"};
+  held.forces.back().axis = Vec3::UnitY();
+  held.forces.back().bearing_stiffness = {1, 0, 0, 1};
+  CHECK_THAT(refusal(held), ContainsSubstring("what bearings exert is not among them"));
+  CHECK_THAT(refusal(governor("1 m*spring(arm1)")), ContainsSubstring("has no spring"));
   CHECK_THAT(refusal(governor("gain*y(collr)")), ContainsSubstring("no body is called \"collr\""));
   CHECK_THAT(refusal(governor("gain*vy(collar)")), ContainsSubstring("expected N m"));
 }
@@ -374,6 +516,22 @@ TEST_CASE("kinks of laws by places are told", "[torque][places]") {
   CHECK(stable == alike);
   CHECK_THAT(message, ContainsSubstring("slope with y(collar) jumps from"));
   CHECK_THAT(same, ContainsSubstring("slope with coordinate(slide) jumps from"));
+  // What nothing moves is a number, although a distance or speed of zero, and angles of 0 and pi, have no
+  // slope.
+  for (const char* constant :
+       {"gain*opening + 1 N s*speed(spindle)", "gain*opening - 5 N*distance(spindle, ground@top)",
+        "gain*opening + 1 N m*(angle(ground@aside, ground@top, ground@beyond) - pi)",
+        "gain*opening - 5 N m*max(0, 1 - y(spindle)/(0.2 m))",
+        "gain*opening - 1 N*distance(ground@top, ball1)*(angle(ball1, spindle, ball1) + 0)"}) {
+    CAPTURE(constant);
+    Mechanism m = governor(constant);
+    m.points.push_back({"beyond", {-0.3, 0.2, 0}});
+    const Solution s = Analysis(m).solve();
+    CHECK_THAT(s.message, !ContainsSubstring("kink"));
+    CHECK(s.stable == true);
+    REQUIRE(s.eigenvalues);
+    CHECK(s.stability_reason == StabilityReason::asymptotic);
+  }
   // The collar stands on the axis and is at rest: its speed grows whichever way it moves.
   const auto [resting, open] = told("gain*opening - 5 N s*speed(collar)");
   CHECK(open == std::nullopt);

@@ -17,4 +17,8 @@ template void evaluate_residual<stress::OtherExtended>(const System&, const Para
                                                        const Kinematics<stress::OtherExtended>&,
                                                        Residual<stress::OtherExtended>&);
 
+template SpringState<stress::OtherExtended> spring_state(const PointSpringElement&,
+                                                         const PointSpringParameters&,
+                                                         const Kinematics<stress::OtherExtended>&);
+
 } // namespace flyball

@@ -1,0 +1,115 @@
+#include "engine/stability/moved_inputs.hpp"
+
+#include "engine/linear/largest.hpp"
+#include "engine/solve/newton.hpp"
+#include "engine/system/drive_torque.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace flyball {
+namespace {
+
+constexpr double moves = 1e-8; // of a radian, of the reach or of the speeds there are
+
+// Rates of three numbers each along all coordinates.
+using VectorRates = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+struct PointsInMotion {
+  const System& system;
+  const Kinematics<double>& k;
+
+  VectorRates along(const TrackedPoint& point, Vec3 PointRates::*of) const {
+    VectorRates out = VectorRates::Zero(system.nv, 3);
+    visit_point_rates(system, k, point,
+                      [&](int v, const PointRates& rates) { out.row(v) += (rates.*of).transpose(); });
+    return out;
+  }
+  VectorRates apart(const TrackedPoint& a, const TrackedPoint& b) const {
+    return along(b, &PointRates::position) - along(a, &PointRates::position);
+  }
+  Vec3 way(const TrackedPoint& a, const TrackedPoint& b) const {
+    return k.point(b.link, b.at) - k.point(a.link, a.at);
+  }
+};
+
+// Rates of the cross product of the unit vectors along two arms.
+VectorRates turn_of_arms(const PointsInMotion& motion, const TrackedPoints& points) {
+  const Vec3 u = motion.way(points[1], points[0]), w = motion.way(points[1], points[2]);
+  const Vec3 a = u.normalized(), b = w.normalized();
+  const VectorRates du = motion.apart(points[1], points[0]), dw = motion.apart(points[1], points[2]);
+  VectorRates out(du.rows(), 3);
+  for (Eigen::Index v = 0; v < du.rows(); ++v) {
+    const Vec3 x = du.row(v), y = dw.row(v);
+    const Vec3 da = (x - x.dot(a) * a) / u.norm(), db = (y - y.dot(b) * b) / w.norm();
+    out.row(v) = (da.cross(b) + a.cross(db)).transpose();
+  }
+  return out;
+}
+
+} // namespace
+
+bool is_moved(const Problem& problem, const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
+              const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  const System& system = problem.system;
+  const Parameters& p = problem.parameters;
+  const DriveLaw::Input& input = law.inputs[i];
+  const Result asked = input.quantity.result;
+  std::vector<Eigen::VectorXd> rates; // scaled, of coordinates
+  const auto take = [&](const Eigen::VectorXd& by, double size) {
+    if (!(size > 0)) return;
+    const Eigen::VectorXd scaled = by.cwiseProduct(problem.scaling.column) / size;
+    if (largest_size(scaled) > moves) rates.push_back(scaled);
+  };
+  const auto take_vector = [&](const VectorRates& by, double size) {
+    for (const Eigen::Index axis : {0, 1, 2})
+      take(by.col(axis), size);
+  };
+  if (input.coordinate >= 0) {
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+    const Link& link = system.links[static_cast<std::size_t>(c.link)];
+    if (link.v < 0) return false;
+    const int count = link.type == LinkType::spherical ? 3 : 1;
+    for (int v = link.v; v < link.v + count; ++v)
+      take(Eigen::VectorXd::Unit(system.nv, v), problem.scaling.column[v]);
+  } else {
+    const PointsInMotion motion{system, k};
+    const TrackedPoints& points = numbers.points[i];
+    const double size = asked == Result::angle ? 1 : p.length;
+    const bool kink = stands_on_own_kink(system, p, law, numbers, i, q, k);
+    const bool vanishes =
+        kink && (asked != Result::force || motion.way(points[0], points[1]).norm() <= moves * p.length);
+    if (asked == Result::angle && kink) {
+      take_vector(turn_of_arms(motion, points), size);
+    } else if (asked == Result::speed && kink) {
+      take_vector(motion.along(points[0], &PointRates::velocity),
+                  law_input_size(system, p, law, numbers, i, q, k));
+      take_vector(motion.along(points[0], &PointRates::position), size);
+    } else if (vanishes) {
+      take_vector(motion.apart(points[0], points[1]), size);
+    } else {
+      PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
+      if (asked == Result::force) { // of which the size is taken
+        const auto s = static_cast<std::size_t>(input.spring);
+        by = spring_force_rates(Result::tension, system.springs[s], p.springs[s], k);
+      }
+      Eigen::VectorXd by_places = Eigen::VectorXd::Zero(system.nv), by_rates = by_places;
+      add_coordinate_rates(system, by, points, k, [&](int v, double rate) { by_places[v] += rate; });
+      add_velocity_rates(system, by, points, k, [&](int v, double rate) { by_rates[v] += rate; });
+      const double most = law_input_size(system, p, law, numbers, i, q, k);
+      take(by_places, most);
+      take(by_rates, is_of_velocity(asked) ? size : most);
+    }
+  }
+  if (rates.empty() || system.rows == 0) return !rates.empty();
+  Workspace w;
+  evaluate(problem, {q, Eigen::VectorXd::Zero(system.rows)}, 0, w);
+  factor_constraints(problem, w);
+  Eigen::VectorXd left;
+  return std::ranges::any_of(rates, [&](const Eigen::VectorXd& rate) {
+    w.kkt(problem).project(rate, left);
+    return largest_size(left) > moves * largest_size(rate);
+  });
+}
+
+} // namespace flyball
