@@ -122,20 +122,29 @@ std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike,
   return average;
 }
 
-// Where drives by torque that stand still do so, as "p at 0.5 rad"; none where all turn. `rate` (1/s) as
-// is_steady() has it.
-std::vector<std::string> drives_at_rest(const Flow& flow, const MotionState& state, double rate) {
+// What drives by torque do in a motion that has settled: where those stand that came to rest, as "p at
+// 0.5 rad", and how fast the others turn, as "p at 6 rad/s". `rate` (1/s) as is_steady() has it.
+struct SettledDrives {
+  std::vector<std::string> resting, turning;
+};
+SettledDrives settled_drives(const Flow& flow, const MotionState& state, double rate) {
   const MotionModel& model = flow.model();
-  std::vector<std::string> out;
+  SettledDrives out;
   for (const DriveTorqueElement& drive : model.system.torques) {
-    if (drive.keeps_momentum || drive.implied) continue;
+    if (drive.implied) continue;
     const Link& link = model.system.links[static_cast<std::size_t>(drive.link)];
-    if (std::abs(state.u[link.v]) > standing * rate * model.scaling.column[link.v]) continue;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    const std::string drive_at =
+        coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at ";
     const bool angle = link.type == LinkType::revolute;
-    const double known = 1e-6 * (angle ? 1 : model.parameters.length), at = state.q[link.q];
-    out.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
-                  rounded_text(std::abs(at) < known ? 0 : at, 6) + (angle ? " rad" : " m"));
+    const double speed = state.u[link.v];
+    if (std::abs(speed) > standing * rate * model.scaling.column[link.v]) {
+      out.turning.push_back(drive_at + rounded_text(speed, 6) + (angle ? " rad/s" : " m/s"));
+    } else if (!drive.keeps_momentum) {
+      const double known = 1e-6 * (angle ? 1 : model.parameters.length), at = state.q[link.q];
+      out.resting.push_back(drive_at + rounded_text(std::abs(at) < known ? 0 : at, 6) +
+                            (angle ? " rad" : " m"));
+    }
   }
   return out;
 }
@@ -190,13 +199,16 @@ bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double 
 std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate) {
   const std::string motion = start == CycleStart::steady ? "The motion that leaves the steady state"
                                                          : "The motion from the drawn pose";
-  const std::vector<std::string> resting = drives_at_rest(flow, state, rate);
-  if (resting.empty())
-    return motion + " settles in " + (start == CycleStart::steady ? "another one." : "a steady state.");
-  return motion + " settles, and its drive by a torque comes to rest: " +
-         word_list(std::vector<std::string_view>(resting.begin(), resting.end()), "and") +
-         ". To have that as a steady state leave the drive out; a spring of a constant force is a torque, "
-         "too.";
+  const auto list = [](const std::vector<std::string>& all) {
+    return word_list(std::vector<std::string_view>(all.begin(), all.end()), "and");
+  };
+  const auto [resting, turning] = settled_drives(flow, state, rate);
+  if (!resting.empty())
+    return motion + " settles, and its drive by a torque comes to rest: " + list(resting) +
+           ". To have that as a steady state leave the drive out; a spring of a constant force is a torque, "
+           "too.";
+  return motion + " settles in " + (start == CycleStart::steady ? "another one" : "a steady state") +
+         (turning.empty() ? "." : ", " + list(turning) + ".");
 }
 
 AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {

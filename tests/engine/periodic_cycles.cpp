@@ -142,7 +142,8 @@ TEST_CASE(
     CAPTURE(name);
     const PeriodicState s = find_periodic_state(shipped(name));
     CHECK(s.status == PeriodicStatus::not_found);
-    CHECK_THAT(s.message, ContainsSubstring("settles in a steady state"));
+    CHECK_THAT(s.message, ContainsSubstring("settles in a steady state, "));
+    CHECK_THAT(s.message, ContainsSubstring(" rad/s"));
   }
 }
 
