@@ -32,26 +32,14 @@
 namespace flyball::cli {
 namespace {
 
-// Whether a coordinate stands in some states and slips in others: then its speed shows both.
-bool slips(const ResponseDiagram& d, std::ptrdiff_t coordinate) {
-  return std::ranges::any_of(d.branches, [&](const ResponseBranch& branch) {
-    return !branch.points.empty() && !branch.points.front().frictions.empty() &&
-           branch.points.front().coordinates[static_cast<std::size_t>(coordinate)].speed.has_value();
-  });
-}
-
 // What to draw: what is named, else the first free coordinate. Throws SceneError naming those there are.
 PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, const std::string& name) {
   const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
   const auto free = std::ranges::find_if(all, is_found);
   if (name.empty() && free != all.end())
-    return {static_cast<std::size_t>(free - all.begin()), false, free->speed || slips(d, free - all.begin())};
-  if (const auto found = find_plotted(m, all, name)) return *found;
-  for (std::size_t i = 0; i < all.size(); ++i) { // in the first state it does the other
-    if (!slips(d, static_cast<std::ptrdiff_t>(i))) continue;
-    for (const bool speed : {false, true})
-      if (name == coordinate_label(all[i]) + (speed ? ".speed" : "")) return {i, false, speed};
-  }
+    return {static_cast<std::size_t>(free - all.begin()), false,
+            free->speed || slips_somewhere(d, static_cast<std::size_t>(free - all.begin()))};
+  if (const auto found = find_plotted(m, d, name)) return *found;
   const std::string known = plotted_names(m, all);
   throw SceneError("--plot " + name,
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);

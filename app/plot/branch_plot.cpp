@@ -1,5 +1,6 @@
 #include "app/plot/branch_plot.hpp"
 
+#include "app/plot/friction_curve.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
@@ -11,6 +12,19 @@
 #include <limits>
 
 namespace flyball {
+namespace {
+
+// How a point looks, as a curve without points.
+PlotCurve look_of(const ResponsePoint& point) {
+  if (!point.frictions.empty()) return friction_curve(slips_on_friction(point), point.stable);
+  const bool stable = point.stable == true;
+  return {.name = stable ? "stable" : "not stable",
+          .points = {},
+          .line = stable ? PlotLine::solid : PlotLine::dashed,
+          .color = stable ? plot_color::blue : plot_color::vermillion};
+}
+
+} // namespace
 
 Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseDiagram& d,
                  const PlottedQuantity& shown) {
@@ -29,18 +43,14 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
   }
   for (const ResponseBranch& b : d.branches) {
     for (std::size_t i = 0; i < b.points.size();) {
-      const bool stable = b.points[i].stable == true;
-      PlotCurve curve;
-      curve.line = stable ? PlotLine::solid : PlotLine::dashed;
-      curve.color = stable ? 0 : 1;
-      curve.name = stable ? "stable" : "not stable";
+      PlotCurve curve = look_of(b.points[i]);
       const auto add = [&](const ResponsePoint& point) {
         const double value = plotted_value(point, shown);
         if (std::isfinite(value)) curve.points.push_back({point.parameter, value});
         return std::isfinite(value);
       };
       bool defined = true;
-      while (i < b.points.size() && (b.points[i].stable == true) == stable && defined)
+      while (i < b.points.size() && look_of(b.points[i]).name == curve.name && defined)
         defined = add(b.points[i++]);
       // Up to the point where the next part begins, so that no gap is left.
       if (i < b.points.size() && defined) add(b.points[i]);
@@ -57,6 +67,13 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
   return plot;
 }
 
+bool slips_somewhere(const ResponseDiagram& diagram, std::size_t coordinate) {
+  return std::ranges::any_of(diagram.branches, [&](const ResponseBranch& branch) {
+    return !branch.points.empty() && !branch.points.front().frictions.empty() &&
+           branch.points.front().coordinates[coordinate].speed.has_value();
+  });
+}
+
 std::optional<PlottedQuantity> find_plotted(const Mechanism& m,
                                             const std::vector<CoordinateSolution>& coordinates,
                                             const std::string& name) {
@@ -66,6 +83,18 @@ std::optional<PlottedQuantity> find_plotted(const Mechanism& m,
   const int measure = measure_index(m, name);
   if (measure < 0) return std::nullopt;
   return PlottedQuantity{static_cast<std::size_t>(measure), true};
+}
+
+std::optional<PlottedQuantity> find_plotted(const Mechanism& m, const ResponseDiagram& d,
+                                            const std::string& name) {
+  const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
+  if (const auto found = find_plotted(m, all, name)) return found;
+  for (std::size_t i = 0; i < all.size(); ++i) { // in the first state it does the other
+    if (!slips_somewhere(d, i)) continue;
+    for (const bool speed : {false, true})
+      if (name == coordinate_label(all[i]) + (speed ? ".speed" : "")) return PlottedQuantity{i, false, speed};
+  }
+  return std::nullopt;
 }
 
 std::string plotted_names(const Mechanism& m, const std::vector<CoordinateSolution>& coordinates) {

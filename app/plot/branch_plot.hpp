@@ -18,10 +18,17 @@ struct PlottedQuantity {
 Plot branch_plot(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
                  const PlottedQuantity& shown);
 
+// Whether this coordinate stands in some states and slips on friction in others: then its speed shows both.
+bool slips_somewhere(const ResponseDiagram& diagram, std::size_t coordinate);
+
 // What is found of a coordinate by its name (found_number()), else a measure of the mechanism; nothing where
 // there is none.
 std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism,
                                             const std::vector<CoordinateSolution>& coordinates,
+                                            const std::string& name);
+// The same of the first point of a diagram; also the place or the speed of what only in others stands or
+// slips.
+std::optional<PlottedQuantity> find_plotted(const Mechanism& mechanism, const ResponseDiagram& diagram,
                                             const std::string& name);
 // What can be plotted, as find_plotted takes it: "slide, height".
 std::string plotted_names(const Mechanism& mechanism, const std::vector<CoordinateSolution>& coordinates);

@@ -2,11 +2,16 @@
 
 #include "app/plot/branch_plot.hpp"
 #include "app/plot/resonance_plot.hpp"
+#include "app/plot/ribbon_plot.hpp"
 #include "app/session/response_quantity.hpp"
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/periodic/limit_cycle.hpp"
+#include "engine/report/friction_state.hpp"
+#include "engine/study/friction_branches.hpp"
+#include "engine/study/friction_ribbon.hpp"
 #include "engine/study/resonance_curve.hpp"
 
 #include <algorithm>
@@ -37,25 +42,33 @@ std::vector<Slider> curve_parameters(const Mechanism& m) {
   return out;
 }
 
-// What is to be drawn: what is named, else the first angle and the first length. Throws SceneError for a name
-// that is none's.
-std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m,
-                                                const std::vector<CoordinateSolution>& all,
+// Throws SceneError for a name that is none's.
+void expect_plotted(const Mechanism& m, const std::vector<CoordinateSolution>& all,
+                    const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (find_plotted(m, all, name)) continue;
+    const std::vector<std::string> slip = slipping_coordinates(m);
+    const bool slips = std::ranges::any_of(
+        slip, [&](const std::string& each) { return name == each || name == each + ".speed"; });
+    if (slips) continue;
+    throw SceneError("--plot " + name,
+                     "expected a coordinate that is not driven, or a measure" +
+                         (plotted_names(m, all).empty() ? "" : ": " + plotted_names(m, all)));
+  }
+}
+
+// What is to be drawn: what is named and is there, else the first angle and the first length.
+std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m, const ResponseDiagram& d,
                                                 const std::vector<std::string>& names) {
   std::vector<PlottedQuantity> out;
-  for (const std::string& name : names) {
-    const auto found = find_plotted(m, all, name);
-    if (!found)
-      throw SceneError("--plot " + name,
-                       "expected a coordinate that is not driven, or a measure" +
-                           (plotted_names(m, all).empty() ? "" : ": " + plotted_names(m, all)));
-    out.push_back(*found);
-  }
-  if (!out.empty()) return out;
+  for (const std::string& name : names)
+    if (const auto found = find_plotted(m, d, name)) out.push_back(*found);
+  if (!names.empty()) return out;
+  const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
   for (const bool angle : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].driven || all[i].dependent || all[i].angle != angle) continue;
-      out.push_back({i, false, all[i].speed.has_value()});
+      out.push_back({i, false, all[i].speed.has_value() || slips_somewhere(d, i)});
       break;
     }
   return out;
@@ -75,15 +88,20 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   const bool within =
       contents.solution.status == Status::converged && low <= out.present && out.present <= high;
   std::optional<ResponseDiagram> diagram;
-  if (within)
+  if (within && contents.solution.frictions.empty())
     diagram = follow_branches_through(m, over.parameter, over.from, over.to,
                                       response_point(contents.solution, out.present), follow);
   if (!diagram) diagram = follow_branches(m, over.parameter, over.from, over.to, follow);
+  add_friction_branches(m, over.parameter, over.from, over.to, follow, *diagram);
   out.message = diagram->message;
   if (diagram->branches.empty() || diagram->branches.front().points.empty()) return out;
-  const std::vector<CoordinateSolution>& all = diagram->branches.front().points.front().coordinates;
-  for (const PlottedQuantity& shown : plotted_quantities(m, all, options.plotted)) {
+  std::vector<std::vector<RibbonPoint>> ribbons;
+  if (has_friction(m)) ribbons = friction_ribbons(m, over.parameter, *diagram, options.cancel);
+  for (const PlottedQuantity& shown : plotted_quantities(m, *diagram, options.plotted)) {
     Plot plot = branch_plot(m, over.parameter, *diagram, shown);
+    const std::string name = plotted_name(diagram->branches.front().points.front(), shown);
+    for (const std::vector<RibbonPoint>& ribbon : ribbons)
+      add_ribbon(plot, ribbon, name);
     plot.title.clear(); // the page has words for it
     plot.x.logarithmic = over.scale == SliderScale::log;
     const double now = within ? plotted_value(response_point(contents.solution, out.present), shown) : 0;
@@ -172,8 +190,7 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
   out.warnings = find_warnings(*out.mechanism);
   Analysis analysis(out.mechanism);
   out.system = analysis.summary();
-  plotted_quantities(*out.mechanism, out.system.coordinates,
-                     options.plotted); // before anything takes its time
+  expect_plotted(*out.mechanism, out.system.coordinates, options.plotted); // before anything takes its time
   SolveOptions solve;
   solve.start = options.start;
   solve.nearest = options.nearest;
@@ -194,6 +211,10 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
     periodic.nearest = options.nearest;
     periodic.cancel = options.cancel;
     out.periodic = find_periodic_state(*out.mechanism, periodic);
+  }
+  if (hunts(out.solution) && !cancelled()) {
+    report_progress(options.progress, "looking for the limit cycle");
+    out.cycle = find_limit_cycle(*out.mechanism, options.cancel);
   }
   for (const Slider& over : curve_parameters(*out.mechanism))
     if (!cancelled())

@@ -37,6 +37,7 @@ struct ReportContents {
   SystemSummary system;
   Solution solution;
   std::optional<PeriodicState> periodic; // where the balance turns with the drives
+  std::optional<PeriodicState> cycle;    // beside a steady state that hunts: the limit cycle, or why none
   std::vector<VibrationMode> modes;
   std::optional<StabilityEvidence> evidence;
   std::optional<FrictionReport> friction; // of a scene that has some

@@ -47,21 +47,40 @@ Html multipliers(const PeriodicState& s) {
          table.html();
 }
 
+// What its section tells of a motion, or of why there is none.
+Html told(const PeriodicState& s) {
+  const bool found = s.status == PeriodicStatus::found;
+  Html body = element("p", s.message, {{"class", found ? "lead" : "lead refusal"}}) + "\n";
+  HtmlTerms terms;
+  if (found) {
+    const bool own = s.drive_periods == 0;
+    terms.term("Period", own ? quantity_within(s.period, s.period_error, "s") : quantity(s.period, "s", 10));
+    terms.term("Fails to come back by", magnitude(s.residual, "") + " (scaled)");
+    body += ranges_table(s) + multipliers(s) + heading_of("How it was found");
+  }
+  terms.term("Run time", duration(s.run_time_s));
+  return body + terms.html();
+}
+
 } // namespace
 
 OptionalSection periodic_section(const ReportContents& contents) {
   if (!contents.periodic) return std::nullopt;
-  const PeriodicState& s = *contents.periodic;
-  const bool found = s.status == PeriodicStatus::found;
-  Html body = element("p", s.message, {{"class", found ? "lead" : "lead refusal"}}) + "\n";
-  if (found) {
-    HtmlTerms terms;
-    terms.term("Period", quantity(s.period, "s", 10));
-    terms.term("Fails to come back by", magnitude(s.residual, "") + " (scaled)");
-    terms.term("Run time", duration(s.run_time_s));
-    body += ranges_table(s) + multipliers(s) + heading_of("How it was found") + terms.html();
-  }
-  return ReportSection{"periodic-motion", "Periodic motion", body};
+  return ReportSection{"periodic-motion", "Periodic motion", told(*contents.periodic)};
+}
+
+OptionalSection cycle_section(const ReportContents& contents) {
+  if (!contents.cycle) return std::nullopt;
+  const bool found = contents.cycle->status == PeriodicStatus::found;
+  const bool own = !found || contents.cycle->drive_periods == 0;
+  Html body;
+  if (found)
+    body = paragraph_of(
+        own ? "Swings about the steady state grow: this is the motion, with a period of its own, "
+              "that was found beside it."
+            : "Swings about the steady state grow: this is the motion in step with the drives "
+              "that was found beside it.");
+  return ReportSection{"limit-cycle", own ? "Limit cycle" : "Periodic motion", body + told(*contents.cycle)};
 }
 
 } // namespace flyball

@@ -15,6 +15,7 @@ using OptionalSection = std::optional<ReportSection>;
 // Without a steady state, why there is none.
 OptionalSection steady_state_section(const ReportContents& contents);
 OptionalSection periodic_section(const ReportContents& contents); // where there is none
+OptionalSection cycle_section(const ReportContents& contents);    // of a steady state that hunts
 OptionalSection stability_section(const ReportContents& contents);
 OptionalSection friction_section(const ReportContents& contents); // of scenes that have some
 OptionalSection loads_section(const ReportContents& contents);

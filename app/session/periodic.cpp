@@ -1,10 +1,10 @@
 #include "app/session/periodic.hpp"
 
 #include "app/session/session.hpp"
+#include "engine/periodic/limit_cycle.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 namespace flyball {
 namespace {
@@ -22,27 +22,8 @@ std::optional<PeriodicRequest> periodic_request(const Session& session) {
   return PeriodicRequest{{answer.mechanism}};
 }
 
-// What a person asks for may take longer.
-constexpr double cycle_patience = 10; // see PeriodicOptions
-
-// Whether anything in it moves beside what goes on: a search may come back to the steady state.
-bool swings(const PeriodicState& state) {
-  constexpr double least = 1e-6; // rad, m, rad/s, m/s
-  return std::ranges::any_of(state.coordinates, [](const PeriodicCoordinate& c) {
-    return c.range.most - c.range.least > least || c.rate.most - c.rate.least > least;
-  });
-}
-
-PeriodicState find_limit_cycle(const PeriodicRequest& request, const TaskContext<PeriodicState>& context) {
-  PeriodicOptions options;
-  options.patience = cycle_patience;
-  options.cancel = &context.cancel;
-  PeriodicState state = find_periodic_state(*request.mechanism, options);
-  if (state.status == PeriodicStatus::found && !swings(state)) {
-    state.status = PeriodicStatus::not_found;
-    state.message = "No limit cycle was found: the search led back to the steady state.";
-  }
-  return state;
+PeriodicState find_cycle_of(const PeriodicRequest& request, const TaskContext<PeriodicState>& context) {
+  return find_limit_cycle(*request.mechanism, &context.cancel);
 }
 
 std::optional<PeriodicRequest> cycle_request(const Session& session) {
@@ -60,7 +41,7 @@ void update_cycle(Session& session) {
   }
   cycle.take();
   if (cycle.asked == *wanted) return;
-  cycle.ask(session.options, *wanted, find_limit_cycle,
+  cycle.ask(session.options, *wanted, find_cycle_of,
             cycle.quick() ? BackgroundWorker::Running::finished : BackgroundWorker::Running::cancelled);
   cycle.take();
 }
@@ -124,15 +105,7 @@ void show_periodic_motion(Session& session, const PeriodicState& state) {
 }
 
 bool hunts(const Session& session) {
-  if (!converged(session) || !session.answer.mechanism) return false;
-  const Solution& solution = session.answer.solution;
-  if (solution.stable != false) return false;
-  const auto swinging = [](const std::complex<double>& z) { return std::abs(z.imag()) > 1e-6 * std::abs(z); };
-  if (solution.floquet && !solution.floquet->multipliers.empty())
-    return swinging(solution.floquet->multipliers.front());
-  if (!solution.eigenvalues || solution.eigenvalues->empty()) return false;
-  return swinging(*std::ranges::max_element(*solution.eigenvalues, {},
-                                            [](const std::complex<double>& z) { return z.real(); }));
+  return converged(session) && session.answer.mechanism && hunts(session.answer.solution);
 }
 
 void find_cycle(Session& session, bool wanted) {

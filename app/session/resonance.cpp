@@ -12,12 +12,15 @@ namespace {
 
 constexpr double soon = 1.5; // s: until then the curve of the numbers before is worth more than a part
 
+// `begun`: a part of this curve; null: none.
 ResonanceCurve find_resonance(const ResponseRequest& of, bool same_axis,
+                              const std::shared_ptr<const ResonanceStudy::Found>& begun,
                               const TaskContext<ResonanceCurve>& context) {
   const auto begin = std::chrono::steady_clock::now();
   ResonanceOptions options;
   options.logarithmic = of.logarithmic;
   options.cancel = &context.cancel;
+  if (begun) options.begun = &begun->result;
   options.progress = context.progress;
   options.publish = [&](const ResonanceCurve& so_far) {
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
@@ -66,9 +69,24 @@ void update_resonance(Session& session, const std::optional<ResponseRequest>& wa
                          study.found->of.from == wanted->from && study.found->of.to == wanted->to;
   study.ask(session.options, *wanted,
             [same_axis](const ResponseRequest& of, const TaskContext<ResonanceCurve>& context) {
-              return find_resonance(of, same_axis, context);
+              return find_resonance(of, same_axis, nullptr, context);
             });
   study.take(); // in immediate mode it is there
+}
+
+bool resonance_stopped(const Session& session) {
+  const ResonanceStudy& study = session.study.response.resonance;
+  return study.asked && study.found && study.is_of(*study.asked) && study.found->stopped && !study.running();
+}
+
+void go_on_with_resonance(Session& session) {
+  if (!resonance_stopped(session)) return;
+  ResonanceStudy& study = session.study.response.resonance;
+  study.ask(session.options, ResponseRequest(*study.asked),
+            [begun = study.found](const ResponseRequest& of, const TaskContext<ResonanceCurve>& context) {
+              return find_resonance(of, true, begun, context);
+            });
+  study.take();
 }
 
 std::vector<ResponseQuantity> resonance_quantities(const Session& session) {

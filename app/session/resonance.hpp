@@ -13,6 +13,11 @@ bool is_resonance(const Session& session);
 // Takes what was computed and asks for what is wanted now.
 void update_resonance(Session& session, const std::optional<ResponseRequest>& wanted);
 
+// Whether the person has stopped it, so that it is a part.
+bool resonance_stopped(const Session& session);
+// Makes what is missing then.
+void go_on_with_resonance(Session& session);
+
 // What the curve can show; of its first point that tells, or of the motion that is shown.
 std::vector<ResponseQuantity> resonance_quantities(const Session& session);
 // Of a quantity's key: "value up", "measure whirl", "drive spin", "motion period".

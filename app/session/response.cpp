@@ -3,6 +3,7 @@
 #include "app/session/resonance.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -56,37 +57,54 @@ std::optional<ResponseRequest> wanted_now(Session& session) {
                          .reactions = needs_reactions(choice.quantity)};
 }
 
-ResponseResult find_curve(const ResponseRequest& of, double present,
-                          const std::optional<ResponsePoint>& through,
-                          const TaskContext<ResponseResult>& context) {
-  BranchOptions options = follow_options(of, present);
-  options.cancel = &context.cancel;
-  options.progress = context.progress;
-  ResponseResult result;
-  std::optional<ResponseDiagram> diagram;
-  if (through && !of.all)
-    diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *through, options);
-  // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
-  result.diagram =
-      diagram ? std::move(*diagram) : follow_branches(*of.mechanism, of.address, of.from, of.to, options);
+ResponseResult result_of(ResponseDiagram diagram, const std::string& address) {
+  ResponseResult result{.diagram = std::move(diagram), .lines = {}};
+  result.diagram.message = with_phrase(std::move(result.diagram.message), address);
   result.lines = response_lines(result.diagram);
   return result;
+}
+
+// What it is asked for beside the request: the present value and state, and whether nothing is shown over
+// this range, so that a part is worth seeing.
+struct CurveStart {
+  double present = 0;
+  std::optional<ResponsePoint> through;
+  bool bare = false;
+};
+
+ResponseResult find_curve(const ResponseRequest& of, const CurveStart& start,
+                          const TaskContext<ResponseResult>& context) {
+  BranchOptions options = follow_options(of, start.present);
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  if (start.bare)
+    options.publish = [&](const ResponseDiagram& so_far) { context.publish(result_of(so_far, of.address)); };
+  std::optional<ResponseDiagram> diagram;
+  if (start.through && !of.all && start.through->frictions.empty())
+    diagram = follow_branches_through(*of.mechanism, of.address, of.from, of.to, *start.through, options);
+  // Without a state to go through, as the command line: from the drawn pose at the range's beginning.
+  if (!diagram) diagram = follow_branches(*of.mechanism, of.address, of.from, of.to, options);
+  add_friction_branches(*of.mechanism, of.address, of.from, of.to, options, *diagram);
+  return result_of(std::move(*diagram), of.address);
 }
 
 void follow(Session& session, const ResponseRequest& of) {
   ResponseState& state = session.study.response;
   // While a hand drags one slider every curve that was begun is worth seeing; another question is not.
+  const auto same_range = [&](const ResponseRequest& other) {
+    return other.address == of.address && other.from == of.from && other.to == of.to;
+  };
   const auto& asked = state.curve.asked;
-  const bool same = asked && asked->address == of.address && asked->from == of.from && asked->to == of.to &&
-                    asked->all == of.all;
-  std::optional<ResponsePoint> through;
-  if (converged(session)) through = present_point(session, of.address);
+  const bool same = asked && same_range(*asked) && asked->all == of.all;
+  CurveStart start{.present = get_parameter(session.mechanism(), of.address),
+                   .through = {},
+                   .bare = !state.curve.found || !same_range(state.curve.found->of)};
+  if (converged(session)) start.through = present_point(session, of.address);
   state.through = session.answer.ticket;
   state.curve.ask(
       session.options, of,
-      [through = std::move(through), present = get_parameter(session.mechanism(), of.address)](
-          const ResponseRequest& request, const TaskContext<ResponseResult>& context) {
-        return find_curve(request, present, through, context);
+      [start = std::move(start)](const ResponseRequest& request, const TaskContext<ResponseResult>& context) {
+        return find_curve(request, start, context);
       },
       same ? ResponseCurve::Running::finished : ResponseCurve::Running::cancelled);
 }
@@ -114,10 +132,12 @@ void take_design(Session& session) {
   auto& answer = session.study.response.design.answer;
   if (!answer.take()) return;
   if (!answer.problem.empty()) answer.found.reset();
-  if (answer.found)
-    std::ranges::stable_sort(answer.found->result.solutions, {}, [&](const DesignSolution& s) {
-      return std::pair(s.at.stable != true, away(session, s.at));
-    });
+  if (!answer.found) return;
+  DesignAnswer& found = answer.found->result;
+  found.message = with_phrase(std::move(found.message), answer.found->of.of.address);
+  std::ranges::stable_sort(found.solutions, {}, [&](const DesignSolution& s) {
+    return std::pair(s.at.stable != true, away(session, s.at));
+  });
 }
 
 // First the parameter that is likely meant: a drive's speed.
@@ -322,11 +342,17 @@ void choose_quantity(Session& session, const ResponseQuantity& quantity) {
 
 std::vector<ResponseQuantity> offered_quantities(const Session& session) {
   if (is_resonance(session)) return resonance_quantities(session);
-  if (converged(session)) return response_quantities(response_point(session.answer.solution, 0));
+  std::vector<ResponseQuantity> out;
+  if (converged(session)) out = response_quantities(response_point(session.answer.solution, 0));
   const auto& found = session.study.response.curve.found;
-  if (found && !found->result.lines.empty() && !found->result.lines.front().points.empty())
-    return response_quantities(found->result.lines.front().points.front());
-  return {};
+  if (!found) return out;
+  for (const ResponseLine& line : found->result.lines) {
+    if (line.points.empty()) continue;
+    // What rests on friction tells rates of what stands elsewhere.
+    if (out.empty() || !line.points.front().frictions.empty())
+      add_quantities(out, response_quantities(line.points.front()));
+  }
+  return out;
 }
 
 void go_to_response(Session& session, std::size_t line_index, double at, double step, bool dragged) {
@@ -340,7 +366,11 @@ void go_to_response(Session& session, std::size_t line_index, double at, double 
   const bool there = session.on_branch && point.parameter == get_parameter(session.mechanism(), address);
   if (dragged && there && (solving(session) || near(session.answer.solution.coordinates, point.coordinates)))
     return;
-  go_to_state(session, address, point.parameter, start_values(point.coordinates));
+  // What rests on friction is found from the drawn pose: nothing leads to it from beside.
+  if (point.frictions.empty())
+    go_to_state(session, address, point.parameter, start_values(point.coordinates));
+  else
+    change_parameter(session, address, point.parameter);
 }
 
 void find_design(Session& session) {

@@ -54,14 +54,26 @@ std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   return out;
 }
 
+void add_quantities(std::vector<ResponseQuantity>& to, const std::vector<ResponseQuantity>& more) {
+  for (const ResponseQuantity& each : more) {
+    if (std::ranges::find(to, each.key, &ResponseQuantity::key) != to.end()) continue;
+    const auto last = std::find_if(to.rbegin(), to.rend(),
+                                   [&](const ResponseQuantity& q) { return q.group == each.group; });
+    to.insert(last == to.rend() ? to.end() : last.base(), each);
+  }
+}
+
 bool needs_reactions(const std::string& key) {
   return key.starts_with("drive ") || key.starts_with("force ") || key.starts_with("torque ");
 }
 
 std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key) {
   if (const auto name = after(key, "value ")) {
-    for (const CoordinateSolution& c : point.coordinates)
-      if (const auto found = found_number(c); found && found->name == *name) return {found->value};
+    for (const CoordinateSolution& c : point.coordinates) {
+      const auto found = found_number(c);
+      if (found && found->name == *name) return {found->value};
+      if (found && !c.speed && *name == coordinate_label(c) + ".speed") return {0}; // of what slips elsewhere
+    }
   } else if (const auto measure = after(key, "measure ")) {
     for (const MeasureSolution& m : point.measures)
       if (m.name == *measure && m.value) return {*m.value};

@@ -18,10 +18,13 @@ struct ResponseQuantity {
 
 // All that the point, with everything in it, can tell.
 std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point);
+// Adds those that are not there yet, each at the end of its group.
+void add_quantities(std::vector<ResponseQuantity>& to, const std::vector<ResponseQuantity>& more);
 // Whether its points need reactions and drive torques.
 bool needs_reactions(const std::string& key);
 
-// In SI units; several for a quantity of several lines ("frequencies"), none where the point does not tell.
+// In SI units; zero as the speed of what stands; several for a quantity of several lines ("frequencies"),
+// none where the point does not tell.
 std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key);
 // One of them: where a mark of the point stands.
 std::optional<double> quantity_mark(const ResponsePoint& point, const std::string& key);

@@ -14,7 +14,6 @@ AllSolutions find_states(const SharedMechanism& mechanism, const TaskContext<All
   options.details = false;
   options.cancel = &context.cancel;
   options.progress = context.progress;
-  options.friction = false; // of what is listed one can go to the free coordinates
   return analysis.solve_all(options);
 }
 
@@ -49,7 +48,13 @@ std::optional<std::size_t> shown_state(const Session& session) {
 
 void show_state(Session& session, std::size_t index) {
   if (!states_are_current(session) || index >= session.study.states.found->result.equilibria.size()) return;
-  go_to_state(session, "", 0, start_values(session.study.states.found->result.equilibria[index].coordinates));
+  const Solution& state = session.study.states.found->result.equilibria[index];
+  if (state.frictions.empty()) return go_to_state(session, "", 0, start_values(state.coordinates));
+  solve_from_drawn_pose(session);
+  if (index > 0)
+    session.notice =
+        "The view shows what solving answers: of states that rest on friction the first, and only "
+        "where there is no other.";
 }
 
 } // namespace flyball

@@ -41,9 +41,10 @@ bool press_against_stops(const Problem& problem, Eigen::VectorXd& q, Workspace& 
 class EquilibriumSearch {
  public:
   EquilibriumSearch(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
-                    Workspace& w, std::vector<double>& history, Found& found)
-      : p_(problem), start_(start), nearest_(nearest), warm_(warm), large_(problem.form != KktForm::dense),
-        descends_(!nearest && has_descent(problem)), w_(w), history_(history), found_(found) {
+                    bool newton_only, Workspace& w, std::vector<double>& history, Found& found)
+      : p_(problem), start_(start), nearest_(nearest), warm_(warm), newton_only_(newton_only),
+        large_(problem.form != KktForm::dense), descends_(!nearest && has_descent(problem)), w_(w),
+        history_(history), found_(found) {
     found_.status = Status::not_converged;
     found_.remark = Remark::none;
     found_.fallback.reset();
@@ -59,6 +60,7 @@ class EquilibriumSearch {
   bool run() {
     assemble_start(); // first, since closing loops takes the factors
     if (newton_raphson()) return true;
+    if (newton_only_) return settle_for_unstable();
     if (!close_loops()) return false;
     if (against_stops()) return true;
     if (large_ && downhill()) return true;
@@ -403,7 +405,7 @@ class EquilibriumSearch {
 
   const Problem& p_;
   const Eigen::VectorXd& start_;
-  const bool nearest_, warm_;
+  const bool nearest_, warm_, newton_only_;
   const bool large_;    // many bodies: what leads to a minimum in few iterations comes first
   const bool descends_; // there is a potential to go down by
   Workspace& w_;
@@ -443,10 +445,10 @@ bool same_assembly_mode(const Problem& problem, const Kinematics<double>& k) {
 }
 
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
-                      Workspace& w, std::vector<double>& history, Found& found) {
+                      Workspace& w, std::vector<double>& history, Found& found, bool newton_only) {
   const Interruptible scope(problem.cancel);
   try {
-    EquilibriumSearch(problem, start, nearest, warm, w, history, found).run();
+    EquilibriumSearch(problem, start, nearest, warm, newton_only, w, history, found).run();
   } catch (const Interrupted&) {
     found.status = Status::not_converged;
     found.remark = Remark::cancelled;

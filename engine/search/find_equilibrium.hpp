@@ -50,10 +50,11 @@ struct Found {
 };
 
 // From `start`. `nearest` asks for the Newton answer, stable or not; `warm` says that the start is a
-// neighbour's answer. Reuses `found`'s storage, and allocates nothing when the plain run arrives in a system
-// of the same size as before. An answer is left evaluated and factored in the workspace.
+// neighbour's answer; `newton_only` that nothing catches Newton-Raphson where it fails. Reuses `found`'s
+// storage, and allocates nothing when the plain run arrives in a system of the same size as before. An answer
+// is left evaluated and factored in the workspace.
 void find_equilibrium(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
-                      Workspace& w, std::vector<double>& history, Found& found);
+                      Workspace& w, std::vector<double>& history, Found& found, bool newton_only = false);
 
 // Whether each loop is in the assembly mode that was drawn: the rows of an axis' direction vanish where it
 // points the other way, too.

@@ -101,13 +101,14 @@ void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from,
   stability.reset();
   unstable_ = false;
   start = from;
-  find_equilibrium(problem, start, options.nearest, options.warm, balance_, history, found);
+  find_equilibrium(problem, start, options.nearest, options.warm, balance_, history, found,
+                   options.newton_only);
   // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
   const bool left =
       found.status != Status::converged || found.fallback || (problem.symmetric() && !found.minimum);
   if (options.warm && left && !problem.cancelled()) {
     start = drawn;
-    find_equilibrium(problem, start, options.nearest, false, balance_, history, found);
+    find_equilibrium(problem, start, options.nearest, false, balance_, history, found, options.newton_only);
   }
   phases = sample_phases(problem.system, problem.parameters);
   if (found.status == Status::converged) {

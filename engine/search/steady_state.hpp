@@ -30,9 +30,10 @@ struct OtherStates {
 };
 
 struct SteadyStateOptions {
-  bool nearest = false; // the plain Newton-Raphson answer, stable or not, and no other
-  bool warm = false;    // the start is a neighbour's answer
-  double seconds = 0;   // of the search for another (SearchOptions); zero: none
+  bool nearest = false;     // the plain Newton-Raphson answer, stable or not, and no other
+  bool warm = false;        // the start is a neighbour's answer
+  bool newton_only = false; // see find_equilibrium()
+  double seconds = 0;       // of the search for another (SearchOptions); zero: none
   ReportProgress progress{};
 };
 

@@ -16,6 +16,10 @@ namespace {
 
 constexpr int friction_intervals = 60; // of the range, of which each may be halved
 constexpr int most_friction_halvings = 7;
+constexpr int full_tries =
+    6; // where nothing is beside: at every so many values all that solving knows is tried
+constexpr double newton_near =
+    0.02; // of the gap in which an end is looked for: then Newton-Raphson is enough
 constexpr double friction_bend = 2e-3;    // of a value: how far from the straight line a point may lie
 constexpr double friction_border = 1e-13; // of the range: how closely ends are located
 constexpr int most_edge_steps = 120;
@@ -49,8 +53,12 @@ class FrictionFollower {
 
   void follow() {
     std::vector<Run> runs;
-    for (const FrictionParts& parts : friction_parts(mechanism_, options_.cancel))
-      follow(parts, runs);
+    const std::vector<FrictionParts> all = friction_parts(mechanism_, options_.cancel);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      follow(all[i], runs, [&](double part) {
+        report_progress(options_.progress, "following what rests on friction",
+                        (static_cast<double>(i) + part) / static_cast<double>(all.size()));
+      });
     std::ranges::stable_sort(
         runs, {}, [&](const Run& run) { return (run.places.front().number - from_) / (to_ - from_); });
     for (Run& run : runs)
@@ -86,14 +94,16 @@ class FrictionFollower {
         covered_, [&](const auto& part) { return part.first <= number && number <= part.second; });
   }
 
-  // `beside`: a place from which to begin; null: none.
-  std::optional<FrictionPlace> at(const FrictionParts& parts, double number,
-                                  const FrictionPlace* beside) const try {
+  // `beside`: a place from which to begin; null: none. Where there is no state Newton-Raphson alone says so
+  // in a fraction of the time.
+  std::optional<FrictionPlace> at(const FrictionParts& parts, double number, const FrictionPlace* beside,
+                                  bool newton_only = false) const try {
     interruption_point();
     SolveOptions solve;
     solve.cancel = options_.cancel;
     solve.nearest = beside != nullptr;
     solve.search = 0;
+    solve.newton_only = newton_only;
     if (beside) solve.start = start_values(beside->point.coordinates);
     auto state = solve_with_parts(with_parameter(mechanism_, address_, number), parts, solve);
     if (!state) return std::nullopt;
@@ -103,7 +113,7 @@ class FrictionFollower {
     return std::nullopt;
   }
 
-  void follow(const FrictionParts& parts, std::vector<Run>& runs) const {
+  void follow(const FrictionParts& parts, std::vector<Run>& runs, const auto& progress) const {
     Run run;
     std::optional<FrictionPlace> before;
     const auto close = [&](std::string why, bool slips) {
@@ -112,11 +122,17 @@ class FrictionFollower {
       if (!run.places.empty()) runs.push_back(std::move(run));
       run = {};
     };
+    int none = 0; // the last value at which there is none by all that solving knows
     for (int i = 0; i <= friction_intervals; ++i) {
+      progress(static_cast<double>(i) / friction_intervals);
       std::optional<FrictionPlace> now;
       if (!covered(number(i))) {
         if (before) now = at(parts, number(i), &*before);
-        if (!now) now = at(parts, number(i), nullptr);
+        const bool newton_only = !before && i % full_tries != 0;
+        if (!now) now = at(parts, number(i), nullptr, newton_only);
+        if (!now && !newton_only) none = i;
+      } else {
+        none = i;
       }
       const bool went = before && before->goes, goes = now && now->goes;
       if (went && !goes) {
@@ -124,15 +140,12 @@ class FrictionFollower {
         if (edge.last.number != before->number) append(parts, run, std::move(edge.last));
         close(std::move(edge.why), edge.slips);
       } else if (goes && !went) {
-        if (i == 0) {
+        if (i == 0)
           run.places.push_back(*now);
-        } else {
-          Edge edge = find_edge(parts, *now, number(i - 1), before ? &*before : nullptr);
-          run.places.push_back(edge.last);
-          run.begin = std::move(edge.why);
-          run.slips_at_begin = edge.slips;
-          if (edge.last.number != now->number) append(parts, run, *now);
-        }
+        else if (before)
+          begin(parts, run, {*now}, number(i - 1), &*before);
+        else
+          begin_back(parts, run, *now, i, none);
       } else if (goes) {
         if (!append(parts, run, *now)) {
           close("solving leads to no state beside it, as at a fold", false);
@@ -143,6 +156,28 @@ class FrictionFollower {
       before = std::move(now);
     }
     close("the end of the range", false);
+  }
+
+  // A run that goes at the i-th value, and does not at an earlier one, `none`: as far back as it goes.
+  void begin_back(const FrictionParts& parts, Run& run, const FrictionPlace& now, int i, int none) const {
+    std::vector<FrictionPlace> good{now}; // backwards
+    for (int k = i - 1; k > none; --k) {
+      std::optional<FrictionPlace> there = at(parts, number(k), &good.back());
+      if (!there || !there->goes) return begin(parts, run, good, number(k), there ? &*there : nullptr);
+      good.push_back(std::move(*there));
+    }
+    begin(parts, run, good, number(none), nullptr);
+  }
+
+  // With places that go, backwards, and a value at which there is none, or `bad`, which does not go.
+  void begin(const FrictionParts& parts, Run& run, const std::vector<FrictionPlace>& good, double bad_number,
+             const FrictionPlace* bad) const {
+    Edge edge = find_edge(parts, good.back(), bad_number, bad);
+    run.begin = std::move(edge.why);
+    run.slips_at_begin = edge.slips;
+    run.places.push_back(std::move(edge.last));
+    for (auto place = good.rbegin(); place != good.rend(); ++place)
+      if (place->number != run.places.front().number) append(parts, run, *place);
   }
 
   // The next place of a run, with those between that it takes. False where they do not hang together.
@@ -199,7 +234,10 @@ class FrictionFollower {
       const double here = bracket.next();
       if (here == bracket.low() || here == bracket.high()) break;
       const bool ends = covered(here);
-      const std::optional<FrictionPlace> there = ends ? std::nullopt : at(parts, here, &edge.last);
+      const std::optional<FrictionPlace> there =
+          ends ? std::nullopt
+               : at(parts, here, &edge.last,
+                    bracket.width() < newton_near * std::abs(bad_number - good.number));
       const double value = there ? margin(*there) : never;
       if (!(value < 0)) {
         edge.last = *there;
@@ -259,17 +297,22 @@ ResponsePoint response_point(const Solution& s, double parameter) {
   return out;
 }
 
-ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
-                                double to, const BranchOptions& options) {
-  ResponseDiagram out = follow_branches(mechanism, address, from, to, options);
-  if (!has_friction(mechanism)) return out;
+void add_friction_branches(const Mechanism& mechanism, const std::string& address, double from, double to,
+                           const BranchOptions& options, ResponseDiagram& diagram) {
+  if (!has_friction(mechanism)) return;
   const auto begin = std::chrono::steady_clock::now();
   const Interruptible scope(options.cancel);
   try {
-    FrictionFollower(mechanism, address, from, to, options, out).follow();
+    FrictionFollower(mechanism, address, from, to, options, diagram).follow();
   } catch (const Interrupted&) { // what was found stays
   }
-  out.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
+                                double to, const BranchOptions& options) {
+  ResponseDiagram out = follow_branches(mechanism, address, from, to, options);
+  add_friction_branches(mechanism, address, from, to, options, out);
   return out;
 }
 

@@ -13,6 +13,11 @@ namespace flyball {
 ResponseDiagram follow_response(const Mechanism& mechanism, const std::string& address, double from,
                                 double to, const BranchOptions& options = {});
 
+// The second half of that: adds such states to a diagram of what there is without friction over this number,
+// with their run time. Nothing where the mechanism has no friction. Throws as follow_branches does.
+void add_friction_branches(const Mechanism& mechanism, const std::string& address, double from, double to,
+                           const BranchOptions& options, ResponseDiagram& diagram);
+
 // A steady state as a point of such a curve.
 ResponsePoint response_point(const Solution& solution, double parameter);
 

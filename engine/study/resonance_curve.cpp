@@ -32,17 +32,22 @@ class Curve {
 
   ResonanceCurve run() {
     const auto begin = std::chrono::steady_clock::now();
+    if (options_.begun) curve_ = *options_.begun;
+    for (const auto& point : curve_.points)
+      evaluations_ += point->evaluations;
     const int coarse = std::max(2, options_.coarse);
     for (int i = 0; i < coarse && goes_on(); ++i)
-      add(places_.size(), static_cast<double>(i) / (coarse - 1));
+      if (const double part = static_cast<double>(i) / (coarse - 1);
+          !std::ranges::binary_search(places(), part))
+        add(part, coarse - i);
     while (goes_on()) {
-      const std::optional<std::size_t> gap = roughest();
-      if (!gap) break;
-      add(*gap + 1, (places_[*gap] + places_[*gap + 1]) / 2);
+      const Rough rough = find_rough();
+      if (rough.count == 0) break;
+      add((places()[rough.worst] + places()[rough.worst + 1]) / 2, rough.count);
     }
     const std::chrono::duration<double> run_time = std::chrono::steady_clock::now() - begin;
     curve_.run_time_s = run_time.count();
-    curve_.whole = !cancelled() && !roughest();
+    curve_.whole = !cancelled() && find_rough().count == 0;
     return std::move(curve_);
   }
 
@@ -81,14 +86,19 @@ class Curve {
     }
   }
 
-  void add(std::size_t at, double part) {
-    report_progress(options_.progress, "finding periodic motions",
-                    static_cast<double>(places_.size()) / options_.most);
+  const std::vector<double>& places() const { return curve_.places; }
+
+  // `wanted`: points, this one included, that are known to be missing.
+  void add(double part, int wanted) {
+    const auto done = static_cast<double>(curve_.points.size());
+    progress_ = std::max(progress_, done / (done + wanted));
+    report_progress(options_.progress, "finding periodic motions", progress_);
     auto point = std::make_shared<const ResonancePoint>(find(number_at(part)));
     if (cancelled()) return; // what was found may be for want of time
     evaluations_ += point->evaluations;
-    places_.insert(places_.begin() + static_cast<std::ptrdiff_t>(at), part);
-    curve_.points.insert(curve_.points.begin() + static_cast<std::ptrdiff_t>(at), std::move(point));
+    const auto at = std::ranges::lower_bound(places(), part) - places().begin();
+    curve_.places.insert(curve_.places.begin() + at, part);
+    curve_.points.insert(curve_.points.begin() + at, std::move(point));
     if (options_.publish) options_.publish(curve_);
   }
 
@@ -115,7 +125,7 @@ class Curve {
   double bend(std::size_t i, const Outputs& spans) const {
     const ResonancePoint &before = *curve_.points[i - 1], &here = *curve_.points[i],
                          &after = *curve_.points[i + 1];
-    const double part = (places_[i] - places_[i - 1]) / (places_[i + 1] - places_[i - 1]);
+    const double part = (places()[i] - places()[i - 1]) / (places()[i + 1] - places()[i - 1]);
     double most = 0;
     for (const ResonanceOutput& span : spans) {
       const PeriodicRange *a = before.range_of(span.kind, span.name),
@@ -134,25 +144,31 @@ class Curve {
     return a.found() == b.found() && a.steady == b.steady && a.stable == b.stable;
   }
 
-  // The gap between neighbours that is to be halved next; none where all is smooth.
-  std::optional<std::size_t> roughest() const {
+  // The gaps between neighbours that are to be halved.
+  struct Rough {
+    int count = 0;         // none where all is smooth
+    std::size_t worst = 0; // of them, with the point before it
+  };
+  Rough find_rough() const {
+    Rough out;
     const std::size_t count = curve_.points.size();
-    if (count < 2) return std::nullopt;
+    if (count < 2) return out;
     const Outputs all = spans();
     std::vector<double> bends(count, 0);
     for (std::size_t i = 1; i + 1 < count; ++i)
       bends[i] = bend(i, all);
-    std::optional<std::size_t> worst;
     double most = options_.tolerance;
     for (std::size_t i = 0; i + 1 < count; ++i) {
-      if (places_[i + 1] - places_[i] <= options_.finest) continue;
+      if (places()[i + 1] - places()[i] <= options_.finest) continue;
       double rough = std::max(bends[i], bends[i + 1]);
       if (!alike(*curve_.points[i], *curve_.points[i + 1])) rough = 1; // where it changes is told
+      if (rough <= options_.tolerance) continue;
+      ++out.count;
       if (rough <= most) continue;
       most = rough;
-      worst = i;
+      out.worst = i;
     }
-    return worst;
+    return out;
   }
 
   const ResonanceOptions& options_;
@@ -161,8 +177,8 @@ class Curve {
   double from_, to_;
   Analysis analysis_;
   ResonanceCurve curve_;
-  std::vector<double> places_; // of the points: parts of the range
   long evaluations_ = 0;
+  double progress_ = 0; // told last: it does not go back
 };
 
 } // namespace

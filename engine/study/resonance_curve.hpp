@@ -42,6 +42,7 @@ struct ResonancePoint {
 
 struct ResonanceCurve {
   std::vector<std::shared_ptr<const ResonancePoint>> points; // in the order of the range
+  std::vector<double> places;                                // of each, as a part of the range
   bool whole = false;                                        // nothing was cancelled, and no bound reached
   double run_time_s = 0;
 };
@@ -63,7 +64,8 @@ struct ResonanceOptions {
   // Of the equations of motion, of all points together: then no other point is begun.
   long most_evaluations = std::numeric_limits<long>::max();
   const std::atomic<bool>* cancel = nullptr; // the point under way is dropped, those before stay
-  ReportProgress progress{};
+  const ResonanceCurve* begun = nullptr;     // a part of this very curve: its points are taken over
+  ReportProgress progress{};                 // `part`: of the points that are known to be wanted
   std::function<void(const ResonanceCurve&)> publish{}; // after each point
 };
 

@@ -185,7 +185,9 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
     if (!find_rates(state)) return false;
     const double there = way(p - state.p);
     const double step = std::min(part, there > longest_way ? longest_way / there : 1);
-    if (std::optional<State> next = step_to(state, step == 1 ? p : (state.p + step * (p - state.p)).eval())) {
+    const Eigen::VectorXd to = step == 1 ? p : (state.p + step * (p - state.p)).eval();
+    if (to == state.p) return false; // the state runs away at numbers that are told apart no more
+    if (std::optional<State> next = step_to(state, to)) {
       state = std::move(*next);
       part = std::min(1., 2 * part);
     } else {

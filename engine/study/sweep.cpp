@@ -91,15 +91,17 @@ std::vector<SweepPoint> GridSolver::solve_all(std::size_t i, const SolveOptions&
   return points;
 }
 
-SweepPoint GridSolver::solve_periodic(std::size_t i) {
-  SweepPoint point = solve(i);
+SweepPoint GridSolver::solve_periodic(std::size_t i, const std::atomic<bool>* cancel) {
+  SweepPoint point = solve(i, cancel);
   const bool leaves = point.solution.status == Status::converged && point.solution.stable == false;
   if (!leaves && point.solution.status != Status::no_steady_state) return point;
   std::vector<ParameterValue> numbers;
   for (std::size_t v = 0; v < variations_.size(); ++v)
     numbers.push_back({variations_[v].address, point.parameters[v]});
   set_parameters(mechanism_, numbers);
-  point.periodic = find_periodic_state(mechanism_);
+  PeriodicOptions options;
+  options.cancel = cancel;
+  point.periodic = find_periodic_state(mechanism_, options);
   if (leaves && (point.periodic->status != PeriodicStatus::found || point.periodic->stable != true))
     point.periodic.reset();
   return point;

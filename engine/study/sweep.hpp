@@ -48,8 +48,8 @@ class GridSolver {
   // Where there are none, one point that says why, as solve() does.
   std::vector<SweepPoint> solve_all(std::size_t i, const SolveOptions& search);
   // As solve(), and the periodic motion in place of the steady state where drives make the balance turn; also
-  // a stable one where the steady state is unstable.
-  SweepPoint solve_periodic(std::size_t i);
+  // a stable one where the steady state is unstable. Cancelled, what was found of either stays.
+  SweepPoint solve_periodic(std::size_t i, const std::atomic<bool>* cancel = nullptr);
 
  private:
   // False where no mechanism can be made of its numbers, as the point then says.

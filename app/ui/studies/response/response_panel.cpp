@@ -59,10 +59,12 @@ void range_row(Session& session, Ui& ui) {
   const float width = row_label(ui, "Range", "Where the curve begins and where it ends.");
   const float gap = 6 * ui.scale, each = std::floor((width - gap) / 2);
   range_field(session, ui, "response/from",
-              "The curve begins here, with the equilibrium nearest to the drawn pose.", &ResponseChoice::from,
-              each);
+              is_resonance(session)
+                  ? "The curve begins here."
+                  : "The curve begins here, with the steady state nearest to the drawn pose.",
+              &ResponseChoice::from, each);
   ImGui::SameLine(0, gap);
-  range_field(session, ui, "response/to", "The curve is followed as far as this.", &ResponseChoice::to, each);
+  range_field(session, ui, "response/to", "The curve goes as far as this.", &ResponseChoice::to, each);
 }
 
 void quantity_choice(Session& session, Ui& ui) {
@@ -374,6 +376,10 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
   quantity_choice(session, ui);
   if (is_resonance(session)) {
     progress(session, ui, drawn);
+    if (resonance_stopped(session)) {
+      if (text_button(ui, "response/go_on", "Go on")) go_on_with_resonance(session);
+      help_on_hover("Finds the motions that are missing; those that are there stay.");
+    }
     return found(session, ui);
   }
   if (check_row(

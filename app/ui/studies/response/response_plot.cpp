@@ -1,6 +1,7 @@
 #include "app/ui/studies/response/response_plot.hpp"
 
 #include "app/plot/axis.hpp"
+#include "app/plot/friction_curve.hpp"
 #include "app/plot/ribbon_plot.hpp"
 #include "app/session/number_text.hpp"
 #include "app/session/response_pull.hpp"
@@ -17,19 +18,27 @@ namespace {
 
 enum class Kind { stable, unstable, undecided };
 
-struct KindLook {
-  const char* name;
-  PlotLine line;
-  int color;
-};
-
-KindLook look_of(Kind kind) {
+// A curve without points.
+PlotCurve look_of(Kind kind, const ResponsePoint& point) {
+  if (!point.frictions.empty()) {
+    const auto stable = kind == Kind::undecided ? std::nullopt : std::optional<bool>(kind == Kind::stable);
+    return friction_curve(slips_on_friction(point), stable);
+  }
   switch (kind) {
-  case Kind::stable: return {"stable", PlotLine::solid, plot_color::blue};
-  case Kind::unstable: return {"unstable", PlotLine::dashed, plot_color::vermillion};
+  case Kind::stable: return {.name = "stable", .points = {}, .width = 2};
+  case Kind::unstable:
+    return {.name = "unstable",
+            .points = {},
+            .line = PlotLine::dashed,
+            .color = plot_color::vermillion,
+            .width = 1.6};
   case Kind::undecided: break;
   }
-  return {"undecided", PlotLine::dotted, plot_color::neutral};
+  return {.name = "undecided",
+          .points = {},
+          .line = PlotLine::dotted,
+          .color = plot_color::neutral,
+          .width = 1.6};
 }
 
 Kind kind_of(const ResponsePoint& point) {
@@ -80,15 +89,12 @@ void add_piece(const ResponseLine& line, std::size_t index, std::size_t first, s
     values.push_back(quantity_values(line.points[i], quantity.key));
     lines = std::max(lines, values.back().size());
   }
-  const KindLook look = look_of(kind);
+  const PlotCurve look = look_of(kind, line.points[first]);
   const std::size_t begin = plot.curves.size();
   for (std::size_t l = 0; l < lines; ++l) {
-    PlotCurve curve;
-    curve.name = look.name;
-    curve.line = look.line;
-    curve.color = look.color;
-    curve.width = kind == Kind::stable ? 2 : 1.6;
+    PlotCurve curve = look;
     for (std::size_t i = first; i <= last; ++i) {
+      if (!line.points[i].frictions.empty()) curve.notes.push_back(friction_note(line.points[i]));
       const std::vector<double>& v = values[i - first];
       curve.points.push_back(
           {line.points[i].parameter, v.size() == lines ? v[l] * quantity.factor : std::nan("")});

@@ -46,6 +46,14 @@ void summary(const Session& session, Ui& ui, const std::vector<Solution>& all) {
   add(unstable, "unstable");
   add(all.size() - stable - unstable, "undecided");
   if (!words.empty()) paragraph(words + ". Click one to see it.", colors.dim);
+  const auto on_friction = static_cast<std::size_t>(
+      std::ranges::count(all, false, [](const Solution& s) { return s.frictions.empty(); }));
+  if (on_friction > 0) {
+    paragraph(on_friction == 1 ? "One rests on friction."
+                               : std::to_string(on_friction) + " rest on friction.",
+              colors.dim);
+    note_widget(ui.widgets, "states/friction");
+  }
   if (states_are_current(session) && converged(session) && !solving(session) && !shown_state(session))
     paragraph("The state that is shown was not found by this search.", colors.warn);
 }
@@ -127,10 +135,29 @@ std::vector<StateNumber> numbers_of(const Solution& solution) {
   return all;
 }
 
-StateLine line_of(const Solution& solution, const NumberStyle& numbers, const DisplayUnits& units) {
+// Of all states: what stands in one may slip on friction in another.
+std::vector<StateNumber> numbers_of(const std::vector<Solution>& all) {
+  std::vector<StateNumber> out;
+  for (const Solution& solution : all)
+    for (const StateNumber& n : numbers_of(solution))
+      if (std::ranges::find(out, n.name, &StateNumber::name) == out.end()) out.push_back(n);
+  out.resize(std::min(out.size(), most_numbers));
+  return out;
+}
+
+StateLine line_of(const Solution& solution, const std::vector<StateNumber>& columns,
+                  const NumberStyle& numbers, const DisplayUnits& units) {
   StateLine line;
   line.potential = solution.potential ? short_text(*solution.potential, 8) : "–";
-  for (const StateNumber& n : numbers_of(solution)) {
+  const std::vector<StateNumber> own = numbers_of(solution);
+  for (const StateNumber& column : columns) {
+    const auto found = std::ranges::find(own, column.name, &StateNumber::name);
+    if (found == own.end()) {
+      line.values.push_back("–");
+      line.details.push_back(column.name + (column.unit.ends_with("/s") ? ": it stands." : ": it goes on."));
+      continue;
+    }
+    const StateNumber& n = *found;
     if (!n.value) {
       line.values.push_back("–");
       line.details.push_back(n.name + ": " + n.reason);
@@ -144,6 +171,12 @@ StateLine line_of(const Solution& solution, const NumberStyle& numbers, const Di
     line.details.push_back(std::move(detail));
   }
   return line;
+}
+
+// "held", "slips"; empty where the state does not rest on friction.
+const char* friction_of(const Solution& solution) {
+  if (solution.frictions.empty()) return "";
+  return std::ranges::any_of(solution.frictions, &FrictionForce::slips) ? "slips" : "held";
 }
 
 void header(const Ui& ui, const std::vector<Column>& columns) {
@@ -193,6 +226,12 @@ void state_row(Session& session, Ui& ui, std::size_t index, const Solution& solu
   ImGui::SameLine(0, 6 * ui.scale);
   ImGui::TextColored(words.color, "%s", words.word);
   help_on_hover(words.sentence);
+  if (const char* friction = friction_of(solution); *friction) {
+    ImGui::SameLine(0, 6 * ui.scale);
+    ImGui::TextColored(colors.dim, "%s", friction);
+    note_widget(ui.widgets, name + "/friction");
+    help_on_hover(solution.message.c_str());
+  }
   if (ImGui::TableNextColumn()) right_digits(ui, line.potential, colors.text);
   for (std::size_t c = 0; c < line.values.size(); ++c) {
     if (!ImGui::TableNextColumn()) continue;
@@ -202,16 +241,17 @@ void state_row(Session& session, Ui& ui, std::size_t index, const Solution& solu
 }
 
 std::vector<Column> columns_of(const Session& session, const Ui& ui, const std::vector<Solution>& all,
-                               const std::vector<StateLine>& lines) {
+                               const std::vector<StateNumber>& numbers, const std::vector<StateLine>& lines) {
   const float s = ui.scale;
+  const bool friction = std::ranges::any_of(all, [](const Solution& x) { return !x.frictions.empty(); });
   std::vector<Column> columns{
       {"", "", 24 * s},
-      {"Stability", "", 112 * s},
+      {"Stability", "", (friction ? 150 : 112) * s},
       {"Potential [J]",
        "The amended potential: of weight, springs and constant forces, less the kinetic "
        "energy of the drives' motion. Where it is least a state is stable.",
        0}};
-  for (const StateNumber& n : numbers_of(all.front())) {
+  for (const StateNumber& n : numbers) {
     const std::string unit = shown_unit(n.unit, session.units).text;
     columns.push_back({unit.empty() ? n.name : n.name + " [" + unit + "]", "", 0});
   }
@@ -232,9 +272,10 @@ void states_table(Session& session, Ui& ui) {
   const std::vector<Solution>& all = found->result.equilibria;
   std::vector<StateLine> lines;
   lines.reserve(all.size());
+  const std::vector<StateNumber> numbers = numbers_of(all);
   for (const Solution& solution : all)
-    lines.push_back(line_of(solution, session.options.numbers, session.units));
-  const std::vector<Column> columns = columns_of(session, ui, all, lines);
+    lines.push_back(line_of(solution, numbers, session.options.numbers, session.units));
+  const std::vector<Column> columns = columns_of(session, ui, all, numbers, lines);
   ImGui::PushID(found.get()); // new widths with every list
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {6 * ui.scale, 3 * ui.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors_of(ui).panel);

@@ -1,0 +1,44 @@
+#include "engine/periodic/limit_cycle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace flyball {
+namespace {
+
+constexpr double cycle_patience = 10; // see PeriodicOptions
+
+// Whether anything in it moves beside what goes on.
+bool anything_swings(const PeriodicState& state) {
+  constexpr double least = 1e-6; // rad, m, rad/s, m/s
+  return std::ranges::any_of(state.coordinates, [](const PeriodicCoordinate& c) {
+    return c.range.most - c.range.least > least || c.rate.most - c.rate.least > least;
+  });
+}
+
+} // namespace
+
+bool hunts(const Solution& solution) {
+  if (solution.status != Status::converged || solution.stable != false) return false;
+  const auto swinging = [](const std::complex<double>& z) { return std::abs(z.imag()) > 1e-6 * std::abs(z); };
+  if (solution.floquet && !solution.floquet->multipliers.empty())
+    return swinging(solution.floquet->multipliers.front());
+  if (!solution.eigenvalues || solution.eigenvalues->empty()) return false;
+  return swinging(*std::ranges::max_element(*solution.eigenvalues, {},
+                                            [](const std::complex<double>& z) { return z.real(); }));
+}
+
+PeriodicState find_limit_cycle(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  PeriodicOptions options;
+  options.patience = cycle_patience;
+  options.cancel = cancel;
+  PeriodicState state = find_periodic_state(mechanism, options);
+  if (state.status == PeriodicStatus::found && !anything_swings(state)) {
+    state.status = PeriodicStatus::not_found;
+    state.message = "No limit cycle was found: the search led back to the steady state.";
+  }
+  return state;
+}
+
+} // namespace flyball
