@@ -1,0 +1,17 @@
+// What a compiled system depends on of a mechanism.
+#pragma once
+
+#include "engine/mechanism/mechanism.hpp"
+
+#include <vector>
+
+namespace flyball {
+
+// Parts and connections, as opposed to numbers.
+bool same_topology(const Mechanism& a, const Mechanism& b);
+
+// By joints' coordinates and forces: whether there is a damper, which compiling looks at; all that numbers
+// decide of the topology.
+void find_dampers(const Mechanism& mechanism, std::vector<bool>& dampers);
+
+} // namespace flyball
