@@ -1,6 +1,9 @@
 #include "engine/report/friction_state.hpp"
 
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
@@ -38,13 +41,35 @@ double usual_speed(const Mechanism& mechanism) {
   return fastest > 0 ? fastest : 1;
 }
 
+bool is_slipping(Part part) {
+  return part == Part::slips_forwards || part == Part::slips_backwards;
+}
+
+bool any_slips(const FrictionParts& parts) {
+  return std::ranges::any_of(parts, is_slipping);
+}
+
+// Whether its two bodies hang together without it.
+bool closes_a_loop(const Mechanism& mechanism, int joint) {
+  const BodyNumbers numbers(mechanism);
+  BodyGroups groups(numbers);
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    if (const Joint& other = mechanism.joints[j]; other.type != JointType::gear && j != place(joint))
+      groups.join(other.bodies);
+  return !groups.join(mechanism.joints[place(joint)].bodies);
+}
+
 // The friction of each coordinate played by its part.
 class Attempt {
  public:
-  // `holding`: what holding takes, where all hold and springs and stops of their own help.
+  // `holding`: what holding takes, where all hold and springs and stops of their own help. `implied`: of
+  // those that slip the ones whose rate follows from the drives, by coordinate with friction; empty: none.
   Attempt(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
-          std::vector<Part> parts, const Holding* holding = nullptr)
-      : mechanism_(mechanism), frictions_(frictions), parts_(std::move(parts)), holding_(holding) {}
+          std::vector<Part> parts, const Holding* holding = nullptr, std::vector<bool> implied = {})
+      : mechanism_(mechanism), frictions_(frictions), parts_(std::move(parts)), holding_(holding),
+        implied_(std::move(implied)) {
+    implied_.resize(parts_.size(), false);
+  }
 
   // Nothing where there is no such state.
   std::optional<StateOnFriction> solve(const SolveOptions& options) const try {
@@ -71,8 +96,12 @@ class Attempt {
       if (!slips(i)) continue;
       Joint& joint = out.joints[place(frictions_[i].joint)];
       Coordinate& c = joint.coordinates[place(frictions_[i].coordinate)];
-      joint.cut = false;
       c.friction.reset();
+      if (implied_[i]) {
+        put_as_damper(i, joint, c);
+        continue;
+      }
+      joint.cut = false;
       c.drive = Drive{.speed = usual_speed(mechanism_) * (parts_[i] == Part::slips_forwards ? 1 : -1),
                       .torque = slipping_force(i),
                       .load = 0};
@@ -91,8 +120,30 @@ class Attempt {
   }
 
  private:
-  bool slips(std::size_t i) const {
-    return parts_[i] == Part::slips_forwards || parts_[i] == Part::slips_backwards;
+  bool slips(std::size_t i) const { return is_slipping(parts_[i]); }
+
+  // rad/s or m/s: of what slips so slowly a rate that the drives give is not told from none.
+  double slowest() const { return 1e-3 * usual_speed(mechanism_); }
+
+  // The limit against the rate, beside what dampers of its own give: a joint with a damper may close a loop.
+  // From a tenth of the slowest rate on that is the limit to the last digit.
+  void put_as_damper(std::size_t which, Joint& joint, Coordinate& c) const {
+    const int i = frictions_[which].coordinate;
+    const bool angle = is_angle(joint.type, i);
+    const std::string force = angle ? " N m" : " N", rate = angle ? " rad/s" : " m/s";
+    const double limit = friction_limit(friction_at(mechanism_, frictions_[which]));
+    std::string text =
+        number_text(limit) + force + "*tanh(rate/(" + number_text(slowest() / 200) + rate + "))";
+    const std::string key = coordinate_key(joint, place(i), "damping_force");
+    if (const Formula* law = damper_law(joint, i)) {
+      text += " + (" + law->text + ")";
+      std::erase_if(joint.formulas, [&](const Formula& each) { return each.key == key; });
+    } else if (c.damping != 0) {
+      text += " + " + number_text(c.damping) + force + "/(1" + rate + ")*rate";
+    }
+    joint.formulas.push_back({key, text});
+    c.damping = 0;
+    c.damping_force = 0;
   }
   // Positive where it slips backwards.
   double slipping_force(std::size_t i) const {
@@ -140,7 +191,7 @@ class Attempt {
       if (force.slips) {
         slipping = true;
         force.value = slipping_force(i);
-        if (!c->speed) return false;
+        if (!c->speed || (implied_[i] && std::abs(*c->speed) < slowest())) return false;
         out.margins[i] = parts_[i] == Part::slips_forwards ? *c->speed : -*c->speed;
         out.goes = out.goes && out.margins[i] > c->speed_error;
       } else {
@@ -188,6 +239,7 @@ class Attempt {
   const std::vector<CoordinateReference>& frictions_;
   std::vector<Part> parts_;
   const Holding* holding_;
+  std::vector<bool> implied_;
 };
 
 std::string names_of(const std::vector<FrictionForce>& frictions, bool slipping) {
@@ -205,15 +257,11 @@ void add_message(StateOnFriction& state, std::string text) {
   message = std::move(text) + rest;
 }
 
-bool any_slips(const FrictionParts& parts) {
-  return std::ranges::any_of(
-      parts, [](Part part) { return part == Part::slips_forwards || part == Part::slips_backwards; });
-}
-
+// All that there are by find_holding().
 std::optional<StateOnFriction> hold_as_drawn(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,
-                                             const FrictionParts& parts, const SolveOptions& options) {
-  const Holding holding = find_holding(mechanism, options.start, options.cancel);
+                                             const FrictionParts& parts, const Holding& holding,
+                                             const SolveOptions& options) {
   if (!holding.takes) return std::nullopt;
   auto state = Attempt(mechanism, frictions, parts, &holding).solve(options);
   if (state)
@@ -232,6 +280,24 @@ std::string slipping_text(const std::vector<FrictionForce>& forces) {
          (holding.empty() ? "." : "; it holds " + holding + ".");
 }
 
+// With rates that are found by the torques or, where that leads to no state, of some that the drives give.
+std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
+                                        const std::vector<CoordinateReference>& frictions,
+                                        const FrictionParts& parts, const SolveOptions& options) {
+  if (auto state = Attempt(mechanism, frictions, parts).solve(options)) return state;
+  std::vector<std::size_t> may_close;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
+  for (std::size_t set = 1; set < std::size_t(1) << may_close.size(); ++set) {
+    std::vector<bool> implied(parts.size(), false);
+    for (std::size_t k = 0; k < may_close.size(); ++k)
+      implied[may_close[k]] = (set >> k & 1) != 0;
+    if (auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(options))
+      return state;
+  }
+  return std::nullopt;
+}
+
 constexpr const char* without_friction = "Without friction there is no steady state. ";
 
 } // namespace
@@ -246,20 +312,29 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std:
   for (const std::size_t i : tried) {
     std::vector<FrictionParts> longer;
     for (const FrictionParts& parts : all)
-      for (const Part part : {Part::holds, Part::slips_forwards, Part::slips_backwards}) {
+      for (const Part part : {Part::holds, Part::none, Part::slips_forwards, Part::slips_backwards}) {
         longer.push_back(parts);
         longer.back()[i] = part;
       }
     all = std::move(longer);
   }
-  std::erase_if(all, [](const FrictionParts& parts) { return !any_slips(parts); });
-  std::ranges::stable_sort(all, std::greater(),
-                           [](const FrictionParts& parts) { return std::ranges::count(parts, Part::holds); });
   FrictionParts held(frictions.size(), Part::none);
   for (const std::size_t i : find_holding(mechanism, {}, cancel).independent)
     held[i] = Part::holds;
+  std::erase_if(all, [&](const FrictionParts& parts) {
+    return parts == held || std::ranges::count(parts, Part::none) == std::ssize(parts);
+  });
+  std::ranges::stable_sort(all, std::greater(), [](const FrictionParts& parts) {
+    return std::pair(std::ranges::count(parts, Part::holds), std::ranges::count(parts, Part::none));
+  });
   all.insert(all.begin(), held);
   return all;
+}
+
+bool holds_more(const FrictionParts& here, const FrictionParts& there) {
+  return here != there && std::ranges::equal(here, there, [](Part a, Part b) {
+           return a == b || (a == Part::holds && b == Part::none);
+         });
 }
 
 std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
@@ -274,10 +349,19 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
     return found != frictions.end() &&
            parts[place(static_cast<int>(found - frictions.begin()))] == Part::holds;
   });
-  if (!any_slips(parts)) return hold_as_drawn(mechanism, frictions, parts, inner);
-  inner.search = 0;
+  if (any_slips(parts)) {
+    inner.search = 0;
+    auto state = let_slip(mechanism, frictions, parts, inner);
+    if (state) add_message(*state, slipping_text(state->solution.frictions));
+    return state;
+  }
+  const Holding holding = find_holding(mechanism, inner.start, inner.cancel);
+  const bool all_hold =
+      std::ranges::all_of(holding.independent, [&](std::size_t i) { return parts[i] == Part::holds; });
+  if (all_hold) return hold_as_drawn(mechanism, frictions, parts, holding, inner);
   auto state = Attempt(mechanism, frictions, parts).solve(inner);
-  if (state) add_message(*state, slipping_text(state->solution.frictions));
+  if (state)
+    add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) + " as drawn.");
   return state;
 }
 
@@ -304,9 +388,15 @@ std::vector<Solution> find_friction_states(const Mechanism& mechanism, const Sol
   SolveOptions plain = options;
   plain.start.clear();
   std::vector<Solution> out;
-  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel))
-    if (auto state = solve_with_parts(mechanism, parts, plain); state && state->goes)
+  std::vector<FrictionParts> found;
+  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel)) {
+    if (std::ranges::any_of(found, [&](const FrictionParts& other) { return holds_more(other, parts); }))
+      continue; // in the band of that
+    if (auto state = solve_with_parts(mechanism, parts, plain); state && state->goes) {
       out.push_back(std::move(state->solution));
+      found.push_back(parts);
+    }
+  }
   return out;
 }
 

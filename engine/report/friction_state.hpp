@@ -4,7 +4,9 @@
 //   - a joint that it holds stands still, as if driven at the speed zero, and what that takes is within the
 //     limit at every phase of the drives;
 //   - one that slips has its limit for a torque, and its rate is found as that of a drive by torque; it
-//     opposes that torque.
+//     opposes that torque. Where it closes a loop in which nothing else goes on, as of a clutch whose other
+//     side rests against a stop, the drives give its rate;
+//   - beside such joints others rest in balance, with nothing asked of their friction.
 #pragma once
 
 #include "engine/report/analysis.hpp"
@@ -13,7 +15,7 @@ namespace flyball {
 
 // What dry friction does in a coordinate that has some.
 enum class FrictionPart {
-  none,  // nothing, or what its share of the limit says
+  none,  // nothing, or what its share of the limit says: it rests in balance
   holds, // the coordinate as it is drawn
   slips_forwards,
   slips_backwards,
@@ -32,9 +34,14 @@ struct StateOnFriction {
 };
 
 // All parts that friction may have: at first what holds all that it can, as drawn; then those with something
-// that slips, most held first. Those alone that hold where more than three joints would have to be tried.
+// that slips or rests in balance, most held first, then those with most in balance. The first alone where
+// more than three joints would have to be tried.
 std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
                                           const std::atomic<bool>* cancel = nullptr);
+
+// Whether a state with the first parts is one with the others, too: all that has a part there has the same
+// one here, and the rest, which there rests in balance, is held here.
+bool holds_more(const FrictionParts& here, const FrictionParts& there);
 
 // The steady state with these parts, whether or not it goes with them. Nothing where there is none.
 std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace flyball {
 namespace {
@@ -54,11 +55,19 @@ class FrictionFollower {
   void follow() {
     std::vector<Run> runs;
     const std::vector<FrictionParts> all = friction_parts(mechanism_, options_.cancel);
-    for (std::size_t i = 0; i < all.size(); ++i)
+    std::vector<std::pair<FrictionParts, std::pair<double, double>>> found;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      held_.clear();
+      for (const auto& [parts, range] : found)
+        if (holds_more(parts, all[i])) held_.push_back(range);
+      const std::size_t before = runs.size();
       follow(all[i], runs, [&](double part) {
         report_progress(options_.progress, "following what rests on friction",
                         (static_cast<double>(i) + part) / static_cast<double>(all.size()));
       });
+      for (std::size_t k = before; k < runs.size(); ++k)
+        found.emplace_back(all[i], std::minmax(runs[k].places.front().number, runs[k].places.back().number));
+    }
     std::ranges::stable_sort(
         runs, {}, [&](const Run& run) { return (run.places.front().number - from_) / (to_ - from_); });
     for (Run& run : runs)
@@ -89,10 +98,11 @@ class FrictionFollower {
   }
   double range() const { return std::abs(to_ - from_); }
 
-  bool covered(double number) const {
+  static bool covered(std::span<const std::pair<double, double>> ranges, double number) {
     return std::ranges::any_of(
-        covered_, [&](const auto& part) { return part.first <= number && number <= part.second; });
+        ranges, [&](const auto& part) { return part.first <= number && number <= part.second; });
   }
+  bool covered(double number) const { return covered(covered_, number) || covered(held_, number); }
 
   // `beside`: a place from which to begin; null: none. Where there is no state Newton-Raphson alone says so
   // in a fraction of the time.
@@ -248,7 +258,9 @@ class FrictionFollower {
       if (value == 0) break;
       bracket.take(here, value);
     }
+    const bool held = is_covered && !covered(covered_, bad_number);
     edge.why = edge.slips   ? "a joint with friction begins to slip, or sticks"
+               : held       ? "friction holds what rests here in balance"
                : is_covered ? "a steady state without friction begins"
                             : "solving leads to no state beside it, as at a fold";
     return edge;
@@ -277,6 +289,7 @@ class FrictionFollower {
   const BranchOptions& options_;
   ResponseDiagram& out_;
   std::vector<std::pair<double, double>> covered_; // by branches without friction
+  std::vector<std::pair<double, double>> held_;    // by states that hold more than what is followed
 };
 
 } // namespace

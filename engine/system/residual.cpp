@@ -336,6 +336,19 @@ struct MagnitudesPass {
     }
   }
 
+  void add_cut_damper_size(std::size_t i) const {
+    const CutDamperElement& e = system.cut_dampers[i];
+    const CutDamperState<double> s = cut_damper_state<double>(e, p.cut_dampers[i], k);
+    const double size = std::abs(s.resistance);
+    for (const SupportColumn& c : e.ends.support) {
+      const Column<double>& column = k.columns[static_cast<std::size_t>(c.v)];
+      if (e.angular)
+        out.force[c.v] += column.angular ? size : 0;
+      else
+        out.force[c.v] += size * (column.angular ? (s.b - column.o).norm() : 1.);
+    }
+  }
+
   void add_turning_air(std::size_t i) const {
     const TurningAirElement& e = system.turning_air[i];
     const TurningAirForce<double> air = turning_air_force<double>(e, p.turning_air[i], k);
@@ -427,6 +440,8 @@ struct MagnitudesPass {
     out.force.resize(system.nv);
     out.phi.resize(system.rows);
     add_in_parts(system, *this);
+    for (std::size_t i = 0; i < system.cut_dampers.size(); ++i)
+      add_cut_damper_size(i);
     for (std::size_t i = 0; i < system.turning_air.size(); ++i)
       add_turning_air(i);
     if (system.rows == 0) return;
