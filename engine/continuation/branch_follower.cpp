@@ -242,11 +242,23 @@ bool BranchFollower::holds_at_every_phase(const BranchState& s) {
 
 void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
   if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
-  BranchState last = state;
-  last.parameter = border;
-  if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, state.z.q, 0.2)) return;
-  out.points.push_back(point(last));
-  out.states.push_back(std::move(last));
+  constexpr int most_tries = 20;
+  BranchState near = state; // and nearer, where the state changes too much on the way
+  double part = 1;
+  for (int i = 0; i < most_tries; ++i) {
+    BranchState last = near;
+    last.parameter = part == 1 ? border : near.parameter + part * (border - near.parameter);
+    if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, near.z.q, 0.2)) {
+      part /= 2;
+    } else if (part == 1) {
+      out.points.push_back(point(last));
+      out.states.push_back(std::move(last));
+      return;
+    } else {
+      near = std::move(last);
+      part = 1;
+    }
+  }
 }
 
 FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {

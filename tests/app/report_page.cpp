@@ -4,6 +4,7 @@
 #include "app/report/page.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/friction_scenes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -163,6 +164,50 @@ TEST_CASE(
   CHECK(told.find("bearing") != std::string::npos);
   CHECK(told.find("Floquet multipliers") != std::string::npos);
   CHECK_FALSE(contents_of("pendulum").periodic);
+}
+
+TEST_CASE(
+    "a report of a steady state that hunts tells its limit cycle, and its curves are of steady states") {
+  Mechanism m = load_scene(std::string(FLYBALL_ASSETS) + "/scenes/governor_engine.json");
+  for (Joint& joint : m.joints)
+    if (joint.name == "slide") joint.coordinates[0].damping = 15; // below 21.54 N s/m it hunts
+  m.sliders.resize(std::min<std::size_t>(m.sliders.size(), 1));
+  const ReportContents contents = report_contents(std::make_shared<const Mechanism>(m), {});
+  REQUIRE(contents.solution.stable == false);
+  CHECK_FALSE(moves(contents));
+  REQUIRE(contents.cycle);
+  REQUIRE(contents.cycle->status == PeriodicStatus::found);
+  CHECK(contents.cycle->period == Approx(1.7448408).epsilon(1e-6));
+  const std::string page = report_page(contents);
+  check_page(page);
+  const std::string told = section(page, "limit-cycle");
+  for (const char* words : {"Period", "Mean", "Least", "Most", "slide", "Floquet multipliers", "Run time"}) {
+    CAPTURE(words);
+    CHECK(told.find(words) != std::string::npos);
+  }
+  CHECK(section(page, "response").find("Steady states as one number moves") != std::string::npos);
+  CHECK_FALSE(contents_of("governor_engine").cycle); // it is stable
+}
+
+TEST_CASE("curves of a report show what friction holds and what slips") {
+  Mechanism m = test::clutch_and_brake(R"("friction": {"limit": 0.5})", R"("damping": 0.05)");
+  m.sliders.push_back({.parameter = "joints.brake.damping", .from = 0.01, .to = 0.1, .description = ""});
+  const ReportContents contents = report_contents(std::make_shared<const Mechanism>(m), {});
+  REQUIRE(contents.curves.size() == 1);
+  REQUIRE(contents.curves[0].plots.size() == 1);
+  const Plot& plot = contents.curves[0].plots[0];
+  CHECK(plot.y.label == "clutch.speed");
+  std::set<std::string> names;
+  for (const PlotCurve& curve : plot.curves)
+    names.insert(curve.name);
+  CHECK(names == std::set<std::string>{"held as drawn", "slips on friction"});
+  check_page(report_page(contents));
+
+  const ReportContents governor = contents_of("governor_friction");
+  REQUIRE_FALSE(governor.curves.empty());
+  CHECK(std::ranges::any_of(governor.curves, [](const ReportCurve& curve) {
+    return std::ranges::any_of(curve.plots, [](const Plot& shown) { return !shown.bands.empty(); });
+  }));
 }
 
 TEST_CASE("springs in a report balance what they hold") {

@@ -55,4 +55,29 @@ inline Mechanism rubbing_slider_crank(double limit) {
         "points": [[0, 0.1, 0], [0, 0.4, 0]]}]})");
 }
 
+inline constexpr double clutch_shaft_speed = 20; // rad/s
+
+// A shaft, a clutch to a disc of 0.02 kg m^2, and a brake between disc and ground. With `hinge` a block of 2
+// kg beside them, on an arm of 0.5 m that is drawn level.
+inline Mechanism clutch_and_brake(const std::string& clutch, const std::string& brake,
+                                  const std::string& hinge = "") {
+  const auto turning = [](const std::string& name, const std::string& parent, const std::string& child,
+                          const std::string& x, const std::string& more) {
+    return R"({"name": ")" + name + R"(", "type": "revolute", "bodies": [")" + parent + R"(", ")" + child +
+           R"("], "at": [)" + x + R"(, 0, 0], "axis": [0, 0, 1], )" + more + "}";
+  };
+  const auto body = [](const std::string& name) {
+    return R"({"name": ")" + name + R"(", "mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.02]})";
+  };
+  return read_scene(R"({"flyball": 2, "name": "Clutch", "gravity": [0, -10, 0], "bodies": [)" +
+                    body("shaft") + ", " + body("disc") +
+                    (hinge.empty() ? "" : R"(, {"name": "block", "mass": 2, "position": [1, 0, 0]})") +
+                    R"(], "joints": [)" +
+                    turning("shaft", "ground", "shaft", "0",
+                            R"("drive": {"speed": )" + number_text(clutch_shaft_speed) + "}") +
+                    ", " + turning("clutch", "shaft", "disc", "0", clutch) + ", " +
+                    turning("brake", "ground", "disc", "0", brake) +
+                    (hinge.empty() ? "" : ", " + turning("hinge", "ground", "block", "0.5", hinge)) + "]}");
+}
+
 } // namespace flyball::test

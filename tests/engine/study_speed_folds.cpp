@@ -40,4 +40,6 @@ TEST_CASE("a torque against a load that falls and rises with speed has two folds
   CHECK_THAT(folds[1], WithinRel(torque(fold(0.5, 2)), 1e-9));
   REQUIRE(d.branches.size() == 1);
   CHECK(d.branches[0].points.size() < 1000);
+  CHECK(d.branches[0].points.front().parameter == 0.1);
+  CHECK(d.branches[0].points.back().parameter == 3); // though a step is long there
 }

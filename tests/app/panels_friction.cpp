@@ -1,0 +1,95 @@
+// What rests on dry friction in the window: its branches in the response curve, its states in the list.
+#include "robot.hpp"
+
+#include "app/session/response.hpp"
+#include "app/session/states.hpp"
+#include "app/ui/panel_list.hpp"
+#include "app/ui/studies/study_panels.hpp"
+#include "engine/mechanism/address.hpp"
+#include "tests/catch.hpp"
+#include "tests/engine/friction_scenes.hpp"
+
+#include <algorithm>
+#include <set>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+const std::string damping = "joints.brake.damping";
+
+// The clutch holds up to a damping of 0.025 N m s/rad and slips beyond.
+struct ClutchRobot : Robot {
+  explicit ClutchRobot(char study) : Robot({1280, 900}) {
+    Mechanism m = clutch_and_brake(R"("friction": {"limit": 0.5})", R"("damping": 0.05)");
+    m.sliders.push_back({.parameter = damping, .from = 0.01, .to = 0.1, .description = ""});
+    open_document(app.session, Document(std::move(m)));
+    frames(3);
+    key(study);
+    frames(3);
+  }
+  const Plot& plot() { return app.panels->studies.shown().response.plot; }
+};
+
+} // namespace
+
+TEST_CASE("the response curve shows what friction holds and what slips, each in its own way") {
+  ClutchRobot robot('C');
+  Session& session = robot.app.session;
+  choose_response(session, damping);
+  robot.frames(3);
+  const std::vector<ResponseQuantity> offered = offered_quantities(session);
+  const auto speed = std::ranges::find(offered, "value clutch.speed", &ResponseQuantity::key);
+  REQUIRE(speed != offered.end());
+  CHECK(std::ranges::find(offered, "value clutch", &ResponseQuantity::key) != offered.end());
+  choose_quantity(session, *speed);
+  robot.frames(3);
+  std::set<std::string> names;
+  for (const PlotCurve& curve : robot.plot().curves) {
+    names.insert(curve.name);
+    REQUIRE(curve.notes.size() == curve.points.size());
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      const auto [c, w] = curve.points[i];
+      if (curve.name == "held as drawn") {
+        CHECK(w == 0);
+        CHECK(curve.notes[i].starts_with("clutch is held by "));
+      } else {
+        CHECK_THAT(w, WithinRel(0.5 / c - 20, 1e-9) || Catch::Matchers::WithinAbs(0, 1e-7));
+        CHECK(curve.notes[i] == "clutch slips against 0.5 N m");
+      }
+    }
+  }
+  CHECK(names == std::set<std::string>{"held as drawn", "slips on friction"});
+  REQUIRE(robot.plot().marks.size() == 1);
+  CHECK(robot.plot().marks[0].label.starts_with("slip "));
+  // Nothing is followed again before something has changed.
+  const auto curve = session.study.response.curve.found;
+  robot.frames(5);
+  CHECK(session.study.response.curve.found == curve);
+  // The state goes along the branch that it is taken to.
+  const auto& lines = session.study.response.curve.found->result.lines;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    go_to_response(session, i, 1, 1e-4, false);
+    robot.frames(3);
+    REQUIRE(session.answer.solution.status == Status::converged);
+    CHECK(session.answer.solution.frictions.at(0).slips == lines[i].points[1].frictions.at(0).slips);
+    CHECK(session.notice.empty());
+  }
+}
+
+TEST_CASE("a state that slips is in the list of states, with its speed") {
+  ClutchRobot robot('E');
+  const Session& session = robot.app.session;
+  REQUIRE(session.study.states.found);
+  const std::vector<Solution>& all = session.study.states.found->result.equilibria;
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].frictions.at(0).slips);
+  CHECK(robot.app.ui.widgets.count("states/row/1/friction") == 1);
+  CHECK(robot.app.ui.widgets.count("states/friction") == 1);
+  CHECK(shown_state(session) == 0u);
+  robot.click("states/row/1");
+  robot.frames(3);
+  CHECK(shown_state(session) == 0u);
+}
