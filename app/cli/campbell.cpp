@@ -56,7 +56,8 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
                         {"stable", at.stable ? Json(*at.stable) : Json(nullptr)},
                         {"modes", std::move(modes)}});
     }
-    out["branches"].push_back({{"points", std::move(points)}});
+    out["branches"].push_back({{"points", std::move(points)},
+                               {"without_modes", left_out(d.response.branches[b], number_text, unit)}});
   }
   out["critical_speeds"] = Json::array();
   for (const CriticalSpeed& c : d.critical)
@@ -72,7 +73,6 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
          {"touches", c.touches},
          {"stable", c.stable},
          {"whirl", whirl_json(c.whirl, c.frequency)}});
-  out["without_modes"] = left_out(d, unit);
   out["run_time_s"] = d.run_time_s;
   return out;
 }
@@ -137,9 +137,10 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
           "    {}: {} to {}{}\n", printable(branch.names[l]), end(first), end(last),
           whirl_text(branch.points[last].whirls[static_cast<std::size_t>(branch.points[last].lines[l])]));
     }
+    const auto short_number = [](double speed) { return fmt::format("{:.6g}", speed); };
+    if (const std::string without = left_out(d.response.branches[b], short_number, unit); !without.empty())
+      out += "    " + printable(without) + "\n";
   }
-  if (const std::string without = left_out(d, unit); !without.empty())
-    out += "  " + printable(without) + "\n";
   for (const CriticalSpeed& c : d.critical)
     out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)]);
   if (!turns)

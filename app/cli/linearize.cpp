@@ -23,7 +23,7 @@ struct LinearizeArguments {
   std::vector<std::string> inputs, outputs, start;
   std::filesystem::path file;
   std::string frequencies, csv;
-  bool nearest = false, phases = false, json = false;
+  bool nearest = false, phases = false, slipping = false, json = false;
 };
 
 // "from:to:count" in Hz.
@@ -92,6 +92,7 @@ void run(const LinearizeArguments& arguments, Ending& ending) {
   LinearModelOptions options;
   options.nearest = arguments.nearest;
   options.phases = arguments.phases;
+  options.slipping = arguments.slipping;
   for (const std::string& text : arguments.start)
     options.start.push_back(parse_assignment("--start", text));
   LinearModel model;
@@ -157,6 +158,8 @@ void add_linearize(CLI::App& app, Ending& ending) {
   command->add_flag("--nearest", arguments->nearest, "About the plain Newton-Raphson answer, stable or not");
   command->add_flag("--phases", arguments->phases,
                     "Angles of shafts that torques drive are states, too: they integrate");
+  command->add_flag("--slipping", arguments->slipping,
+                    "Of the motion once joints with dry friction slip: their hold is left out");
   command->add_flag("--json", arguments->json, "Print a JSON object");
   command->footer("Example: flyball linearize governor.json --inputs joints.spin.drive.speed --outputs slide "
                   "-o governor.m");

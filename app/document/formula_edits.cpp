@@ -375,6 +375,26 @@ void rename_point(Mechanism& mechanism, const std::string& name, const std::stri
   });
 }
 
+namespace {
+
+// Calls with every law (drive_law.hpp, force_law.hpp) that names it, and the address of its number.
+template <class Visit>
+void visit_laws(Mechanism& mechanism, const std::string& name, const Visit& visit) {
+  std::vector<std::pair<std::string, Formula*>> laws;
+  const auto collect = [&](const std::string& list, auto& parts) {
+    for (auto& part : parts)
+      for (Formula& formula : part.formulas)
+        if ((is_drive_law(mechanism, formula) || is_force_law(formula)) && names(formula.text, name))
+          laws.emplace_back(list + part.name + "." + formula.key, &formula);
+  };
+  collect("joints.", mechanism.joints);
+  collect("forces.", mechanism.forces);
+  for (const auto& [address, formula] : laws)
+    visit(address, *formula);
+}
+
+} // namespace
+
 void remove_parameter(Mechanism& mechanism, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
     const int index = parameter_index(next, name);
@@ -382,6 +402,8 @@ void remove_parameter(Mechanism& mechanism, const std::string& name) {
     const NamedParameter& parameter = next.parameters[static_cast<std::size_t>(index)];
     const std::string value =
         "(" + number_text(parameter.value) + (parameter.unit.empty() ? "" : " " + parameter.unit) + ")";
+    visit_laws(next, name,
+               [&](const std::string&, Formula& law) { law.text = renamed_in(law.text, name, value); });
     for (NamedMeasure& measure : next.measures)
       measure.text = renamed_in(measure.text, name, value);
     next.parameters.erase(next.parameters.begin() + index);
@@ -391,6 +413,9 @@ void remove_parameter(Mechanism& mechanism, const std::string& name) {
 
 void remove_point(Mechanism& mechanism, const std::string& name) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
+    visit_laws(next, name, [&](const std::string& address, const Formula& law) {
+      throw SceneError(address, "the law \"=" + law.text + "\" names the point " + name);
+    });
     std::erase_if(next.points, [&](const NamedPoint& each) { return each.name == name; });
     forget(next, name, "points." + name);
     drop_lost_measures(next);

@@ -36,8 +36,9 @@ std::string free_name(const Mechanism& mechanism, const std::string& wish);
 // Expressions, measures and sliders follow.
 void rename_parameter(Mechanism& mechanism, const std::string& name, const std::string& to);
 void rename_point(Mechanism& mechanism, const std::string& name, const std::string& to);
-// What it gave stays what it is, by itself where the expression cannot do without. A measure has the
-// parameter's value instead; without a point those that are about it are dropped.
+// What it gave stays what it is, by itself where the expression cannot do without. Laws and measures have the
+// parameter's value instead. Without a point measures that are about it are dropped; one that a law names
+// stays.
 void remove_parameter(Mechanism& mechanism, const std::string& name);
 void remove_point(Mechanism& mechanism, const std::string& name);
 // Addresses of the numbers whose expressions name it, and of measures.

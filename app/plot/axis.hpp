@@ -18,6 +18,9 @@ struct AxisTicks {
 // not above lower.
 AxisTicks axis_ticks(double lower, double upper, int wanted, bool logarithmic);
 
+// The same of degrees: steps from ten to a turn are parts of one, such as 15, 45 and 90.
+AxisTicks degree_ticks(double lower, double upper, int wanted);
+
 // The range that is to be drawn: the look's, the axis's own, or else all that is shown, with a little room.
 // {0, 1} where there is nothing ({0.1, 10} if logarithmic); ends that can be drawn in every case.
 PlotRange axis_range(const Plot& plot, const PlotLook& look, int axis);

@@ -20,9 +20,11 @@ std::string header_of(const Scale& axis, const char* otherwise) {
 
 std::string to_csv(const Plot& plot, const PlotLook& look) {
   const bool heat = plot.heat && plot.heat->values.size() == plot.heat->x.size() * plot.heat->y.size();
-  const char* end = heat ? ",\r\n" : "\r\n";
+  const bool notes = heat && plot.heat->notes.size() == plot.heat->values.size();
+  const char* end = notes ? ",,\r\n" : heat ? ",\r\n" : "\r\n";
   std::string out = "curve," + header_of(plot.x, "x") + "," + header_of(plot.y, "y");
   if (heat) out += "," + header_of(*plot.heat, "value");
+  if (notes) out += "," + csv_field(plot.heat->notes_label);
   out += "\r\n";
   const auto row = [&](const std::string& name, double x, double y) {
     out += name;
@@ -34,7 +36,8 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
     if (!is_shown(curve, look) || curve.hatching) continue;
-    const std::string name = csv_field(curve.name.empty() ? fmt::format("curve {}", i + 1) : curve.name);
+    const std::string otherwise = plot.y.label.empty() ? fmt::format("curve {}", i + 1) : plot.y.label;
+    const std::string name = csv_field(curve.name.empty() ? otherwise : curve.name);
     for (const auto& point : curve.points) {
       row(name, point[0], point[1]);
       out += end;
@@ -57,7 +60,10 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
   for (std::size_t j = 0; j < plot.heat->y.size(); ++j)
     for (std::size_t i = 0; i < plot.heat->x.size(); ++i) {
       row("map", plot.heat->x[i], plot.heat->y[j]);
-      out += "," + csv_number(plot.heat->values[j * plot.heat->x.size() + i] / plot.heat->factor) + "\r\n";
+      const std::size_t index = j * plot.heat->x.size() + i;
+      out += "," + csv_number(plot.heat->values[index] / plot.heat->factor);
+      if (notes) out += "," + csv_field(plot.heat->notes[index]);
+      out += "\r\n";
     }
   return out;
 }

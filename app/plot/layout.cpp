@@ -28,6 +28,7 @@ struct Builder {
   const Plot& plot;
   const PlotLook& look;
   const PlotMetrics& metrics;
+  PlotSides least_sides; // room beside the frame
   PlotLayout out;
   Detail detail = Detail::all;
   int rows = 0;         // of the legend
@@ -67,13 +68,16 @@ struct Builder {
 
   // As many ticks as there is room for; `place` gives the label's box.
   template <typename Place>
-  std::vector<PlotTick> ticks_of(const PlotRuler& ruler, double spacing, double gap_x, double gap_y,
-                                 const Place& place, std::vector<double>* minor) const {
+  std::vector<PlotTick> ticks_of(const PlotRuler& ruler, const std::string& unit, double spacing,
+                                 double gap_x, double gap_y, const Place& place,
+                                 std::vector<double>* minor) const {
     const double length = std::abs(ruler.to - ruler.from);
     std::vector<PlotTick> ticks;
     // Fills in so many ticks, or about; returns whether their labels have room.
     const auto fits = [&](int wanted) {
-      const AxisTicks found = axis_ticks(ruler.lower, ruler.upper, wanted, ruler.logarithmic);
+      const AxisTicks found = unit == "°" && !ruler.logarithmic
+                                  ? degree_ticks(ruler.lower, ruler.upper, wanted)
+                                  : axis_ticks(ruler.lower, ruler.upper, wanted, ruler.logarithmic);
       ticks.clear();
       for (std::size_t i = 0; i < found.major.size(); ++i) {
         const double at = ruler.pixel(found.major[i]);
@@ -108,10 +112,10 @@ struct Builder {
     return ticks;
   }
 
-  std::vector<PlotTick> vertical_ticks(const PlotRuler& ruler, double x, double anchor,
-                                       std::vector<double>* minor) const {
+  std::vector<PlotTick> vertical_ticks(const PlotRuler& ruler, const std::string& unit, double x,
+                                       double anchor, std::vector<double>* minor) const {
     return ticks_of(
-        ruler, 42 * s(), 0, 0.25 * line(PlotFont::digits),
+        ruler, unit, 42 * s(), 0, 0.25 * line(PlotFont::digits),
         [&](const std::string& label, double at) {
           return text(PlotFont::digits, label, x, at - line(PlotFont::digits) / 2, anchor);
         },
@@ -178,15 +182,17 @@ struct Builder {
     out.y = {ry[0], ry[1], bottom, top, is_logarithmic(plot, look, 1)};
     // Their labels say how far left the frame can begin.
     out.y_ticks.clear();
-    if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, 0, 1, &out.y_minor);
+    if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, plot.y.unit, 0, 1, &out.y_minor);
     double left = 0.8 * pad + widest(out.y_ticks) + 8 * s();
     if (!y_words.empty() && !y_above) left += words_height + 5 * s();
+    out.own_sides = {left, 1.4 * pad};
+    left = std::max(left, least_sides.left);
     for (PlotTick& tick : out.y_ticks)
       if (tick.label) {
         tick.label->box.left += left - 8 * s();
         tick.label->box.right += left - 8 * s();
       }
-    double right = out.width - 1.4 * pad;
+    double right = out.width - std::max(1.4 * pad, least_sides.right);
     out.bar.reset();
     if (plot.heat && bottom - top > 1) {
       out.bar = lay_bar(top, bottom, right);
@@ -206,7 +212,7 @@ struct Builder {
 
   void lay_x_ticks(double below) {
     out.x_ticks = ticks_of(
-        out.x, 70 * s(), line(PlotFont::digits) * 0.9, 0,
+        out.x, plot.x.unit, 70 * s(), line(PlotFont::digits) * 0.9, 0,
         [&](const std::string& label, double at) {
           return text(PlotFont::digits, label, at, out.area.bottom + below, 0);
         },
@@ -240,7 +246,7 @@ struct Builder {
     const PlotHeat& heat = *plot.heat;
     const PlotRange range = heat_range(heat);
     bar.ruler = {range[0], range[1], std::round(bottom), std::round(top), heat.logarithmic};
-    bar.ticks = vertical_ticks(bar.ruler, 0, -1, nullptr);
+    bar.ticks = vertical_ticks(bar.ruler, heat.unit, 0, -1, nullptr);
     const std::string words = detail == Detail::all ? axis_text(heat.label, heat.unit) : "";
     const double words_width = words.empty() ? 0 : line(PlotFont::words) + 5 * s();
     const double end = right + 6 * s() - words_width, start = end - widest(bar.ticks) - 8 * s() - 14 * s();
@@ -331,8 +337,8 @@ struct Builder {
 } // namespace
 
 PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, double height,
-                       const PlotMetrics& metrics) {
-  Builder builder{plot, look, metrics, {}};
+                       const PlotMetrics& metrics, const PlotSides& least) {
+  Builder builder{plot, look, metrics, least, {}};
   builder.out.width = width;
   builder.out.height = height;
   builder.out.scale = metrics.scale;

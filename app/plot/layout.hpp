@@ -82,9 +82,16 @@ struct PlotInk {
   std::vector<char> squares;
 };
 
+// Room beside the frame (pixels).
+struct PlotSides {
+  double left = 0, right = 0;
+  bool operator==(const PlotSides&) const = default;
+};
+
 struct PlotLayout {
   double width = 0, height = 0, scale = 1;
-  PlotBox area; // inside the frame
+  PlotSides own_sides; // what labels need, whatever was asked for
+  PlotBox area;        // inside the frame
   PlotRuler x, y;
   std::vector<PlotTick> x_ticks, y_ticks;
   std::vector<double> x_minor, y_minor; // pixels
@@ -102,9 +109,10 @@ struct PlotLayout {
   bool drawable() const { return area.width() >= 8 && area.height() >= 8; }
 };
 
-// The marker is not laid out: it moves without anything else changing.
+// The marker is not laid out: it moves without anything else changing. `least`: room beside the frame that
+// there is in any case.
 PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, double height,
-                       const PlotMetrics& metrics);
+                       const PlotMetrics& metrics, const PlotSides& least = {});
 
 // All texts that the layout has placed.
 std::vector<const PlotText*> texts_of(const PlotLayout& layout);

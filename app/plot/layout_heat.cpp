@@ -91,10 +91,12 @@ std::vector<PlotCell> heat_cells(const PlotHeat& heat, const PlotLayout& layout)
   return cells;
 }
 
-double heat_value(const PlotHeat& heat, double x, double y, bool x_logarithmic, bool y_logarithmic) {
-  if (!complete(heat)) return std::numeric_limits<double>::quiet_NaN();
+std::optional<std::array<std::size_t, 2>> heat_cell(const PlotHeat& heat, double x, double y,
+                                                    bool x_logarithmic, bool y_logarithmic) {
+  if (!complete(heat)) return std::nullopt;
   const auto i = cell_of(heat.x, x, x_logarithmic), j = cell_of(heat.y, y, y_logarithmic);
-  return i && j ? heat.values[*j * heat.x.size() + *i] : std::numeric_limits<double>::quiet_NaN();
+  if (!i || !j) return std::nullopt;
+  return std::array{*i, *j};
 }
 
 } // namespace flyball

@@ -9,7 +9,8 @@ namespace flyball {
 PlotRange heat_range(const PlotHeat& heat);
 // Neighbours of the same colour as one; of a finer grid than can be seen a part.
 std::vector<PlotCell> heat_cells(const PlotHeat& heat, const PlotLayout& layout);
-// The value of the cell that holds a point; NaN outside.
-double heat_value(const PlotHeat& heat, double x, double y, bool x_logarithmic, bool y_logarithmic);
+// The cell that holds a point, by column and row; none outside.
+std::optional<std::array<std::size_t, 2>> heat_cell(const PlotHeat& heat, double x, double y,
+                                                    bool x_logarithmic, bool y_logarithmic);
 
 } // namespace flyball

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace flyball {
 
@@ -15,6 +16,11 @@ double value_between(const PlotLayout& layout, const std::array<double, 2>& a, c
   if (t <= 0) return a[1];
   if (t >= 1) return b[1];
   return layout.y.logarithmic ? a[1] * std::pow(b[1] / a[1], t) : a[1] + t * (b[1] - a[1]);
+}
+
+// A line that says a value at every x, and is seen.
+bool is_read(const PlotCurve& curve, const PlotLook& look) {
+  return is_shown(curve, look) && curve.line != PlotLine::none && !curve.hatching;
 }
 
 } // namespace
@@ -74,15 +80,15 @@ std::optional<PlotNear> nearest_along(const Plot& plot, const PlotLook& look, co
 std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
                                      double x, double py) {
   std::vector<PlotReading> readings;
-  for (const PlotLegendEntry& entry : layout.legend) {
-    if (entry.band) continue;
+  std::set<std::string> read;
+  for (std::size_t c = 0; c < plot.curves.size(); ++c) {
+    const std::string& name = plot.curves[c].name;
+    if (!is_read(plot.curves[c], look) || !read.insert(name).second) continue;
     std::optional<double> best;
     std::string note;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
-      if (curve.name != entry.name || !is_shown(curve, look) || curve.line == PlotLine::none ||
-          curve.hatching)
-        continue;
+      if (curve.name != name || !is_read(curve, look)) continue;
       for (std::size_t i = 1; i < curve.points.size(); ++i) {
         const auto &a = curve.points[i - 1], &b = curve.points[i];
         if (!((a[0] <= x && x <= b[0]) || (b[0] <= x && x <= a[0]))) continue;
@@ -97,7 +103,7 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
           note = curve.notes[near];
       }
     }
-    if (best) readings.push_back({entry.curve, *best, std::move(note)});
+    if (best) readings.push_back({c, *best, std::move(note)});
   }
   return readings;
 }
@@ -105,13 +111,14 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
 std::vector<BandReading> bands_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout, double x,
                                   double py) {
   std::vector<BandReading> readings;
-  for (const PlotLegendEntry& entry : layout.legend) {
-    if (!entry.band) continue;
+  std::set<std::string> read;
+  for (const PlotBand& named : plot.bands) {
+    if (!is_shown(named, look) || !read.insert(named.name).second) continue;
     std::optional<BandReading> best;
     double least = 0;
     for (std::size_t b = 0; b < plot.bands.size(); ++b) {
       const PlotBand& band = plot.bands[b];
-      if (band.name != entry.name || !is_shown(band, look)) continue;
+      if (band.name != named.name) continue;
       for (std::size_t i = 1; i < band.points.size(); ++i) {
         const auto &p = band.points[i - 1], &q = band.points[i];
         if (!((p[0] <= x && x <= q[0]) || (q[0] <= x && x <= p[0])) || p[0] == q[0]) continue;

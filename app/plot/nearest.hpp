@@ -20,12 +20,13 @@ std::optional<PlotNear> nearest_along(const Plot& plot, const PlotLook& look, co
                                       double px, double py);
 
 struct PlotReading {
-  std::size_t curve = 0; // the first of its name
+  std::size_t curve = 0; // the first shown of its name
   double y = 0;
   std::string note{}; // of the nearest point
 };
 
-// What each name of the legend says at `x`; of several crossings the one nearest to pixel `py`.
+// What the curves are at `x`, those of one name (or of none) together: of several crossings the one nearest
+// to pixel `py`.
 std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, const PlotLayout& layout,
                                      double x, double py);
 

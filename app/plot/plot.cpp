@@ -22,4 +22,8 @@ bool is_shown(const PlotBand& band, const PlotLook& look) {
   return !look.hidden.contains(band.name);
 }
 
+bool has_rim(const Plot& plot, const PlotCurve& curve) {
+  return plot.heat && !curve.hatching;
+}
+
 } // namespace flyball

@@ -81,6 +81,8 @@ struct PlotHeat {
   std::optional<PlotRange> range{};
   std::string si_unit{}; // see PlotAxis
   double factor = 1;
+  std::string notes_label{};        // "stability": the column of the notes in a CSV file
+  std::vector<std::string> notes{}; // by value, or none: what is said beside it
 };
 
 // Where the present state stands; a person can drag it along the curves.
@@ -118,5 +120,8 @@ std::string axis_text(const std::string& label, const std::string& unit);
 bool is_logarithmic(const Plot& plot, const PlotLook& look, int axis);
 bool is_shown(const PlotCurve& curve, const PlotLook& look);
 bool is_shown(const PlotBand& band, const PlotLook& look);
+// Whether the line has a rim of the ground, `rim_width` points at either side: over a map's colours.
+bool has_rim(const Plot& plot, const PlotCurve& curve);
+inline constexpr double rim_width = 1;
 
 } // namespace flyball

@@ -151,6 +151,10 @@ struct Drawing {
     for (const PixelLine& line : lines.lines)
       for (std::size_t i = 0; i < line.size(); ++i)
         path += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(line[i][0]), px(line[i][1]));
+    if (!path.empty() && has_rim(plot, c))
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
+                         "stroke-linejoin=\"round\"/>\n",
+                         path, hex(colors.area), px(c.width + 2 * rim_width));
     if (!path.empty())
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
                          "stroke-linejoin=\"round\"{}/>\n",

@@ -64,7 +64,7 @@ std::vector<std::string> labels_of(const std::vector<Round>& ticks, bool logarit
 }
 
 struct Step {
-  int factor = 1, power = 0; // factor 1, 2 or 5
+  int factor = 1, power = 0; // factor 1, 2 or 5; of degrees also parts of a turn
 };
 
 Step step_of(double lower, double upper, int wanted) {
@@ -151,6 +151,22 @@ AxisTicks axis_ticks(double lower, double upper, int wanted, bool logarithmic) {
   if (!(upper > lower) || !std::isfinite(lower) || !std::isfinite(upper) || wanted < 1) return {};
   if (!logarithmic) return linear_ticks(lower, upper, wanted, false);
   return lower > 0 ? logarithmic_ticks(lower, upper, wanted) : AxisTicks{};
+}
+
+AxisTicks degree_ticks(double lower, double upper, int wanted) {
+  constexpr double turn = 360;
+  if (!(upper > lower) || !std::isfinite(lower) || !std::isfinite(upper) || wanted < 1) return {};
+  const double raw = upper / wanted - lower / wanted;
+  if (raw <= 5 || raw > turn) return linear_ticks(lower, upper, wanted, false);
+  struct Parts {
+    int major, minor;
+  };
+  constexpr Parts parts[] = {{10, 5}, {15, 5}, {30, 10}, {45, 15}, {90, 30}, {180, 45}, {360, 90}};
+  const Parts* step =
+      std::ranges::find_if(parts, [&](const Parts& p) { return raw <= p.major * (1 + 1e-9); });
+  AxisTicks out;
+  fill(out, multiples(lower, upper, {step->major, 0}), multiples(lower, upper, {step->minor, 0}), false);
+  return out;
 }
 
 std::string reading_text(double value, double resolution) {

@@ -106,6 +106,9 @@ std::string script_head(const Mechanism& mechanism, const LinearModel& model, co
                   printable(mechanism.name));
   out += model.explicit_form ? "x' = A x + B u, y = C x + D u.\n"
                              : "E x' = A x + B u, y = C x + D u; E is singular, some bodies have no mass.\n";
+  if (has_friction(mechanism))
+    out +=
+        fmt::format("{} Of the motion once joints with dry friction slip: their hold is left out.\n", sign);
   for (const LinearModel::State& state : model.states)
     if (state.less_input)
       out += fmt::format("{} {}: less what the inputs give it at once (the rows of B above).\n", sign,

@@ -18,6 +18,7 @@ FoundTransfer find_transfer(const TransferRequest& request, const TaskContext<Fo
   LinearModelOptions options;
   options.start = request.start;
   options.nearest = true;
+  options.slipping = true; // the panel says so
   options.cancel = &context.cancel;
   const std::vector<std::string> input{request.choice.input}, output{request.choice.output};
   FoundTransfer found;

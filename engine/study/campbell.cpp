@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace flyball {
 namespace {
@@ -438,22 +437,26 @@ std::string driven_joint(const Mechanism& mechanism, const std::string& address)
   return {};
 }
 
-std::string left_out(const CampbellDiagram& diagram, const std::string& unit) {
+std::string left_out(const ResponseBranch& branch, const std::function<std::string(double)>& speed_text,
+                     const std::string& unit) {
   constexpr std::size_t most_told = 4;
-  std::set<double> at;
-  for (const ResponseBranch& branch : diagram.response.branches)
-    for (const ResponsePoint& point : branch.points)
-      if (point.singular_loops) at.insert(point.parameter);
-  if (at.empty()) return {};
-  std::string out = "Without modes at ";
-  std::size_t told = 0;
-  for (const double value : at) {
-    if (told == most_told) {
-      out += " and " + std::to_string(at.size() - told) + " more";
-      break;
-    }
-    out += (told++ ? ", " : "") + number_text(value) + " " + unit;
+  std::vector<std::string> at;
+  const std::vector<ResponsePoint>& points = branch.points;
+  for (std::size_t first = 0; first < points.size(); ++first) {
+    if (!points[first].singular_loops) continue;
+    std::size_t last = first;
+    while (last + 1 < points.size() && points[last + 1].singular_loops)
+      ++last;
+    const auto [low, high] = std::minmax(points[first].parameter, points[last].parameter);
+    at.push_back(low == high ? "at " + speed_text(low) + " " + unit
+                             : "from " + speed_text(low) + " to " + speed_text(high) + " " + unit);
+    first = last;
   }
+  if (at.empty()) return {};
+  std::string out = "Without modes ";
+  for (std::size_t i = 0; i < std::min(at.size(), most_told); ++i)
+    out += (i > 0 ? ", " : "") + at[i];
+  if (at.size() > most_told) out += " and " + std::to_string(at.size() - most_told) + " more";
   return out + ". " + std::string(singular_loops_message);
 }
 

@@ -5,6 +5,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/stability/mode_motion.hpp"
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,9 +55,10 @@ struct CampbellDiagram {
 // The joint whose drive has this address as its speed, or one that a named parameter is; empty: none.
 std::string driven_joint(const Mechanism& mechanism, const std::string& address);
 
-// A sentence or two on the points of the branches that have no modes because their loops are singular there;
-// empty where there are none. `unit`: of the speed.
-std::string left_out(const CampbellDiagram& diagram, const std::string& unit);
+// A sentence or two on the points of a branch that have no modes because its loops are singular there; empty
+// where there are none. `speed_text` writes a speed as a number of `unit`.
+std::string left_out(const ResponseBranch& branch, const std::function<std::string(double)>& speed_text,
+                     const std::string& unit);
 
 // The modes along the branches of `response`, which were followed over `address`. `orders` (any positive
 // numbers) are of the speed of driven_joint(), and need one. Where `cancel` is set

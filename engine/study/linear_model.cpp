@@ -186,9 +186,10 @@ class Builder {
 
   void check(const Solution& steady) const {
     if (steady.status != Status::converged) throw Refusal{steady.message};
-    if (has_friction(mechanism_))
+    if (has_friction(mechanism_) && !options_.slipping)
       throw Refusal{
-          "Dry friction holds, or jumps with the direction of a motion: nothing linear tells of it."};
+          "Dry friction holds, or jumps with the direction of a motion: nothing linear tells of it but once "
+          "the joints slip."};
     if (model_coordinates(steady) > largest_for_eigenvalues)
       throw Refusal{"Linear models are made of at most " + std::to_string(largest_for_eigenvalues) +
                     " coordinates."};

@@ -26,6 +26,9 @@ struct LinearModelOptions {
   // Angles of what turns at found speeds are states, too: they integrate. Where one matters (a shaft that
   // stands, two that turn alike with a spring between them; phase_stiffness.hpp) they are in any case.
   bool phases = false;
+  // Of the motion once joints with dry friction slip, as eigenvalues are: their hold is left out, their share
+  // stays. Otherwise such mechanisms are refused.
+  bool slipping = false;
   std::vector<std::pair<std::string, double>> start{}; // as of SolveOptions
   bool nearest = false;
   const std::atomic<bool>* cancel = nullptr;

@@ -137,6 +137,27 @@ TEST_CASE("any number is given a name, and a name another") {
   }());
 }
 
+TEST_CASE("a law keeps acting without the parameter that it names, and keeps the point") {
+  Mechanism engine = load_scene(FLYBALL_ASSETS "/scenes/governor_engine.json");
+  remove_parameter(engine, "gain");
+  CHECK(formula_at(engine, "joints.spin.drive.torque") == "(7500 N) * (coordinate(slide) - 0.15 m)");
+  CHECK(read_scene(write_scene(engine)) == engine);
+
+  Mechanism spring = load_scene(FLYBALL_ASSETS "/scenes/governor_engine.json");
+  for (Joint& joint : spring.joints)
+    if (joint.name == "slide") joint.coordinates[0].spring = CoordinateSpring{};
+  set_expression(spring, "joints.slide.spring.stiffness", "gain * deflection / (1 m)");
+  remove_parameter(spring, "gain");
+  CHECK(formula_at(spring, "joints.slide.spring.force") == "(7500 N) * deflection / (1 m)");
+
+  Mechanism pointed = load_scene(FLYBALL_ASSETS "/scenes/governor_engine.json");
+  pointed.points.push_back({.name = "A", .at = {0.15, 0, 0}});
+  set_expression(pointed, "joints.spin.drive.torque", "gain * (coordinate(slide) - A.x)");
+  const Mechanism before = pointed;
+  CHECK(says(refusal([&] { remove_point(pointed, "A"); }), "names the point A"));
+  CHECK(pointed == before);
+}
+
 TEST_CASE("copies keep expressions where they mean the same") {
   const Mechanism before = governor();
   Document document(before);

@@ -79,6 +79,26 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
   CHECK(ball().inertia[0] == Approx(0.4 * 2 * 0.01));
   CHECK(is_uniform_solid(ball()));
 
+  SECTION("a mass of zero takes the inertia, and any other brings it back") {
+    hand.fill("inspector/mass", "0");
+    CHECK(ball().inertia[0] == 0);
+    hand.fill("inspector/mass", "3");
+    CHECK(ball().mass == 3);
+    CHECK(ball().inertia[0] == Approx(0.4 * 3 * 0.01));
+    hand.fill("inspector/density", "0");
+    CHECK(ball().mass == 0);
+    hand.fill("inspector/density", "1 g/cm^3");
+    CHECK(is_uniform_solid(ball()));
+    CHECK(ball().inertia[2] > 0);
+  }
+  SECTION("a point stays one") {
+    for (const char* axis : {"xx", "yy", "zz"})
+      hand.fill(std::string("inspector/inertia/") + axis, "0");
+    for (const char* given : {"0", "3"})
+      hand.fill("inspector/mass", given);
+    CHECK(ball().mass == 3);
+    CHECK(ball().inertia == std::array<double, 6>{});
+  }
   SECTION("typed inertia is kept when the mass changes") {
     hand.fill("inspector/inertia/xx", "0.1");
     hand.fill("inspector/mass", "4");

@@ -3,6 +3,7 @@
 
 #include "app/plot/csv.hpp"
 #include "app/session/map.hpp"
+#include "app/session/number_text.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
@@ -80,6 +81,30 @@ TEST_CASE("every place of the map is what a solve of its own gives") {
   CHECK(plot.x.unit == "rad/s");
 }
 
+TEST_CASE("a value read off the map is told with the place it was computed at") {
+  MapRobot robot;
+  robot.map().choice.axes[0].count = robot.map().choice.axes[1].count = 6;
+  robot.frames(4);
+  const MapView& drawn = robot.app.panels->studies.shown().map;
+  const PlotHeat& heat = *drawn.plot.heat;
+  REQUIRE(heat.x.size() == 6);
+  const WidgetRect area = robot.widget("plot/map/area");
+  const PlotLayout& layout = *drawn.view.kept.layout;
+  // Near the corner of a cell.
+  const double x = heat.x[3] + 0.45 * (heat.x[4] - heat.x[3]), y = heat.y[2] - 0.4 * (heat.y[2] - heat.y[1]);
+  robot.point({area.from.x + static_cast<float>(layout.x.pixel(x) - layout.area.left),
+               area.from.y + static_cast<float>(layout.y.pixel(y) - layout.area.top)});
+  robot.frames(2);
+  const std::vector<PlotReadingLine>& card = drawn.view.card;
+  REQUIRE(card.size() == 4);
+  CHECK(card[0].name == drawn.plot.x.label);
+  CHECK(card[1].name == drawn.plot.y.label);
+  CHECK(card[2].name == heat.label);
+  CHECK(std::stod(card[2].value) == Approx(heat.values[2 * 6 + 3]).epsilon(0.01));
+  CHECK(card[3].name == "stable, computed at " + short_text(heat.x[3]) + " " + drawn.plot.x.unit + ", " +
+                            short_text(heat.y[2]) + " " + drawn.plot.y.unit);
+}
+
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
   Robot plain(wide);
   open_scene(plain.app.session, shipped_file("watt_governor"));
@@ -106,7 +131,15 @@ TEST_CASE("unstable places are hatched, which is neither read off nor written to
   const auto hatch = std::ranges::find(plot.curves, std::string("unstable"), &PlotCurve::name);
   REQUIRE(hatch != plot.curves.end());
   CHECK(static_cast<std::ptrdiff_t>(hatch->points.size()) == 3 * unstable);
-  CHECK(to_csv(plot, {}).find("unstable") == std::string::npos);
+  const std::string table = to_csv(plot, {});
+  CHECK(table.find("\nunstable,") == std::string::npos);
+  // Each place has its stability beside its value.
+  CHECK(table.substr(0, table.find("\r\n")).ends_with(",stability"));
+  std::ptrdiff_t written = 0;
+  for (std::size_t at = table.find(",unstable\r\n"); at != std::string::npos;
+       at = table.find(",unstable\r\n", at + 1))
+    ++written;
+  CHECK(written == unstable);
   CHECK(to_csv(plot, {}).find("map,") != std::string::npos);
 }
 

@@ -215,6 +215,20 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   CHECK(angular == Approx(2 * std::numbers::pi * highest));
 }
 
+TEST_CASE("only of the branch that is shown is it said where it has no modes") {
+  // The arms of the other branch hang straight down, and are without modes at every speed.
+  ModesRobot robot("governor");
+  REQUIRE(robot.app.session.study.modes.campbell.diagram.found->result.branches.size() == 2);
+  CHECK(robot.app.panels->studies.shown().campbell.without_modes.empty());
+  CHECK(robot.app.ui.widgets.count("campbell/without") == 0);
+  go_to_state(robot.app.session, "", 0,
+              {{"arm1", std::numbers::pi / 2}, {"arm2", std::numbers::pi / 2}, {"slide", 0.18922}});
+  robot.frames(4);
+  robot.widget("campbell/without");
+  CHECK(robot.app.panels->studies.shown().campbell.without_modes.starts_with(
+      "Without modes from 0 to 30 rad/s."));
+}
+
 TEST_CASE("a click in the Campbell diagram sets the speed") {
   ModesRobot robot("governor");
   App& app = robot.app;

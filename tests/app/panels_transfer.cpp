@@ -9,8 +9,10 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -87,6 +89,68 @@ TEST_CASE("the plots are over hertz or radians a second") {
   CHECK(robot.view().magnitude.x.unit == "rad/s");
   CHECK(robot.view().phase.x.unit == "rad/s");
   CHECK(robot.view().magnitude.curves.at(0).points.front()[0] == Approx(6.283185307179586 * hertz));
+}
+
+TEST_CASE("over Bode's plots gain and phase of the curve are read, wherever the pointer is") {
+  TransferRobot robot;
+  const TransferView& view = robot.view();
+  for (const char* plot : {"magnitude", "phase"})
+    for (const float height : {0.15f, 0.5f, 0.85f}) {
+      CAPTURE(plot, height);
+      const WidgetRect area = robot.widget("plot/transfer " + std::string(plot) + "/area");
+      robot.point(
+          {area.from.x + 0.4f * (area.to.x - area.from.x), area.from.y + height * (area.to.y - area.from.y)});
+      robot.frames(2);
+      const PlotLayout& layout = *view.magnitude_view.kept.layout;
+      const double frequency = *(plot == std::string("phase") ? view.phase_view : view.magnitude_view).cursor;
+      CHECK(layout.x.pixel(frequency) == Approx(layout.area.left + 0.4 * layout.area.width()).margin(1));
+      for (const auto& [card, drawn, name] : {std::tuple(&view.magnitude_view.card, &view.magnitude, "gain"),
+                                              std::tuple(&view.phase_view.card, &view.phase, "phase")}) {
+        CAPTURE(name);
+        REQUIRE(card->size() == 2); // of both plots at once
+        CHECK((*card)[0].name == "frequency");
+        CHECK((*card)[1].name == name);
+        std::string number = (*card)[1].value;
+        if (number.starts_with("−")) number.replace(0, std::string("−").size(), "-");
+        const double step = std::abs(read(*drawn, frequency * 1.01) - read(*drawn, frequency));
+        CHECK(std::stod(number) == Approx(read(*drawn, frequency)).margin(0.05 + 0.1 * step));
+      }
+    }
+  // Both have their frequencies one above the other, and zoom along them together.
+  const auto areas = [&] {
+    return std::array{view.magnitude_view.kept.layout->area, view.phase_view.kept.layout->area};
+  };
+  CHECK(areas()[0].left == areas()[1].left);
+  CHECK(areas()[0].right == areas()[1].right);
+  robot.wheel("plot/transfer phase/axis/x", 3);
+  robot.frames(2);
+  CHECK(view.phase_view.kept.layout->x.upper < 0.9 * view.phase.curves[0].points.back()[0]);
+  CHECK(view.magnitude_view.kept.layout->x.upper == view.phase_view.kept.layout->x.upper);
+  CHECK(areas()[0].left == areas()[1].left);
+  for (const PlotTick& tick : view.phase_view.kept.layout->y_ticks)
+    CHECK(std::remainder(tick.value, 15) == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("of joints with dry friction the model is of the motion once they slip, and says so") {
+  TransferRobot free;
+  CHECK(free.app.ui.widgets.count("transfer/friction") == 0);
+  TransferRobot robot;
+  edit(robot.app.session, "Add friction", [](Mechanism& m, Selection&) {
+    for (Joint& joint : m.joints)
+      if (joint.name == "slide") joint.coordinates[0].friction.emplace().limit = 3;
+  });
+  robot.frames(4);
+  robot.widget("transfer/friction");
+  REQUIRE(robot.found().model.gain);
+  CHECK((*robot.found().model.gain)(0, 0) == Approx((*free.found().model.gain)(0, 0)));
+  for (const auto& [tab, words] :
+       {std::pair("study/modes", "modes/friction"), {"study/map", "map/friction"}}) {
+    robot.click(tab);
+    robot.frames(3);
+    if (tab == std::string("study/map")) robot.click("map/hunting");
+    robot.frames(3);
+    robot.widget(words);
+  }
 }
 
 TEST_CASE("another input and another output are chosen, and what has no model says why") {

@@ -70,6 +70,17 @@ TEST_CASE("labels have as few digits as tell the ticks apart", "[plot]") {
   CHECK(axis_ticks(0, 1, 10, false).major[3] == 0.3);
 }
 
+TEST_CASE("degrees are divided as turns are", "[plot]") {
+  using Labels = std::vector<std::string>;
+  CHECK(degree_ticks(-30, 95, 3).labels == Labels{"0", "45", "90"});
+  CHECK(degree_ticks(-180, 180, 4).labels == Labels{"−180", "−90", "0", "90", "180"});
+  CHECK(degree_ticks(0, 60, 4).labels == Labels{"0", "15", "30", "45", "60"});
+  CHECK(degree_ticks(0, 60, 4).minor.size() == 8);
+  CHECK(degree_ticks(0, 20, 5).labels == Labels{"0", "5", "10", "15", "20"});
+  CHECK(degree_ticks(0, 4000, 4).labels == Labels{"0", "1000", "2000", "3000", "4000"});
+  CHECK(degree_ticks(3, 3, 4).major.empty());
+}
+
 TEST_CASE("every label says its tick's value, at any range", "[plot]") {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> exponent(-299, 299), part(-1, 1), width(-10, 3);

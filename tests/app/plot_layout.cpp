@@ -190,6 +190,37 @@ TEST_CASE("what is near the pointer is found", "[plot]") {
   CHECK(readings[1].y == Approx(8));
 }
 
+TEST_CASE("curves without a name, and names for which the legend has no room, are read", "[plot]") {
+  Plot plot;
+  plot.curves = {{"", {{0, 0}, {10, 10}}}, {"named", {{0, 5}, {10, 5}}}};
+  for (const double height : {400., 70.}) {
+    const PlotLayout layout = plot_layout(plot, {}, 300, height, {});
+    REQUIRE(layout.legend.empty() == (height < 100));
+    const auto readings = readings_at(plot, {}, layout, 2, 0);
+    REQUIRE(readings.size() == 2);
+    CHECK(readings[0].curve == 0);
+    CHECK(readings[0].y == Approx(2));
+    CHECK(readings[1].y == Approx(5));
+    CHECK(readings_at(plot, {.hidden = {"named"}}, layout, 2, 0).size() == 1);
+  }
+}
+
+TEST_CASE("a plot begins and ends where it is told to, as another above it does", "[plot]") {
+  Plot plot;
+  plot.y = {.label = "gain", .unit = "dB"};
+  plot.curves = {{"", {{0, 0}, {10, 1}}}};
+  const PlotLayout own = plot_layout(plot, {}, 500, 200, {});
+  CHECK(own.area.left == std::round(own.own_sides.left));
+  CHECK(own.area.right == std::round(500 - own.own_sides.right));
+  const PlotLayout told =
+      plot_layout(plot, {}, 500, 200, {}, {own.own_sides.left + 20, own.own_sides.right + 7});
+  CHECK(told.area.left == own.area.left + 20);
+  CHECK(told.area.right == own.area.right - 7);
+  CHECK(told.own_sides == own.own_sides);
+  check_apart(told);
+  CHECK(plot_layout(plot, {}, 500, 200, {}, {1, 1}).area.left == own.area.left);
+}
+
 TEST_CASE("a folded curve is read where the pointer is", "[plot]") {
   Plot plot;
   plot.curves = {{"a", {{0, 0}, {10, 1}, {0, 2}}}};
@@ -211,8 +242,8 @@ TEST_CASE("a heat map's cells reach halfway, and holes stay free", "[plot]") {
   REQUIRE(layout.bar);
   CHECK(layout.bar->label->text == "angle [rad]");
   CHECK(layout.bar->box.left > layout.area.right);
-  CHECK(heat_value(*plot.heat, 1.6, 20, false, true) == 5);
-  CHECK(std::isnan(heat_value(*plot.heat, 9, 20, false, true)));
+  CHECK(heat_cell(*plot.heat, 1.6, 20, false, true) == std::array<std::size_t, 2>{2, 1});
+  CHECK_FALSE(heat_cell(*plot.heat, 9, 20, false, true));
   check_apart(layout);
 }
 

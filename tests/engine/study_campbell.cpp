@@ -3,8 +3,12 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/campbell.hpp"
+
+#include <algorithm>
+#include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -260,9 +264,31 @@ TEST_CASE("a point whose loops are singular belongs to no mode", "[campbell]") {
     }
   }
   CHECK(left);
-  CHECK(left_out(d, "rad/s").starts_with("Without modes at 0 rad/s. The loops"));
+  CHECK(std::ranges::any_of(d.response.branches, [](const ResponseBranch& branch) {
+    return left_out(branch, number_text, "rad/s").starts_with("Without modes at 0 rad/s. The loops");
+  }));
   const Mechanism turning = turning_springs();
-  CHECK(left_out(diagram_of(turning, 0, 9, {}), "rad/s").empty());
+  for (const ResponseBranch& branch : diagram_of(turning, 0, 9, {}).response.branches)
+    CHECK(left_out(branch, number_text, "rad/s").empty());
+}
+
+TEST_CASE("each branch tells of its own points without modes alone", "[campbell]") {
+  // Arms that hang straight may do so at all speeds; beside these is the branch of those that swing out.
+  const Mechanism m = shipped("governor");
+  const CampbellDiagram d = diagram_of(m, 0, 30, {});
+  REQUIRE(d.response.branches.size() == 2);
+  std::size_t straight = 0;
+  for (const ResponseBranch& branch : d.response.branches) {
+    const bool hangs = std::abs(branch.points.back().coordinates[0].value - std::numbers::pi / 2) < 1e-6;
+    straight += hangs ? 1 : 0;
+    const std::string text = left_out(
+        branch, [](double speed) { return number_text(2 * speed); }, "half-turns");
+    if (hangs)
+      CHECK(text.starts_with("Without modes from 0 to 60 half-turns. The loops"));
+    else
+      CHECK(text.empty());
+  }
+  CHECK(straight == 1);
 }
 
 TEST_CASE("a steady state whose loops are singular has no modes, one beside it has", "[modes]") {

@@ -58,6 +58,35 @@ constexpr double g = standard_gravity;
 
 } // namespace
 
+TEST_CASE("of joints that slip the linear model is that without their hold", "[linear-model]") {
+  const Mechanism free = shipped("governor");
+  const Names inputs{"joints.spin.drive.speed"}, outputs{"slide"};
+  const auto rubbing = [&](double share) {
+    Mechanism m = free;
+    for (Joint& joint : m.joints)
+      if (joint.name == "slide") joint.coordinates[0].friction = Friction{.limit = 3, .share = share};
+    return m;
+  };
+  CHECK_THAT(refusal(rubbing(0), inputs, outputs), ContainsSubstring("once the joints slip"));
+  LinearModelOptions options;
+  options.slipping = true;
+  const LinearModel slips = linearize(rubbing(0), inputs, outputs, options),
+                    without = made(free, inputs, outputs);
+  REQUIRE(slips.refusal.empty());
+  REQUIRE(slips.poles.size() == without.poles.size());
+  for (std::size_t i = 0; i < slips.poles.size(); ++i)
+    CHECK(std::abs(slips.poles[i] - without.poles[i]) < 1e-9);
+  const Complex s(0.1, 4);
+  check_transfer(slips, 0, 0, s, (*transfer(without.descriptor, s))(0, 0));
+  // A share is a force of the state: its model is about another place, as its eigenvalues are.
+  const LinearModel pushed = linearize(rubbing(0.5), inputs, outputs, options);
+  REQUIRE(pushed.steady.eigenvalues);
+  REQUIRE(pushed.poles.size() == pushed.steady.eigenvalues->size());
+  for (std::size_t i = 0; i < pushed.poles.size(); ++i)
+    CHECK(std::abs(pushed.poles[i] - (*pushed.steady.eigenvalues)[i]) < 1e-9);
+  CHECK(std::abs(pushed.poles[0] - without.poles[0]) > 1e-6);
+}
+
 TEST_CASE("a pendulum on a spindle has the transfer functions of its equation", "[linear-model]") {
   const double length = 0.7, offset = 0.2, w = 5.3, mass = 1.4, c = 0.9;
   Mechanism m = conical(length, offset, w, 0.8, mass);

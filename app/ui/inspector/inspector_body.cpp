@@ -162,7 +162,7 @@ void density_row(Session& session, Ui& ui, InspectorState& inspector, const Body
                   inspector.given_masses[name] = {false, value};
                   edit(session, "Set density of " + name, [&](Mechanism& mechanism, Selection&) {
                     for (Body& same : mechanism.bodies)
-                      if (same.name == name) take_mass_properties(same, value);
+                      if (same.name == name && !take_mass_properties(same, value)) take_uniform_mass(same, 0);
                   });
                 }});
 }
@@ -185,21 +185,27 @@ void quaternion_rows(const Session& session, const Ui& ui, const Body& body) {
 
 bool is_uniform_solid(const Body& body) {
   const std::optional<double> density = density_of(body);
-  if (!density || !(body.mass > 0)) return false;
+  if (!density) return false;
+  // Of any mass, where the body has none: then it has no inertia either.
+  const bool massless = !(body.mass > 0);
   Body solid = body;
-  if (!take_mass_properties(solid, *density)) return false;
+  if (!take_mass_properties(solid, massless ? 1 : *density)) return false;
   constexpr double tolerance = 1e-6;
   double largest = 0, difference = 0;
   for (std::size_t i = 0; i < body.inertia.size(); ++i) {
     largest = std::max(largest, std::abs(solid.inertia[i]));
-    difference = std::max(difference, std::abs(solid.inertia[i] - body.inertia[i]));
+    difference = std::max(difference, std::abs((massless ? 0 : solid.inertia[i]) - body.inertia[i]));
   }
-  const double size = std::sqrt(largest / body.mass); // about the radius of gyration
+  const double size = std::sqrt(largest / solid.mass); // about the radius of gyration
   return difference <= tolerance * largest && (solid.position - body.position).norm() <= tolerance * size;
 }
 
 bool follows_shapes(const InspectorState& inspector, const Body& body) {
   return inspector.independent != Part{PartKind::body, body.name} && is_uniform_solid(body);
+}
+
+void give_mass(const InspectorState& inspector, Body& body, double mass) {
+  if (!follows_shapes(inspector, body) || !take_uniform_mass(body, mass)) body.mass = mass;
 }
 
 void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
@@ -218,13 +224,12 @@ void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Bod
                      .address = "bodies." + body.name + ".mass"};
   mass.set = [&session, &inspector, name = body.name, follows](double value) {
     inspector.given_masses[name] = {true, 0};
+    // Without mass a point is like a solid; it stays a point.
+    if (!follows && value == 0) inspector.independent = {PartKind::body, name};
     if (!follows) return set_number(session, "bodies." + name + ".mass", value);
     edit(session, "Set mass of " + name, [&](Mechanism& mechanism, Selection&) {
-      for (Body& same : mechanism.bodies) {
-        if (same.name != name || (value > 0 && take_uniform_mass(same, value))) continue;
-        same.mass = value; // a drawing without mass: no density says so
-        same.inertia = {};
-      }
+      for (Body& same : mechanism.bodies)
+        if (same.name == name) give_mass(inspector, same, value);
     });
   };
   quantity_row(session, ui, "Mass", mass);

@@ -31,6 +31,8 @@ void gear_rows(Session& session, Ui& ui, const Joint& joint);
 bool is_uniform_solid(const Body& body);
 // Whether they are to stay so when the mass or a size changes.
 bool follows_shapes(const InspectorState& inspector, const Body& body);
+// Another mass, with the inertia of a solid where it follows its shapes.
+void give_mass(const InspectorState& inspector, Body& body, double mass);
 // A shape of another type of about the same place and size.
 Shape shape_as(const Shape& shape, ShapeType type, const Body& body);
 

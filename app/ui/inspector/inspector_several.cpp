@@ -83,8 +83,12 @@ void common_number(Session& session, Ui& ui, InspectorState& inspector, PartKind
                           inspector.given_masses[name] = {true, 0};
                       edit(session, label + " of " + std::to_string(addresses.size()) + " parts",
                            [&](Mechanism& mechanism, Selection&) {
-                             for (const std::string& address : addresses)
-                               set_parameter(mechanism, address, typed);
+                             for (std::size_t i = 0; i < addresses.size(); ++i)
+                               if (const int body = mass ? body_index(mechanism, names[i]) : -1; body >= 0)
+                                 give_mass(inspector, mechanism.bodies[static_cast<std::size_t>(body)],
+                                           typed);
+                               else
+                                 set_parameter(mechanism, addresses[i], typed);
                            });
                     },
                 .various = same ? "" : "various"});

@@ -21,7 +21,10 @@ std::string range_words(const ShownUnit& unit, double low, double high) {
 }
 
 std::string percent_words(double part) {
-  return std::isfinite(part) ? short_text(100 * part, 3) : "∞";
+  constexpr double plain = 10; // times: from here on whole percents say enough
+  if (!std::isfinite(part)) return "∞";
+  return part >= plain && part < 1e4 * plain ? std::to_string(std::llround(100 * part))
+                                             : short_text(100 * part, 3);
 }
 
 void band_rows(const Session& session, Ui& ui, const FrictionBand& band) {
@@ -49,7 +52,7 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
       help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
   }
   row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs", percent_words(*drawn.takes),
-      "%", help.c_str());
+      "% of friction", help.c_str());
   note_widget(ui.widgets, "results/friction/drawn");
 }
 

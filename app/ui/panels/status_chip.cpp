@@ -5,6 +5,7 @@
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
@@ -18,6 +19,13 @@ struct StatusLine {
   ImVec4 color;
   const char* icon = "";
 };
+
+// Whether dry friction leaves open where the state is.
+bool holds_a_band(const Session& session) {
+  const FrictionReport* friction = friction_report(session);
+  return friction && std::ranges::any_of(friction->band.extents,
+                                         [](const BandExtent& extent) { return extent.high > extent.low; });
+}
 
 StatusLine status_line(const Session& session, const Ui& ui) {
   const UiColors& colors = colors_of(ui);
@@ -49,7 +57,10 @@ StatusLine status_line(const Session& session, const Ui& ui) {
             colors.bad, icon::warning};
   case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
   }
-  if (solution.stable == true) return {"Steady state, stable", colors.good, icon::check};
+  if (solution.stable == true)
+    return {holds_a_band(session) ? "Steady state, stable; friction holds it within a band"
+                                  : "Steady state, stable",
+            colors.good, icon::check};
   if (solution.stable == false) return {"Steady state, unstable", colors.warn, icon::warning};
   if (solution.stability_reason == StabilityReason::neutral)
     return {"Steady state, neutral", colors.good, icon::check};

@@ -95,8 +95,12 @@ void draw_frame(const PlotPen& pen, const PlotLayout& layout, const PlotColors& 
     level_hair(pen, tick.at, layout.bar->box.right, layout.bar->box.right + length, color);
 }
 
-void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines& lines) {
-  const ImU32 color = packed_color(curve_color(curve.color, pen.ground));
+// `rim`: of the ground, which keeps a line in sight on any colour.
+void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines& lines, bool rim) {
+  const ImU32 color = packed_color(curve_color(curve.color, pen.ground)),
+              ground = packed_color(plot_colors(pen.ground).area);
+  for (const PixelLine& line : lines.lines)
+    if (rim) draw_line(pen, line, PlotLine::solid, curve.width + 2 * rim_width, ground);
   for (const PixelLine& line : lines.lines)
     draw_line(pen, line, curve.line, curve.width, color);
   for (const PixelPoint& p : lines.shapes)
@@ -309,7 +313,7 @@ void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const
     draw_band(pen, plot.bands[lines.band], lines);
   draw_references(pen, plot, layout);
   for (const PlotCurveLines& lines : layout.curves)
-    draw_curve(pen, plot.curves[lines.curve], lines);
+    draw_curve(pen, plot.curves[lines.curve], lines, has_rim(plot, plot.curves[lines.curve]));
   pen.list.PopClipRect();
   draw_frame(pen, layout, colors);
   if (layout.bar) draw_bar(pen, *layout.bar, colors);

@@ -40,8 +40,9 @@ void take_plot_grip(const PlotFrame& frame);
 void draw_plot_grip(const PlotFrame& frame);
 // What a pixel of the area stands for, in round numbers.
 std::array<double, 2> place_in_plot(const PlotFrame& frame, const PixelPoint& at);
-// Cross-hair and a card with x, the curves' values there and the point under the pointer.
-void show_plot_reading(const PlotFrame& frame, const PixelPoint& at);
+// Cross-hair and a card with x, the curves' values there and the point under the pointer; `along_x`: where
+// another plot is read, without the level line.
+void show_plot_reading(const PlotFrame& frame, const PixelPoint& at, bool along_x = false);
 // What a right click brings.
 void plot_menu(const PlotFrame& frame);
 

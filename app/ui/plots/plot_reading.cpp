@@ -1,6 +1,7 @@
 #include "app/plot/colors.hpp"
 #include "app/plot/layout_heat.hpp"
 #include "app/plot/nearest.hpp"
+#include "app/session/number_text.hpp"
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -10,11 +11,6 @@
 namespace flyball {
 
 namespace {
-
-struct ReadingLine {
-  std::string name, value, unit;
-  std::optional<ImU32> color{}; // of a dot before it
-};
 
 // What one pixel means there.
 double resolution(const PlotRuler& ruler, double pixel) {
@@ -27,14 +23,27 @@ std::string value_at(const PlotRuler& ruler, double value, bool whole = false) {
   return reading_text(value, std::isfinite(pixel) ? resolution(ruler, pixel) : 0);
 }
 
-ReadingLine axis_line(const PlotFrame& frame, int axis, double value) {
+std::string name_of(const Plot& plot, int axis) {
+  const std::string& label = axis_of(plot, axis).label;
+  return !label.empty() ? label : axis == 0 ? "x" : "y";
+}
+
+std::string spaced_unit(const std::string& unit) {
+  return unit.empty() || unit == "°" ? unit : " " + unit;
+}
+
+bool has_lines(const Plot& plot) {
+  return std::ranges::any_of(plot.curves,
+                             [](const PlotCurve& c) { return c.line != PlotLine::none && !c.hatching; });
+}
+
+PlotReadingLine axis_line(const PlotFrame& frame, int axis, double value) {
   const PlotAxis& a = axis_of(frame.plot, axis);
-  return {a.label.empty() ? (axis == 0 ? "x" : "y") : a.label,
-          value_at(frame.layout.ruler(axis), value, a.whole), a.unit};
+  return {name_of(frame.plot, axis), value_at(frame.layout.ruler(axis), value, a.whole), a.unit};
 }
 
 // The mark under the pointer says what it is, also where its label found no room.
-void add_mark(const PlotFrame& frame, const PixelPoint& at, std::vector<ReadingLine>& lines) {
+void add_mark(const PlotFrame& frame, const PixelPoint& at, std::vector<PlotReadingLine>& lines) {
   for (const PlotPlaced& placed : frame.layout.marks) {
     const PlotMark& mark = frame.plot.marks[placed.index];
     if (mark.label.empty() || std::hypot(placed.x - at[0], placed.y - at[1]) > 9 * frame.layout.scale)
@@ -49,12 +58,29 @@ void dot(const PlotFrame& frame, double x, double y, ImU32 color) {
   draw_shape(frame.pen, PlotShape::circle, x, y, 6, color);
 }
 
-std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) {
+// The value of a map's cell, and where it was computed: in its middle.
+void add_heat(const PlotFrame& frame, double x, double y, std::vector<PlotReadingLine>& lines) {
+  const PlotHeat& heat = *frame.plot.heat;
+  const auto cell = heat_cell(heat, x, y, frame.layout.x.logarithmic, frame.layout.y.logarithmic);
+  if (!cell || !frame.layout.bar) return;
+  const auto [i, j] = *cell;
+  const std::size_t index = j * heat.x.size() + i;
+  if (!std::isfinite(heat.values[index])) return;
+  lines.push_back({heat.label.empty() ? "value" : heat.label,
+                   value_at(frame.layout.bar->ruler, heat.values[index]), heat.unit});
+  std::string words = index < heat.notes.size() ? heat.notes[index] : "";
+  if (!words.empty()) words += ", ";
+  words += "computed at " + short_text(heat.x[i], 6) + spaced_unit(frame.plot.x.unit) + ", " +
+           short_text(heat.y[j], 6) + spaced_unit(frame.plot.y.unit);
+  lines.push_back({words, "", ""});
+}
+
+std::vector<PlotReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) {
   const PlotLayout& layout = frame.layout;
   const auto color_of = [&](std::size_t curve) {
     return packed_color(curve_color(frame.plot.curves[curve].color, frame.pen.ground));
   };
-  std::vector<ReadingLine> lines;
+  std::vector<PlotReadingLine> lines;
   add_mark(frame, at, lines);
   // Points of measurements are read themselves; lines where the pointer is along x.
   if (const auto& hit = frame.events.hovered; hit && frame.plot.curves[hit->curve].shape != PlotShape::none) {
@@ -72,8 +98,9 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
   const std::vector<PlotReading> readings = readings_at(frame.plot, frame.view.look, layout, x, at[1]);
   for (const PlotReading& r : readings) {
     const double pixel = layout.y.pixel(r.y);
-    lines.push_back({frame.plot.curves[r.curve].name, value_at(layout.y, r.y, frame.plot.y.whole),
-                     frame.plot.y.unit, color_of(r.curve)});
+    const std::string& name = frame.plot.curves[r.curve].name;
+    lines.push_back({name.empty() ? name_of(frame.plot, 1) : name,
+                     value_at(layout.y, r.y, frame.plot.y.whole), frame.plot.y.unit, color_of(r.curve)});
     if (!r.note.empty()) lines.push_back({r.note, "", ""});
     if (pixel >= layout.area.top && pixel <= layout.area.bottom) dot(frame, at[0], pixel, color_of(r.curve));
   }
@@ -87,17 +114,14 @@ std::vector<ReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& at) 
                      frame.plot.y.unit, packed_color(curve_color(band.color, frame.pen.ground))});
   }
   const double y = layout.y.value(at[1]);
-  if (readings.empty() && bands.empty()) lines.push_back(axis_line(frame, 1, y));
-  if (frame.plot.heat && layout.bar) {
-    const double value = heat_value(*frame.plot.heat, x, y, layout.x.logarithmic, layout.y.logarithmic);
-    if (std::isfinite(value))
-      lines.push_back({frame.plot.heat->label.empty() ? "value" : frame.plot.heat->label,
-                       value_at(layout.bar->ruler, value), frame.plot.heat->unit});
-  }
+  // The pointer's own height, except where it would be taken for that of a line that is not there.
+  if (frame.plot.heat || (bands.empty() && readings.empty() && !has_lines(frame.plot)))
+    lines.push_back(axis_line(frame, 1, y));
+  if (frame.plot.heat) add_heat(frame, x, y, lines);
   return lines;
 }
 
-void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<ReadingLine>& lines) {
+void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<PlotReadingLine>& lines) {
   const UiFonts& fonts = frame.ui.fonts;
   const UiColors& colors = colors_of(frame.ui);
   const float s = frame.ui.scale, pad = 7 * s, gap = 10 * s, line = std::round(1.2f * fonts.text->FontSize);
@@ -106,7 +130,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<R
   };
   float names = 0, values = 0, units = 0;
   bool dots = false;
-  for (const ReadingLine& l : lines) {
+  for (const PlotReadingLine& l : lines) {
     dots = dots || l.color;
     names = std::max(names, width(fonts.text, l.name) - (l.value.empty() ? gap : 0));
     values = std::max(values, width(fonts.digits, l.value));
@@ -132,7 +156,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<R
                std::max(1.f, std::round(s)));
   float top = y + pad;
   const float drop = digits_drop(frame.ui);
-  for (const ReadingLine& l : lines) {
+  for (const PlotReadingLine& l : lines) {
     if (l.color) list.AddCircleFilled({x + pad + 4 * s, top + fonts.text->FontSize / 2}, 3.5f * s, *l.color);
     list.AddText(fonts.text, fonts.text->FontSize, {x + pad + indent, top},
                  packed(l.value.empty() ? colors.text : colors.dim), l.name.c_str());
@@ -147,7 +171,7 @@ void draw_card(const PlotFrame& frame, const PixelPoint& at, const std::vector<R
 
 } // namespace
 
-void show_plot_reading(const PlotFrame& frame, const PixelPoint& at) {
+void show_plot_reading(const PlotFrame& frame, const PixelPoint& at, bool along_x) {
   const PlotBox& a = frame.layout.area;
   if (!a.contains(at[0], at[1])) return;
   const ImU32 color = packed_color(plot_colors(frame.pen.ground).frame, 0.7f);
@@ -155,8 +179,9 @@ void show_plot_reading(const PlotFrame& frame, const PixelPoint& at) {
   const ImVec2 cross = frame.pen.at(std::floor(at[0]), std::floor(at[1]));
   const ImVec2 low = frame.pen.at(a.left, a.top), high = frame.pen.at(a.right, a.bottom);
   frame.pen.list.AddRectFilled({cross.x, low.y}, {cross.x + line, high.y}, color);
-  frame.pen.list.AddRectFilled({low.x, cross.y}, {high.x, cross.y + line}, color);
-  draw_card(frame, at, lines_at(frame, at));
+  if (!along_x) frame.pen.list.AddRectFilled({low.x, cross.y}, {high.x, cross.y + line}, color);
+  frame.view.card = lines_at(frame, at);
+  draw_card(frame, at, frame.view.card);
 }
 
 } // namespace flyball

@@ -14,17 +14,31 @@ std::shared_ptr<const PlotLayout> laid_out(const Ui& ui, PlotView& view, const P
   PlotKept& kept = view.kept;
   const bool same = kept.layout && plot.version != 0 && kept.version == plot.version &&
                     kept.look == view.look && kept.width == size.x && kept.height == size.y &&
-                    kept.scale == ui.scale;
+                    kept.scale == ui.scale && kept.sides == view.sides;
   if (!same)
     kept = {plot.version,
             view.look,
             size.x,
             size.y,
             ui.scale,
+            view.sides,
             std::make_shared<PlotLayout>(plot_layout(plot, view.look, static_cast<double>(size.x),
                                                      static_cast<double>(size.y),
-                                                     plot_metrics(ui.fonts, ui.scale)))};
+                                                     plot_metrics(ui.fonts, ui.scale), view.sides))};
   return kept.layout;
+}
+
+ImVec2 whole_pixels(ImVec2 size) {
+  return {std::max(std::floor(size.x), 1.f), std::max(std::floor(size.y), 1.f)};
+}
+
+// The pixel at which the plot is read because another one is.
+std::optional<PixelPoint> followed_place(const PlotFrame& frame) {
+  if (!frame.view.followed) return std::nullopt;
+  const PlotBox& area = frame.layout.area;
+  const PixelPoint at{frame.layout.x.pixel(*frame.view.followed), (area.top + area.bottom) / 2};
+  if (!area.contains(at[0], at[1])) return std::nullopt;
+  return at;
 }
 
 void draw_box(const PlotFrame& frame) {
@@ -47,7 +61,7 @@ PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView
                      ImVec2 size) {
   PlotEvents events;
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  size = {std::max(std::floor(size.x), 1.f), std::max(std::floor(size.y), 1.f)};
+  size = whole_pixels(size);
   if (!ImGui::IsRectVisible(size)) {
     ImGui::Dummy(size);
     return events;
@@ -62,6 +76,7 @@ PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView
   const std::string path = "plot/" + name;
   const PlotFrame frame{session, ui, path, view, plot, *layout, pen, events};
   view.cursor.reset();
+  view.card.clear();
   std::optional<PixelPoint> reading;
   pen.list.PushClipRect(at, {at.x + size.x, at.y + size.y}, true);
   if (layout->drawable()) {
@@ -72,13 +87,27 @@ PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView
   const bool held = view.drag == PlotView::Drag::marker || view.drag == PlotView::Drag::pull;
   draw_marker(pen, plot, *layout, held);
   draw_plot_grip(frame);
-  if (reading) show_plot_reading(frame, *reading); // its card lies over everything
+  // The card lies over everything.
+  if (reading)
+    show_plot_reading(frame, *reading);
+  else if (const auto place = followed_place(frame); place && layout->drawable())
+    show_plot_reading(frame, *place, true);
   pen.list.PopClipRect();
   plot_menu(frame);
   ImGui::SetCursorScreenPos(at);
   ImGui::Dummy(size);
   ImGui::PopID();
   return events;
+}
+
+void align_plots(const Ui& ui, std::initializer_list<std::pair<PlotView*, const Plot*>> plots, ImVec2 size) {
+  PlotSides most;
+  for (const auto& [view, plot] : plots) {
+    const PlotSides own = laid_out(ui, *view, *plot, whole_pixels(size))->own_sides;
+    most = {std::max(most.left, own.left), std::max(most.right, own.right)};
+  }
+  for (const auto& [view, plot] : plots)
+    view->sides = most;
 }
 
 void replace_plot(Plot& plot, Plot next) {

@@ -9,7 +9,9 @@
 
 #include <imgui.h>
 
+#include <initializer_list>
 #include <memory>
+#include <utility>
 
 namespace flyball {
 
@@ -43,18 +45,28 @@ struct PlotEvents {
   std::optional<PlotPull> pulled_to{}; // by the marker's grip; another place than before
 };
 
+// A line of what is read off: "gain", "-41.2", "dB"; words alone have no value.
+struct PlotReadingLine {
+  std::string name, value, unit;
+  std::optional<ImU32> color{}; // of a dot before it
+};
+
 // What was laid out, while it can be used again.
 struct PlotKept {
   std::uint64_t version = 0;
   PlotLook look;
   float width = 0, height = 0, scale = 0;
+  PlotSides sides;
   std::shared_ptr<const PlotLayout> layout;
 };
 
 // How a person looks at one plot; a value that the panel keeps from frame to frame.
 struct PlotView {
   PlotLook look;
+  PlotSides sides;                            // room beside the frame, at least; see align_plots()
   std::optional<double> cursor;               // x under the pointer
+  std::optional<double> followed;             // x at which another plot is read: this one is, too
+  std::vector<PlotReadingLine> card;          // what is read off, as last drawn
   std::optional<std::array<double, 2>> keyed; // where the keyboard reads the plot
   // What the hand does.
   enum class Drag { none, pan, box, marker, pull } drag = Drag::none;
@@ -75,6 +87,9 @@ struct PlotView {
 // quickly where Plot::version is kept.
 PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView& view, const Plot& plot,
                      ImVec2 size);
+
+// Gives plots of `size` that stand one above the other the same ends of their x axes.
+void align_plots(const Ui& ui, std::initializer_list<std::pair<PlotView*, const Plot*>> plots, ImVec2 size);
 
 // Another takes its place and is laid out anew: with the next version.
 void replace_plot(Plot& plot, Plot next);

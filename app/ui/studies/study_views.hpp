@@ -82,7 +82,8 @@ struct CampbellView {
   bool hertz = true; // or rad/s
   PlotView view;
   Plot plot;
-  std::string critical; // the speeds, in words; empty: the axis is no speed of turning
+  std::string critical;      // the speeds, in words; empty: the axis is no speed of turning
+  std::string without_modes; // where the branch that is shown has none; empty: nowhere
   struct Of {
     std::shared_ptr<const void> diagram, modes; // what was found
     std::uint64_t answer = 0;                   // its ticket

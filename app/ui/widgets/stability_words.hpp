@@ -17,4 +17,8 @@ struct StabilityWords {
 StabilityWords stability_words(std::optional<bool> stable, std::optional<StabilityReason> reason,
                                const UiColors& colors);
 
+// What everything linear about a state of joints with dry friction leaves out.
+inline constexpr const char* friction_left_out =
+    "Of the motion once it slips. Dry friction's hold is left out: within its band a disturbance stays.";
+
 } // namespace flyball

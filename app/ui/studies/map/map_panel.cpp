@@ -2,6 +2,7 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/map/map_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -145,6 +146,10 @@ void map_words(Session& session, Ui& ui) {
     paragraph(curves->result.folds->message, colors.dim);
   if (curves && map.choice.hunting && curves->result.hunting && curves->result.hunting->curves.empty())
     paragraph(curves->result.hunting->message, colors.dim);
+  if (map.choice.hunting && has_friction(session.mechanism())) {
+    paragraph(friction_left_out, colors.warn);
+    note_widget(ui.widgets, "map/friction");
+  }
   if (!map.cells.found) return;
   const MapCells& cells = map.cells.found->result;
   std::size_t unsolved = 0, unstable = 0;

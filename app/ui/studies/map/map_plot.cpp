@@ -130,8 +130,11 @@ void draw_map(const Session& session, MapView& drawn) {
   PlotHeat heat{
       .x = values_of(axes[0]), .y = values_of(axes[1]), .values = {}, .label = choice.shown, .unit = si};
   heat.values.reserve(cells.size());
-  for (const MapCell& cell : cells)
+  heat.notes_label = "stability";
+  for (const MapCell& cell : cells) {
     heat.values.push_back(cell.value);
+    heat.notes.emplace_back(!cell.stable ? "" : *cell.stable ? "stable" : "unstable");
+  }
   if (PlotCurve hatch = hatching(cells, heat.x, heat.y); !hatch.points.empty())
     plot.curves.push_back(std::move(hatch));
   show_heat(heat, si, session.units);

@@ -53,10 +53,15 @@ void draw_campbell(const Session& session, CampbellView& drawn) {
         driven_joint(session.mechanism(), of.drive).empty()
             ? ""
             : critical_words(campbell.diagram.found->result, *branch, shown_unit(unit, session.units));
+    const ShownUnit shown_as = shown_unit(unit, session.units);
+    drawn.without_modes = left_out(
+        campbell.diagram.found->result.response.branches[*branch],
+        [&](double speed) { return short_text(shown_as.shown(speed), 6); }, shown_as.text);
   } else {
     plot.x = {.label = {}, .unit = unit, .range = speeds, .room = 0};
     plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
     drawn.critical.clear();
+    drawn.without_modes.clear();
   }
   plot.x.label = parameter_phrase(of.drive);
   if (converged(session)) {

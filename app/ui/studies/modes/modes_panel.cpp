@@ -37,6 +37,10 @@ void verdict(const Session& session, Ui& ui, const FoundModes& found) {
   text += found.evidence ? found.evidence->reason : words.sentence;
   paragraph(text, disagree ? colors.warn : colors.dim);
   note_widget(ui.widgets, "modes/verdict");
+  if (has_friction(session.mechanism()) && solution.frictions.empty()) {
+    paragraph(friction_left_out, colors.warn);
+    note_widget(ui.widgets, "modes/friction");
+  }
 }
 
 // A number of the list: four digits of what is not rounding.
@@ -319,9 +323,10 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
     note_widget(ui.widgets, "campbell/critical");
   }
-  if (const std::string without = left_out(diagram.found->result, parameter_unit(session.mechanism(), drive));
-      !without.empty())
-    paragraph(without, colors.dim);
+  if (!drawn.without_modes.empty()) {
+    paragraph(drawn.without_modes, colors.dim);
+    note_widget(ui.widgets, "campbell/without");
+  }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
   const PlotEvents events = plot_view(

@@ -5,6 +5,7 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
@@ -12,7 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <optional>
 #include <set>
 
 namespace flyball {
@@ -91,6 +92,10 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
   else if (!converged(session) && !solving(session))
     paragraph("There is no steady state to make a model about.", colors.warn);
   if (!any) return;
+  if (has_friction(session.mechanism())) {
+    paragraph(friction_left_out, colors.warn);
+    note_widget(ui.widgets, "transfer/friction");
+  }
   const FoundTransfer& found = state.found.found->result;
   const LinearModel& model = found.model;
   const NumberStyle& numbers = session.options.numbers;
@@ -119,6 +124,11 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
               "Where the output does not feel the input; one that a pole equals cancels it.");
 }
 
+// The frequency at which a plot is read, by the pointer or by keys.
+std::optional<double> read_place(const PlotView& view) {
+  return view.keyed ? std::optional((*view.keyed)[0]) : view.cursor;
+}
+
 void draw_transfer(Session& session, Ui& ui, TransferView& drawn) {
   const TransferState& state = session.study.transfer;
   if (!has_transfer(session)) return;
@@ -137,9 +147,21 @@ void draw_transfer(Session& session, Ui& ui, TransferView& drawn) {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float gap = 8 * ui.scale, left = std::max(0.62f * (room.x - gap), 40.f),
               right = std::max(room.x - gap - left, 40.f), high = std::max((room.y - gap) / 2, 40.f);
+  PlotView &gain = drawn.magnitude_view, &phase = drawn.phase_view;
+  align_plots(ui, {{&gain, &drawn.magnitude}, {&phase, &drawn.phase}}, {left, high});
+  const PlotLook before = gain.look;
   ImGui::BeginGroup();
-  plot_view(session, ui, "transfer magnitude", drawn.magnitude_view, drawn.magnitude, {left, high});
-  plot_view(session, ui, "transfer phase", drawn.phase_view, drawn.phase, {left, high});
+  gain.followed = read_place(phase);
+  plot_view(session, ui, "transfer magnitude", gain, drawn.magnitude, {left, high});
+  phase.followed = read_place(gain);
+  plot_view(session, ui, "transfer phase", phase, drawn.phase, {left, high});
+  // Zoomed along the frequency together, too.
+  for (const PlotLook& look : {gain.look, phase.look})
+    if (look.range[0] != before.range[0] || look.logarithmic[0] != before.logarithmic[0])
+      for (PlotLook* own : {&gain.look, &phase.look}) {
+        own->range[0] = look.range[0];
+        own->logarithmic[0] = look.logarithmic[0];
+      }
   ImGui::EndGroup();
   ImGui::SameLine(0, gap);
   plot_view(session, ui, "poles and zeros", drawn.roots_view, drawn.roots, {right, std::max(room.y, 40.f)});
