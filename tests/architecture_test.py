@@ -32,7 +32,7 @@ WITHOUT_DRAWING = ["app/platform", "app/document", "app/live", "app/plot", "app/
 OF_A_SYSTEM = ("app/platform/linux/", "engine/mechanism/posix/")
 SYSTEM = re.compile(r"^(sys/|(unistd|fcntl|poll|spawn|dlfcn|pthread|termios|dirent|pwd|glob|windows)\.h$)")
 # All of the window at once is for what assembles its frame and what carries out commands.
-OF_THE_FRAME = re.compile(r"^app/ui/(app|build_gui|commands|command_table|file_commands|palette_actions|report_export|snapshot|stage)"
+OF_THE_FRAME = re.compile(r"^app/ui/(app|build_gui|commands|file_commands|palette_actions|report_export|snapshot|stage|menus/\w+)"
                           r"\.[ch]pp$")
 THE_APP = re.compile(r"\bApp\b")
 COMMENT = re.compile(r"//.*")

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
@@ -302,6 +303,21 @@ std::string parameter_phrase(std::string_view address) {
   std::ranges::replace(what, '_', ' ');
   const std::string owner = owner_of(parts);
   return what.empty() ? owner : what + " of " + owner;
+}
+
+std::string with_phrase(std::string sentence, const std::string& address) {
+  const std::string phrase = parameter_phrase(address);
+  const auto goes_on = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (std::size_t at = 0; !address.empty() && (at = sentence.find(address, at)) != std::string::npos;) {
+    const std::size_t end = at + address.size();
+    if (end < sentence.size() && goes_on(sentence[end])) { // of another number
+      at = end;
+      continue;
+    }
+    sentence.replace(at, address.size(), phrase);
+    at += phrase.size();
+  }
+  return sentence;
 }
 
 double slider_step(double span) {

@@ -39,6 +39,8 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
 Slider slider_for(const Mechanism& mechanism, const std::string& address);
 // "speed of spin", "mass of ball1", "y of gravity".
 std::string parameter_phrase(std::string_view address);
+// The sentence with the number's phrase where it names the address.
+std::string with_phrase(std::string sentence, const std::string& address);
 
 // What a slider of a linear range stops at: about a two-hundredth of it, a power of ten.
 double slider_step(double span);

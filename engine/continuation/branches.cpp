@@ -51,8 +51,10 @@ class Diagram {
       from_drawn_pose();
       off_crossings(true);
       if (options_.all)
-        for (double value : values_to_search())
+        for (double value : values_to_search()) {
+          if (options_.publish && !out_.branches.empty()) options_.publish(so_far());
           from_all_equilibria(value);
+        }
     } catch (const Interrupted&) {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
@@ -313,6 +315,12 @@ class Diagram {
     join(out.crossings, behind.crossings, ahead.crossings, 0);
     out.end = std::move(ahead.end);
     return out;
+  }
+
+  ResponseDiagram so_far() {
+    ResponseDiagram part = out_;
+    if (part.message.empty()) part.message = summary();
+    return part;
   }
 
   std::string summary() {

@@ -7,6 +7,7 @@
 #include "engine/task/progress.hpp"
 
 #include <atomic>
+#include <functional>
 #include <optional>
 
 namespace flyball {
@@ -82,6 +83,8 @@ struct BranchOptions {
   std::vector<double> all_at; // values of the parameter; empty: both ends, and the present one where between
   const std::atomic<bool>* cancel = nullptr;
   ReportProgress progress; // `part` is of the range, along the first branch; else of what is searched
+  // With `all`, told what is there before the search at each value; not before there is a branch.
+  std::function<void(const ResponseDiagram&)> publish;
 };
 
 // Starts at `from`, solved nearest to the drawn pose, and where that is unstable also from the answer that

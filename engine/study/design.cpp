@@ -202,7 +202,9 @@ class Designer {
     });
     const std::string unit = shown_unit();
     const auto text = [&](double v) { return number_text(v) + unit; };
-    const std::string limits = address_ + " from " + number_text(from_) + " to " + number_text(to_);
+    const std::string varied_unit = parameter_unit(mechanism_, address_);
+    const std::string limits = address_ + " from " + number_text(from_) + " to " + number_text(to_) +
+                               (varied_unit.empty() ? "" : " " + varied_unit);
     const char* open = options_.all
                            ? " The search for branches is bounded; there may be more."
                            : " Branches that nothing connects with the drawn pose's were not followed.";

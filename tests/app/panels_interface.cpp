@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <utility>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -145,6 +146,42 @@ TEST_CASE("the open dialog lists scenes and opens one") {
   CHECK_FALSE(robot.app.dialog.showing);
   CHECK(robot.app.session.document.file().filename() == "pendulum.json");
   CHECK(robot.app.session.answer.solution.status == Status::converged);
+}
+
+TEST_CASE("a picture that was cancelled leaves nothing in the next dialog, one that was saved its size") {
+  Robot robot;
+  App& app = robot.app;
+  const auto shown = [&](const char* how) {
+    robot.key('E', true);
+    robot.frames(2);
+    robot.click("export/loads"); // leaves the field of the path
+    app.panels->picture.query().path =
+        (std::filesystem::temp_directory_path() / "flyball_never_drawn.png").string();
+    robot.click(how);
+    robot.frames(2);
+    return std::exchange(app.export_request, {});
+  };
+  const auto choose = [&] {
+    robot.key('E', true);
+    robot.frames(2);
+    robot.click("export/720p");
+    robot.click("export/panels");
+  };
+  choose();
+  CHECK_FALSE(shown("export/cancel"));
+  const auto fresh = shown("export/save");
+  REQUIRE(fresh);
+  CHECK(fresh->width == 1920);
+  CHECK_FALSE(fresh->panels);
+  choose();
+  app.panels->picture.query().path = fresh->file.string();
+  robot.click("export/save");
+  robot.frames(2);
+  REQUIRE(app.export_request);
+  const auto again = shown("export/save");
+  REQUIRE(again);
+  CHECK(again->width == 1280);
+  CHECK(again->panels);
 }
 
 TEST_CASE("a picture is exported with and without the panels") {

@@ -1,6 +1,7 @@
 // The palette finds commands, parts and numbers, and sets numbers.
 #include "robot.hpp"
 
+#include "app/render/imgui_compat.hpp"
 #include "app/session/fuzzy_match.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
@@ -151,6 +152,43 @@ TEST_CASE("a number behind its name is shown as what would be set, and set by En
   CHECK_THAT(app.session.notice, ContainsSubstring("speed of spin"));
   robot.key('Z', true);
   CHECK(get_parameter(app.session.mechanism(), spin_speed) == before);
+}
+
+TEST_CASE("Enter does nothing before something is typed or an arrow chooses") {
+  Finder robot;
+  App& app = robot.app;
+  const auto revision = app.session.document.revision();
+  robot.find("");
+  SECTION("at first") {
+    robot.key(key_enter);
+    CHECK(app.panels->palette.showing());
+    CHECK(app.session.document.revision() == revision);
+    CHECK_FALSE(app.session.mechanism().bodies.empty()); // the first row is "New"
+  }
+  SECTION("nor where all that was typed is gone again") {
+    robot.type("g");
+    robot.frames(2);
+    imgui_compat::set_key(259, true); // Backspace
+    robot.frames(2);
+    imgui_compat::set_key(259, false);
+    robot.frames(2);
+    REQUIRE(robot.entry().name == "file.new");
+    robot.key(key_enter);
+    CHECK(app.panels->palette.showing());
+    CHECK_FALSE(app.session.mechanism().bodies.empty());
+  }
+  SECTION("an arrow down chooses the first, up the last") {
+    const bool down = GENERATE(true, false);
+    const std::vector<PaletteEntry>& found = app.panels->palette.found();
+    const std::string wanted = (down ? found.front() : found.back()).name;
+    robot.key(down ? 264 : 265);
+    robot.frames(2);
+    CHECK(app.panels->palette.chosen() == (down ? 0 : static_cast<int>(found.size()) - 1));
+    robot.key(key_enter);
+    CHECK_FALSE(app.panels->palette.showing());
+    robot.find("");
+    CHECK(robot.entry().name == wanted);
+  }
 }
 
 TEST_CASE("what was used last comes first, and all commands without a word") {

@@ -1,6 +1,7 @@
 // The response curve as a person uses it: it follows sliders, its marker can be dragged, design mode solves
 // for a parameter, and sensitivities stand below pinned sliders.
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/session/response.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
@@ -547,6 +548,40 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   robot.click("response/find");
   CHECK(state.design.answer.found->result.solutions.empty());
   CHECK(app.ui.widgets.count("response/never") == 1);
+  CHECK_THAT(state.design.answer.found->result.message,
+             ContainsSubstring("with speed of spin from 0 to") && ContainsSubstring(" rad/s:"));
+}
+
+TEST_CASE("a list that is opened shows what is chosen, however far down it stands") {
+  ResponseRobot robot("chain20");
+  App& app = robot.app;
+  const std::vector<ResponseQuantity> offered = offered_quantities(app.session);
+  REQUIRE(offered.size() > 40);
+  const ResponseQuantity& last = offered[offered.size() - 5];
+  choose_quantity(app.session, last);
+  robot.frames(2);
+  robot.click("response/quantity");
+  robot.frames(2);
+  CHECK(app.ui.widgets.contains("response/quantity/" + last.key));
+  CHECK_FALSE(app.ui.widgets.contains("response/quantity/" + offered.front().key));
+}
+
+TEST_CASE("with branches apart what there is shows before the search for them ends") {
+  const OffscreenContext context;
+  App app({.mode = LiveSolver::Mode::background,
+           .on_news = {},
+           .scenes = {},
+           .theme = Theme::light,
+           .numbers = {},
+           .state = {}});
+  open_scene(app.session, shipped_file("governor_watt"));
+  app.session.study.response.choice.all = true;
+  open_study(app.session, StudyKind::response);
+  const ResponseCurve& curve = app.session.study.response.curve;
+  REQUIRE(wait_until(app.session, [&] { return curve.found != nullptr; }));
+  CHECK(curve.running());
+  CHECK_FALSE(curve.found->result.lines.empty());
+  CHECK(curve.found->result.diagram.searched.size() < 2);
 }
 
 TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {

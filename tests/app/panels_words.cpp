@@ -5,6 +5,7 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <imgui_internal.h>
 
@@ -56,6 +57,20 @@ TEST_CASE("lines are broken at blanks, never within a number") {
     }
   }
   CHECK(in_lines(text, 1e6f) == text);
+}
+
+TEST_CASE("a slider's label is whole beside what its row needs, with a number that was moved, too") {
+  Robot robot({1200, 760});
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("governor_engine"));
+  robot.frames(2);
+  change_parameter(app.session, "joints.slide.damping", 15);
+  robot.frames(3);
+  const std::string slider = "parameters/joints.slide.damping";
+  const float label = robot.widget(slider + "/reset").from.x - robot.widget(slider).from.x;
+  CHECK(label >= ImGui::CalcTextSize("slide").x + 6 * app.ui.scale + ImGui::CalcTextSize("damping").x);
+  CHECK(robot.widget(slider + "/value").from.x >= robot.widget(slider + "/reset").to.x);
+  CHECK(robot.widget(slider + "/gear").from.x >= robot.widget(slider + "/value").to.x);
 }
 
 TEST_CASE("the help of a study's tab covers nothing of the study") {

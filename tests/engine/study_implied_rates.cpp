@@ -5,6 +5,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
@@ -16,19 +17,6 @@ using namespace flyball::test;
 using Catch::Matchers::WithinRel;
 
 namespace {
-
-double rate(const Solution& s, std::string_view joint) {
-  INFO(s.message);
-  return coordinate(s, joint).speed.value();
-}
-
-Joint pushed(Joint j, const std::string& law, double guess) {
-  Drive& drive = j.coordinates[0].drive.emplace();
-  drive.speed = guess;
-  drive.torque = law.find('(') == std::string::npos ? std::stod(law) : 0;
-  if (law.find('(') != std::string::npos) j.formulas.push_back({"drive.torque", law});
-  return j;
-}
 
 Body wheel(const std::string& name, double inertia, const Vec3& at = Vec3::Zero()) {
   return body(name, 1, at, {inertia, inertia, 2 * inertia});
@@ -57,15 +45,15 @@ Joint sun_joint() {
 
 void expect_willis(const Solution& s, double sun, double carrier) {
   CHECK_THAT(carrier, WithinRel(sun * sun_teeth / (sun_teeth + ring_teeth), 1e-12));
-  CHECK_THAT(rate(s, "sun on carrier"), WithinRel(sun - carrier, 1e-12));
-  CHECK_THAT(rate(s, "planet"), WithinRel(-(sun - carrier) * sun_teeth / planet_teeth, 1e-12));
-  CHECK_THAT(rate(s, "ring on carrier"), WithinRel(-carrier, 1e-12));
+  CHECK_THAT(speed(s, "sun on carrier"), WithinRel(sun - carrier, 1e-12));
+  CHECK_THAT(speed(s, "planet"), WithinRel(-(sun - carrier) * sun_teeth / planet_teeth, 1e-12));
+  CHECK_THAT(speed(s, "ring on carrier"), WithinRel(-carrier, 1e-12));
 }
 
 double carrier_rate(const Solution& s) {
   const CoordinateSolution& c = coordinate(s, "carrier");
   // Of a joint that closes the loop it is told by the others.
-  return c.speed ? *c.speed : -rate(s, "ring on carrier");
+  return c.speed ? *c.speed : -speed(s, "ring on carrier");
 }
 
 } // namespace
@@ -73,14 +61,15 @@ double carrier_rate(const Solution& s) {
 TEST_CASE("a joint that closes the loop tells at which rate it turns", "[implied]") {
   for (const bool by_torque : {false, true}) {
     CAPTURE(by_torque);
-    Mechanism m = planetary(
-        by_torque ? pushed(sun_joint(), "10 N m - 0.02 N m s*rate(sun)", 100) : driven(sun_joint(), 100), 3);
+    Mechanism m = planetary(by_torque ? torque_driven(sun_joint(), 100, "10 N m - 0.02 N m s*rate(sun)")
+                                      : driven(sun_joint(), 100),
+                            3);
     m.joints[1].cut = true;
     const Solution s = Analysis(m).solve();
     const CoordinateSolution& carrier = coordinate(s, "carrier");
     REQUIRE(carrier.dependent);
     CHECK(carrier.driven);
-    const double sun = by_torque ? rate(s, "sun") : 100;
+    const double sun = by_torque ? speed(s, "sun") : 100;
     CHECK_THAT(carrier.speed.value(), WithinRel(sun * sun_teeth / (sun_teeth + ring_teeth), 1e-12));
     CHECK(carrier.speed_error < 1e-10);
     // Columns of studies are named by it.
@@ -102,12 +91,12 @@ TEST_CASE("a planetary set turns as Willis says", "[implied]") {
     CHECK_FALSE(s.at_constant_speed);
   }
   SECTION("by a torque") {
-    const Mechanism m = planetary(pushed(sun_joint(), "40 N m - 0.1 N m s * rate(sun)", 50), damping);
+    const Mechanism m = planetary(torque_driven(sun_joint(), 50, "40 N m - 0.1 N m s * rate(sun)"), damping);
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
-    CHECK_THAT(rate(s, "sun"), WithinRel(40 / (0.1 + damping * ratio * ratio), 1e-12));
-    expect_willis(s, rate(s, "sun"), carrier_rate(s));
+    CHECK_THAT(speed(s, "sun"), WithinRel(40 / (0.1 + damping * ratio * ratio), 1e-12));
+    expect_willis(s, speed(s, "sun"), carrier_rate(s));
     CHECK(s.stable == true);
     // One speed is left: its inertia at the sun.
     const double sun = 0.2, carrier = 0.6, planet = 0.03,
@@ -121,7 +110,7 @@ TEST_CASE("a planetary set turns as Willis says", "[implied]") {
     const Run motion = simulate(m, run);
     REQUIRE(motion.status == RunStatus::completed);
     for (const CoordinateTrack& track : motion.coordinates)
-      if (track.joint == "sun") CHECK_THAT(track.rate.back(), WithinRel(rate(s, "sun"), 1e-7));
+      if (track.joint == "sun") CHECK_THAT(track.rate.back(), WithinRel(speed(s, "sun"), 1e-7));
   }
 }
 
@@ -131,15 +120,15 @@ TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
   m.bodies = {body("case", 4, {0, 0, 0}, {0.2, 0.1, 0.1}), body("left", 3, {-0.5, 0, 0}, {0.3, 0.2, 0.2}),
               body("right", 3, {0.5, 0, 0}, {0.3, 0.2, 0.2}),
               body("planet", 0.2, {0, 0, 0}, {0.01, 0.01, 0.02})};
-  m.joints = {
-      pushed(revolute("case", "ground", "case", {0, 0, 0}, {1, 0, 0}), "30 N m - 0.5 N m s * rate(case)", 4),
-      dampened(revolute("left", "ground", "left", {-0.5, 0, 0}, {1, 0, 0}), left),
-      dampened(revolute("right", "ground", "right", {0.5, 0, 0}, {1, 0, 0}), right),
-      revolute("planet", "case", "planet", {0, 0, 0}, {0, 0, 1}),
-      revolute("left in case", "case", "left", {-0.2, 0, 0}, {1, 0, 0}),
-      revolute("right in case", "case", "right", {0.2, 0, 0}, {1, 0, 0}),
-      gear("left mesh", "planet", "left in case", 1),
-      gear("right mesh", "planet", "right in case", -1)};
+  m.joints = {torque_driven(revolute("case", "ground", "case", {0, 0, 0}, {1, 0, 0}), 4,
+                            "30 N m - 0.5 N m s * rate(case)"),
+              dampened(revolute("left", "ground", "left", {-0.5, 0, 0}, {1, 0, 0}), left),
+              dampened(revolute("right", "ground", "right", {0.5, 0, 0}, {1, 0, 0}), right),
+              revolute("planet", "case", "planet", {0, 0, 0}, {0, 0, 1}),
+              revolute("left in case", "case", "left", {-0.2, 0, 0}, {1, 0, 0}),
+              revolute("right in case", "case", "right", {0.2, 0, 0}, {1, 0, 0}),
+              gear("left mesh", "planet", "left in case", 1),
+              gear("right mesh", "planet", "right in case", -1)};
   const bool of_case =
       GENERATE(true, false); // the joints that are coordinates: to the case, or to the ground
   if (!of_case) m.joints[1].cut = m.joints[2].cut = false;
@@ -147,7 +136,7 @@ TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
   validate(m);
   const Solution s = Analysis(m).solve();
   const auto wheel_rate = [&](const std::string& wheel) {
-    return of_case ? rate(s, "case") + rate(s, wheel + " in case") : rate(s, wheel);
+    return of_case ? speed(s, "case") + speed(s, wheel + " in case") : speed(s, wheel);
   };
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
@@ -155,8 +144,8 @@ TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
   const double share = engine / (2 + 0.25 * (1 / left + 1 / right));
   CHECK_THAT(wheel_rate("left"), WithinRel(share / left, 1e-11));
   CHECK_THAT(wheel_rate("right"), WithinRel(share / right, 1e-11));
-  CHECK_THAT(rate(s, "case"), WithinRel((share / left + share / right) / 2, 1e-11));
-  CHECK_THAT(rate(s, "planet"), WithinRel((share / left - share / right) / 2, 1e-11));
+  CHECK_THAT(speed(s, "case"), WithinRel((share / left + share / right) / 2, 1e-11));
+  CHECK_THAT(speed(s, "planet"), WithinRel((share / left - share / right) / 2, 1e-11));
   CHECK(s.stable == true);
   CHECK(s.eigenvalues->size() == 2);
   SimulationOptions run;
@@ -179,8 +168,8 @@ TEST_CASE("two drives of a planetary set may begin alike, where the planet seems
   Mechanism m;
   m.bodies = {wheel("carrier", 0.15), wheel("sun", 0.05), wheel("ring", 0.25),
               body("planet", 0.4, {0.9, 0, 0}, {0.02, 0.02, 0.02})};
-  m.joints = {pushed(at_centre("carrier"), "0 N m - 0.4 N m s * rate(carrier)", 10 + apart),
-              pushed(at_centre("sun"), "10 N m - 0.1 N m s * rate(sun)", 10),
+  m.joints = {torque_driven(at_centre("carrier"), 10 + apart, "0 N m - 0.4 N m s * rate(carrier)"),
+              torque_driven(at_centre("sun"), 10, "10 N m - 0.1 N m s * rate(sun)"),
               dampened(at_centre("ring"), 0.2),
               revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
               revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
@@ -198,9 +187,9 @@ TEST_CASE("two drives of a planetary set may begin alike, where the planet seems
   Eigen::Matrix2d a;
   a << -0.1 - 0.2 * k * k, 0.2 * k * (1 + k), 0.2 * (1 + k) * k, -0.4 - 0.2 * (1 + k) * (1 + k);
   const Eigen::Vector2d speeds = a.inverse() * Eigen::Vector2d(-10, 0);
-  CHECK_THAT(rate(s, "sun"), WithinRel(speeds[0], 1e-11));
-  CHECK_THAT(rate(s, "carrier"), WithinRel(speeds[1], 1e-11));
-  CHECK_THAT(rate(s, "planet"), WithinRel(-(speeds[0] - speeds[1]) * sun_teeth / planet_teeth, 1e-11));
+  CHECK_THAT(speed(s, "sun"), WithinRel(speeds[0], 1e-11));
+  CHECK_THAT(speed(s, "carrier"), WithinRel(speeds[1], 1e-11));
+  CHECK_THAT(speed(s, "planet"), WithinRel(-(speeds[0] - speeds[1]) * sun_teeth / planet_teeth, 1e-11));
   CHECK(s.stable == true);
 }
 
@@ -224,7 +213,7 @@ TEST_CASE("a wheel on a bearing turns at the speed that its air gives it", "[imp
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
   // 0.3 r + 2 * 0.4 * 0.5^2 (10 + r) = 0
-  CHECK_THAT(rate(s, "bearing"), WithinRel(-0.2 * 10 / 0.5, 1e-12));
+  CHECK_THAT(speed(s, "bearing"), WithinRel(-0.2 * 10 / 0.5, 1e-12));
   CHECK(s.stable == true);
   CHECK_THAT(s.drive_torques.at(0).value, WithinRel(0.3 * 4, 1e-11));
 }
@@ -232,34 +221,34 @@ TEST_CASE("a wheel on a bearing turns at the speed that its air gives it", "[imp
 TEST_CASE("gears lead the torque of a drive to others", "[implied]") {
   Mechanism m;
   m.bodies = {wheel("a", 0.1), wheel("b", 0.2, {1, 0, 0})};
-  m.joints = {dampened(pushed(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), "12", 5), 0.5),
+  m.joints = {dampened(torque_driven(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), 5, "12"), 0.5),
               dampened(revolute("b", "ground", "b", {1, 0, 0}, {0, 0, 1}), 0.25), gear("mesh", "a", "b", -3)};
   SECTION("one drive") {
     validate(m);
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
-    CHECK_THAT(rate(s, "a"), WithinRel(12 / (0.5 + 9 * 0.25), 1e-13));
-    CHECK_THAT(rate(s, "b"), WithinRel(-3 * 12 / (0.5 + 9 * 0.25), 1e-13));
+    CHECK_THAT(speed(s, "a"), WithinRel(12 / (0.5 + 9 * 0.25), 1e-13));
+    CHECK_THAT(speed(s, "b"), WithinRel(-3 * 12 / (0.5 + 9 * 0.25), 1e-13));
     REQUIRE(s.drive_torques.size() == 1);
     CHECK_THAT(s.drive_torques[0].value, WithinRel(12, 1e-12));
     REQUIRE(s.gears.size() == 1);
-    CHECK_THAT(std::abs(s.gears[0].b), WithinRel(0.25 * std::abs(rate(s, "b")), 1e-12));
+    CHECK_THAT(std::abs(s.gears[0].b), WithinRel(0.25 * std::abs(speed(s, "b")), 1e-12));
     REQUIRE(s.eigenvalues->size() == 1);
     CHECK_THAT((*s.eigenvalues)[0].real(), WithinRel(-(0.5 + 9 * 0.25) / (0.2 + 9 * 0.4), 1e-11));
     REQUIRE(s.at_constant_speed);
   }
   SECTION("two drives add up") {
-    m.joints[1] = dampened(pushed(m.joints[1], "-2", 5), 0.25);
+    m.joints[1] = dampened(torque_driven(m.joints[1], 5, "-2"), 0.25);
     validate(m);
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
-    CHECK_THAT(rate(s, "a"), WithinRel((12 + 3 * 2) / (0.5 + 9 * 0.25), 1e-13));
+    CHECK_THAT(speed(s, "a"), WithinRel((12 + 3 * 2) / (0.5 + 9 * 0.25), 1e-13));
     CHECK(simulate(m, {}).status == RunStatus::completed); // their guesses do not fit
   }
   SECTION("none, and nothing resists") {
-    m.joints[0] = pushed(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), "0", 5);
+    m.joints[0] = torque_driven(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), 5, "0");
     m.joints[1] = revolute("b", "ground", "b", {1, 0, 0}, {0, 0, 1});
     validate(m);
     const Solution s = Analysis(m).solve();
@@ -289,19 +278,19 @@ TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
-    CHECK_THAT(rate(s, "pin"), WithinRel(-10, 1e-12));
-    CHECK_THAT(rate(s, "rocker"), WithinRel(10, 1e-12));
+    CHECK_THAT(speed(s, "pin"), WithinRel(-10, 1e-12));
+    CHECK_THAT(speed(s, "rocker"), WithinRel(10, 1e-12));
     CHECK_THAT(s.drive_torques.at(0).value, WithinRel(7, 1e-10));
   }
   SECTION("by a torque") {
-    m.joints[0] = pushed(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}),
-                         "8 N m - 0.1 N m s * rate(crank)", 5);
+    m.joints[0] = torque_driven(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), 5,
+                                "8 N m - 0.1 N m s * rate(crank)");
     validate(m);
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
-    CHECK_THAT(rate(s, "crank"), WithinRel(10, 1e-12));
-    CHECK_THAT(rate(s, "pin"), WithinRel(-10, 1e-12));
+    CHECK_THAT(speed(s, "crank"), WithinRel(10, 1e-12));
+    CHECK_THAT(speed(s, "pin"), WithinRel(-10, 1e-12));
     CHECK(s.stable == true);
   }
   SECTION("no parallelogram, no steady state") {
@@ -315,7 +304,7 @@ TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
     INFO(s.message);
     REQUIRE(s.status == Status::converged); // at a given speed the drive gives what it takes
     CHECK(s.drive_torques.at(0).varying);
-    m.joints[0] = pushed(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), "8", 5);
+    m.joints[0] = torque_driven(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), 5, "8");
     CHECK(Analysis(m).solve().status == Status::no_steady_state);
   }
 }
@@ -325,7 +314,7 @@ TEST_CASE("a steady state that the equations have no place for is not denied", "
   // the torque that the geared wheel takes, and so is found as a motion alone.
   Mechanism m;
   m.bodies = {wheel("near", 0.1), wheel("far", 0.2, {0, 0, 0.5}), wheel("geared", 0.3, {1, 0, 0.5})};
-  m.joints = {pushed(revolute("p", "ground", "near", {0, 0, 0}), "2 N m - 0.2 N m s*rate(p)", 5),
+  m.joints = {torque_driven(revolute("p", "ground", "near", {0, 0, 0}), 5, "2 N m - 0.2 N m s*rate(p)"),
               dampened(sprung(revolute("twist", "near", "far", {0, 0, 0.5}), 20), 0.1),
               dampened(revolute("q", "ground", "geared", {1, 0, 0.5}), 0.05),
               revolute("bearing", "ground", "far", {0, 0, 0.5}), gear("g", "bearing", "q", -2)};

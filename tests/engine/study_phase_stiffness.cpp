@@ -5,10 +5,12 @@
 #include "engine/report/analysis.hpp"
 #include "engine/study/linear_model.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -19,14 +21,6 @@ using Catch::Matchers::WithinRel;
 using Complex = std::complex<double>;
 
 namespace {
-
-Joint pushed(Joint j, const std::string& law, double guess) {
-  Drive& drive = j.coordinates[0].drive.emplace();
-  drive.speed = guess;
-  drive.torque = 0;
-  j.formulas.push_back({"drive.torque", law});
-  return j;
-}
 
 Joint hinge(const std::string& name, const std::string& a, const std::string& b) {
   return revolute(name, a, b, {0, 0, 0}, {0, 0, 1});
@@ -49,8 +43,9 @@ Mechanism shafts(bool opposite) {
   Mechanism m;
   m.bodies = {body("a", 1, {0, 0, 0}, {first, first, first}),
               body("b", 1, {0, 0, 0.5}, {second, second, second})};
-  m.joints = {pushed(hinge("p", "ground", "a"), "2 N m - 0.2 N m s * rate(p)", 5),
-              pushed(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), "2 N m - 0.2 N m s * rate(q)", 5)};
+  m.joints = {
+      torque_driven(hinge("p", "ground", "a"), 5, "2 N m - 0.2 N m s * rate(p)"),
+      torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 5, "2 N m - 0.2 N m s * rate(q)")};
   Force spring;
   spring.type = ForceType::spring;
   spring.name = "k";
@@ -73,7 +68,7 @@ Complex shafts_left(Complex s, double k) {
 
 TEST_CASE("a pendulum whose hinge has a torque at rest falls or hangs", "[phase]") {
   const bool above = GENERATE(true, false);
-  const Mechanism m = pendulum(pushed(hinge("p", "ground", "bob"), "-0.05 N m s * rate(p)", 1), above);
+  const Mechanism m = pendulum(torque_driven(hinge("p", "ground", "bob"), 1, "-0.05 N m s * rate(p)"), above);
   const Solution s = Analysis(m).solve();
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
@@ -92,8 +87,38 @@ TEST_CASE("a pendulum whose hinge has a torque at rest falls or hangs", "[phase]
   CHECK_THAT(motion.coordinates[0].value.back(), WithinAbs(above ? M_PI : 0, 1e-4));
 }
 
+TEST_CASE("a chain whose first hinge has a torque at rest hangs by its energy", "[phase]") {
+  constexpr int count = 30; // links, more than have their eigenvalues asked for alone
+  const bool above = GENERATE(true, false);
+  CAPTURE(above);
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  const double length = (above ? 1. : -1.) / count, mass = 1. / count;
+  for (int i = 0; i < count; ++i) {
+    const std::string name = "b" + std::to_string(i), before = "b" + std::to_string(i - 1);
+    m.bodies.push_back(body(name, mass, {0, length * (i + 0.5), 0},
+                            {mass * length * length / 12, 0, mass * length * length / 12}));
+    const Joint joint =
+        revolute("j" + std::to_string(i), i == 0 ? "ground" : before, name, {0, length * i, 0}, {0, 0, 1});
+    m.joints.push_back(i == 0 ? torque_driven(joint, 0.1, "-0.05 N m s * rate(j0)") : dampened(joint, 0.001));
+  }
+  validate(m);
+  SolveOptions nearest;
+  nearest.nearest = true;
+  const Solution s = Analysis(m).solve(nearest);
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == !above);
+  CHECK(s.stability_reason == (above ? StabilityReason::unstable : StabilityReason::minimum));
+  REQUIRE(s.eigenvalues);
+  double most = -1e9;
+  for (const Complex x : *s.eigenvalues)
+    most = std::max(most, x.real());
+  CHECK((most > 0) == above);
+}
+
 TEST_CASE("a torque that just holds a pendulum sideways holds it at no other angle", "[phase]") {
-  Joint joint = pushed(hinge("p", "ground", "bob"), "2.941995 N m - 0.05 N m s * rate(p)", 0.5);
+  Joint joint = torque_driven(hinge("p", "ground", "bob"), 0.5, "2.941995 N m - 0.05 N m s * rate(p)");
   Mechanism m = pendulum(joint, true);
   m.bodies[0].position = {-arm, 0, 0}; // weight turns it forward by 2.941995 N m
   m.joints[0].formulas[0].text = "-2.941995 N m - 0.05 N m s * rate(p)";
@@ -136,7 +161,7 @@ TEST_CASE("a body that stands still on a shaft that turns falls over as it would
   m.gravity = {0, -standard_gravity, 0};
   m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 0.1, 0.2}, {0.02, 0.02, 0.02})};
   m.joints = {driven(hinge("p", "ground", "a"), 10),
-              pushed(hinge("q", "a", "b"), "-0.01 N m s * (rate(q) + 10 rad/s)", -10)};
+              torque_driven(hinge("q", "a", "b"), -10, "-0.01 N m s * (rate(q) + 10 rad/s)")};
   validate(m);
   const Solution s = Analysis(m).solve();
   INFO(s.message);

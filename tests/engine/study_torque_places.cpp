@@ -17,6 +17,7 @@
 #include "engine/system/linearization.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
@@ -58,11 +59,6 @@ const std::string by_coordinate = "gain*(coordinate(slide) - 0.15 m)";
 const std::vector<std::string> by_places{
     "gain*opening", "gain*(0.05 m - y(collar))", "gain*(distance(collar, ground@top) - 0.15 m)",
     "gain*(distance(collar, spindle) - 0.15 m)", "gain*(y(spindle@top) - y(collar) - 0.15 m)"};
-
-double speed(const Solution& s, std::string_view joint) {
-  INFO(s.message);
-  return coordinate(s, joint).speed.value();
-}
 
 double difference(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   REQUIRE(a.size() == b.size());
@@ -222,31 +218,20 @@ TEST_CASE("a place is known where its joint closes the loops", "[torque][places]
 }
 
 TEST_CASE("a governor throttled by the distance of its balls", "[torque][places]") {
-  // d = 2 * 0.16 m cos a with the arms' angle a, whose derivatives are those of Haug's governor: see
-  // study_torque_drives.cpp. Free of load the torque is zero, so that the balls stand at the wanted distance.
-  const double wanted = 0.226, arm = 0.16, b = 0.08, link = 0.10922, g = standard_gravity, gain = 3000,
-               damper = 30;
+  // d = 2 * 0.16 m cos a with the arms' angle a. Free of load the torque is zero, so that the balls stand at
+  // the wanted distance.
+  const double wanted = 0.226, arm = HaugGovernor::arm;
   const Solution s = Analysis(governor("3000 N*(0.226 m - distance(ball1, ball2))")).solve();
   REQUIRE(s.status == Status::converged);
-  const double a = std::acos(wanted / (2 * arm)), sine = std::sin(a), cosine = std::cos(a);
-  const double r = std::sqrt(link * link - b * b * cosine * cosine), r1 = b * b * sine * cosine / r;
-  const double collar = b * sine + r, s1 = b * cosine + r1;
-  const double s2 = -b * sine + (b * b * (cosine * cosine - sine * sine) - r1 * r1) / r;
-  const double j = 50.125 + 2 * (0.1 + arm * arm * cosine * cosine), j1 = -4 * arm * arm * sine * cosine,
-               j2 = -4 * arm * arm * (cosine * cosine - sine * sine), spring = 1000 * (collar - 0.15);
-  const double v1 = -2 * g * arm * cosine - g * s1 + spring * s1;
-  const double v2 = 2 * g * arm * sine - g * s2 + spring * s2 + 1000 * s1 * s1;
-  const double m = 2 * (0.1 + arm * arm) + s1 * s1, w = std::sqrt(2 * v1 / j1);
-  CHECK_THAT(speed(s, "spin"), WithinRel(w, 1e-12));
-  CHECK_THAT(value(s, "slide"), WithinRel(collar, 1e-12));
+  const double angle = std::acos(wanted / (2 * arm));
+  const HaugGovernor closed(angle);
+  CHECK_THAT(speed(s, "spin"), WithinRel(closed.speed(), 1e-12));
+  CHECK_THAT(value(s, "slide"), WithinRel(closed.s, 1e-12));
   REQUIRE(s.eigenvalues->size() == 3);
-  // (m x^2 + c s1^2 x + K)(J x) + w J1 (J1 w x - dT/da)
-  const double slope = gain * 2 * arm * sine;
-  for (const Complex x : *s.eigenvalues) {
-    const Complex p =
-        (m * x * x + damper * s1 * s1 * x + v2 - w * w * j2 / 2) * j * x + w * j1 * (j1 * w * x - slope);
-    CHECK(std::abs(p) < 1e-9 * std::abs(damper * s1 * s1 * j) * std::norm(x));
-  }
+  const double slope = 3000 * 2 * arm * std::sin(angle); // of the torque with the angle
+  const auto p = closed.characteristic(30, slope / closed.s1);
+  for (const Complex x : *s.eigenvalues)
+    CHECK(std::abs(cubic(p, x)) < 1e-9 * std::abs(p[1]) * std::norm(x));
 }
 
 TEST_CASE("laws by velocities of points", "[torque][places]") {

@@ -23,6 +23,7 @@ constexpr std::array picture_sizes{PictureSize{"720p", "1280 × 720", 1280, 720}
 
 void ExportDialog::open(const Session& session, DialogState& dialog, bool loads) {
   dialog.wanted = Dialog::export_picture;
+  now_ = saved_;
   loads_ = loads;
   show_folder(query_, usual_folder(session));
   query_.replacing.clear();
@@ -36,17 +37,17 @@ std::optional<ExportRequest> ExportDialog::draw(Session& session, Ui& ui, Dialog
   if (!begin_dialog(ui, dialog, Dialog::export_picture, "Save a picture", 480)) return picture;
   bool accepted = path_field(ui, query_, "export", "Name");
 
-  size_fields(ui, "export", picture_sizes, 80, width_, height_);
+  size_fields(ui, "export", picture_sizes, 80, now_.width, now_.height);
   ImGui::SetCursorPosX(80 * ui.scale);
-  ImGui::Checkbox("With the panels", &panels_);
+  ImGui::Checkbox("With the panels", &now_.panels);
   note_widget(ui.widgets, "export/panels");
   ImGui::SameLine(0, 20 * ui.scale);
   ImGui::Checkbox("With forces", &loads_);
   note_widget(ui.widgets, "export/loads");
   help_on_hover("Arrows of what acts, and their legend; with one body selected, its free-body diagram.");
 
-  const bool fits =
-      std::min(width_, height_) >= smallest_picture && std::max(width_, height_) <= largest_picture;
+  const bool fits = std::min(now_.width, now_.height) >= smallest_picture &&
+                    std::max(now_.width, now_.height) <= largest_picture;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(ui).bad);
   const std::filesystem::path file = typed_file(query_, ".png");
   const bool replaces = asks_to_replace(ui, query_, file);
@@ -55,8 +56,9 @@ std::optional<ExportRequest> ExportDialog::draw(Session& session, Ui& ui, Dialog
   accepted = text_button(ui, "export/save", replaces ? "Replace" : "Save", true) || accepted;
   ImGui::EndDisabled();
   if (accepted && fits && !query_.path.empty() && may_replace(session, query_, file)) {
-    picture = ExportRequest{file, std::clamp(width_, smallest_picture, largest_picture),
-                            std::clamp(height_, smallest_picture, largest_picture), panels_, loads_};
+    picture = ExportRequest{file, std::clamp(now_.width, smallest_picture, largest_picture),
+                            std::clamp(now_.height, smallest_picture, largest_picture), now_.panels, loads_};
+    saved_ = now_;
     close_dialog();
   }
   ImGui::SameLine();

@@ -14,6 +14,7 @@ struct Ui;
 
 class ExportDialog {
  public:
+  // Afresh: with the size and panels of the last picture that was saved.
   void open(const Session& session, DialogState& dialog, bool loads);
   // Returns the picture that is asked for.
   std::optional<ExportRequest> draw(Session& session, Ui& ui, DialogState& dialog);
@@ -22,9 +23,14 @@ class ExportDialog {
   bool loads() const { return loads_; }
 
  private:
+  struct Choices {
+    int width = 1920, height = 1080; // pixels
+    bool panels = false;
+  };
+
   FileQuery query_;
-  int width_ = 1920, height_ = 1080; // pixels
-  bool panels_ = false, loads_ = false;
+  Choices now_, saved_; // in the dialog, and of the last picture
+  bool loads_ = false;
 };
 
 } // namespace flyball

@@ -226,6 +226,12 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
   std::vector<const std::string*> shown;
   for (const std::string& option : options)
     if (search.empty() || contains(option, search)) shown.push_back(&option);
+  if (ImGui::IsWindowAppearing()) { // in its middle what is chosen, which else may not even be drawn
+    const auto at = std::ranges::find_if(shown, [&](const std::string* each) { return *each == chosen; });
+    const float row = ImGui::GetTextLineHeightWithSpacing();
+    ImGui::SetScrollFromPosY(ImGui::GetCursorPosY() - ImGui::GetScrollY() +
+                             row * (static_cast<float>(at - shown.begin()) + 0.5f));
+  }
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(shown.size()));
   while (clipper.Step())

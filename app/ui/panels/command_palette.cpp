@@ -71,7 +71,7 @@ std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
   if (appearing) {
     ImGui::OpenPopup(palette_title);
     search_.clear();
-    chosen_ = 0;
+    chosen_ = -1;
   }
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({window.x / 2, 70 * s}, ImGuiCond_Always, {0.5f, 0});
@@ -93,15 +93,17 @@ std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint(
           "##search", "Find a command, a part or a number; a number behind its name sets it", &search_))
-    chosen_ = 0;
+    chosen_ = is_blank(search_) ? -1 : 0;
   note_widget(ui.widgets, "palette/search", KeyUse::none);
   bool accepted = false, moved = false, left = escape_pressed();
   for (const KeyPress& key : std::exchange(ui.keys, {})) {
     if (key.key == keys::enter) accepted = true;
     if (key.key == keys::escape) left = true;
     if (key.key == keys::down || key.key == keys::up) {
-      chosen_ += key.key == keys::down ? 1 : count - 1;
-      chosen_ = count > 0 ? chosen_ % count : 0;
+      if (key.key == keys::down)
+        chosen_ = chosen_ + 1 < count ? chosen_ + 1 : 0;
+      else
+        chosen_ = (chosen_ <= 0 ? count : chosen_) - 1;
       moved = true;
     }
   }
@@ -114,7 +116,7 @@ std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
   }
   if (count == 0) ImGui::TextDisabled("No command, part or number is called that.");
   ImGui::EndChild();
-  if (accepted && chosen_ < count && found[static_cast<std::size_t>(chosen_)].enabled)
+  if (accepted && chosen_ >= 0 && chosen_ < count && found[static_cast<std::size_t>(chosen_)].enabled)
     wanted = &found[static_cast<std::size_t>(chosen_)];
   if (wanted || left) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();

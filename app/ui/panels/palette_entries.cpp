@@ -134,11 +134,11 @@ void try_entry(const Session& session, const std::vector<std::string>& recent, c
   ranked.back().entry.value = typed.value;
 }
 
-bool starts_empty(const std::string& search) {
+} // namespace
+
+bool is_blank(const std::string& search) {
   return search.find_first_not_of(' ') == std::string::npos;
 }
-
-} // namespace
 
 const std::vector<PaletteEntry>& palette_entries(const Session& session, const CommandRunner& commands,
                                                  PaletteIndex& index, const std::string& search,
@@ -149,7 +149,7 @@ const std::vector<PaletteEntry>& palette_entries(const Session& session, const C
   for (const Command& command : flyball::commands())
     try_entry(session, recent, search, command_entry(commands, command), ranked);
   for (const PaletteEntry& entry : index.entries)
-    if (!starts_empty(search) || recent_bonus(recent, entry.name) > 0)
+    if (!is_blank(search) || recent_bonus(recent, entry.name) > 0)
       try_entry(session, recent, search, entry, ranked);
   std::ranges::stable_sort(ranked, [](const Ranked& a, const Ranked& b) { return a.score > b.score; });
   if (ranked.size() > most_entries) ranked.resize(most_entries);

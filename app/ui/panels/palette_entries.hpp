@@ -41,6 +41,8 @@ struct PaletteIndex {
 const std::vector<PaletteEntry>& palette_entries(const Session& session, const CommandRunner& commands,
                                                  PaletteIndex& index, const std::string& search,
                                                  const std::vector<std::string>& recent);
+// Whether nothing is sought.
+bool is_blank(const std::string& search);
 // "15 rad/s": a number in the unit that is shown.
 std::string number_words(const Session& session, const std::string& si_unit, double value);
 

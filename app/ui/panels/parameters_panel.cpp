@@ -108,16 +108,28 @@ bool told_by_title(const ParameterControl& control) {
          (control.what == "speed" || control.what == "stiffness" || control.what == "damping");
 }
 
+// What stands behind the name, dim; empty where the section's title says it.
+std::string what_shown(const ParameterControl& control) {
+  return told_by_title(control) ? std::string() : control.what;
+}
+
+// Pixels of the whole label.
+float control_label_width(const Ui& ui, const ParameterControl& control) {
+  const std::string what = what_shown(control);
+  return ImGui::CalcTextSize(control.name.c_str()).x +
+         (what.empty() ? 0 : 6 * ui.scale + ImGui::CalcTextSize(what.c_str()).x);
+}
+
 // The name and what of it, as far as there is room.
 void control_label(const Ui& ui, const ParameterControl& control, float width) {
   ImGui::AlignTextToFramePadding();
   const float start = ImGui::GetCursorPosX();
   clipped_text(control.name, width);
   const float used = ImGui::GetItemRectSize().x;
-  if (!told_by_title(control) && !control.what.empty() && used + 40 * ui.scale < width) {
+  if (const std::string what = what_shown(control); !what.empty() && used + 40 * ui.scale < width) {
     ImGui::SameLine(0, 6 * ui.scale);
     ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
-    clipped_text(control.what, width - used - 6 * ui.scale);
+    clipped_text(what, width - used - 6 * ui.scale);
     ImGui::PopStyleColor();
   }
   ImGui::SameLine();
@@ -140,16 +152,22 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   const bool pointed =
       ImGui::IsWindowHovered() &&
       ImGui::IsMouseHoveringRect(from, {from.x + room, from.y + row_height(ui, control.group)});
-  const float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
-  const float value_at = room - value_width - icon_width;
+  const bool pinned = control.group == ParameterGroup::pinned;
   const bool changed = control.value != control.file_value;
+  float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
+  if (!typing_in(ui, name + "/value")) { // then the label comes first
+    const float buttons = (1.f + (pinned ? 1 : 0) + (changed ? 1 : 0)) * icon_width;
+    const float left = room - buttons - control_label_width(ui, control) - 5 * s;
+    value_width =
+        std::min(value_width, std::max(left, resting_width(session, ui, control.value, control.unit)));
+  }
+  const float value_at = room - value_width - icon_width;
   const ShownUnit unit = shown_unit(control.unit, session.units);
   const auto set = [&session, address = control.address](double value) {
     change_parameter(session, address, value);
   };
 
   // Before the value: back to what is stored, and for a pinned number whether it is held.
-  const bool pinned = control.group == ParameterGroup::pinned;
   const float hold_at = value_at - (pinned ? icon_width : 0), reset_at = hold_at - icon_width;
   const bool holds = pinned && (pointed || is_held(session, control.address));
   control_label(ui, control, (changed ? reset_at : holds ? hold_at : value_at) - 4 * s);

@@ -181,18 +181,27 @@ std::string fitting_text(const Ui& ui, double value, float room) {
   return text;
 }
 
+float field_padding(const Ui& ui) {
+  return 6 * ui.scale;
+}
+
+// Of the unit behind the number, with the gap between them.
+float unit_width(const Ui& ui, const std::string& unit) {
+  return unit.empty() ? 0 : ImGui::CalcTextSize(unit.c_str()).x + 5 * ui.scale;
+}
+
 // The number over the field at rest.
 void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& shown, float padding,
                   bool given) {
   const UiColors& colors = colors_of(ui);
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const float right = to.x - padding, gap = 5 * ui.scale;
-  const float unit_width = shown.unit.text.empty() ? 0 : ImGui::CalcTextSize(shown.unit.text.c_str()).x + gap;
+  const float behind = unit_width(ui, shown.unit.text);
   const float sign = given ? ImGui::CalcTextSize("=").x + gap : 0; // of an expression
-  const float room = right - from.x - padding - unit_width - sign;
+  const float room = right - from.x - padding - behind - sign;
   const std::string text = field.various.empty() ? fitting_text(ui, shown.value, room) : std::string();
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
-  const float x = field.framed ? from.x + padding + sign : right - unit_width - digits_width(ui, text);
+  const float x = field.framed ? from.x + padding + sign : right - behind - digits_width(ui, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
@@ -202,8 +211,8 @@ void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& s
   else
     list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {x, y + digits_drop(ui)}, packed(color),
                  text.c_str());
-  if (unit_width > 0 && (!field.framed || digits_width(ui, text) <= room))
-    list.AddText({right - unit_width + gap, y}, packed(colors.dim), shown.unit.text.c_str());
+  if (behind > 0 && (!field.framed || digits_width(ui, text) <= room))
+    list.AddText({right - behind + gap, y}, packed(colors.dim), shown.unit.text.c_str());
   list.PopClipRect();
 }
 
@@ -327,9 +336,15 @@ float label_width(const Ui& ui) {
   return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * ui.scale, 130 * ui.scale);
 }
 
+float resting_width(const Session& session, const Ui& ui, double value, const std::string& unit) {
+  const ShownUnit shown = shown_unit(unit, session.units);
+  return digits_width(ui, short_text(shown.shown(value), 6)) + unit_width(ui, shown.text) +
+         2 * field_padding(ui);
+}
+
 void quantity_field(Session& session, Ui& ui, const QuantityField& field, float width) {
   const UiColors& colors = colors_of(ui);
-  const float height = ImGui::GetFrameHeight(), padding = 6 * ui.scale;
+  const float height = ImGui::GetFrameHeight(), padding = field_padding(ui);
   const ShownNumber shown(session, field);
   const std::optional<std::string> formula = formula_of(session, field);
   Stepping stepping{field, shown, ui.fields.typing};

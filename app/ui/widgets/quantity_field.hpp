@@ -31,6 +31,8 @@ struct QuantityField {
   bool at_once = false; // `set` is called while drawing: for a number outside the document
 };
 
+// Pixels that a field needs for its number at rest with up to six digits; with less room it drops digits.
+float resting_width(const Session& session, const Ui& ui, double value, const std::string& unit);
 // Without a label.
 void quantity_field(Session& session, Ui& ui, const QuantityField& field, float width);
 // With its label, the pin, and for an optional number that is given a way back: `reset` then makes it absent.

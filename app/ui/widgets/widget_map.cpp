@@ -34,6 +34,9 @@ void note_widget(WidgetMap& map, const std::string& name, KeyUse use) {
 
 void mark_chosen(WidgetMap& map) {
   if (!map.stops.empty()) map.stops.back().chosen = true;
+  // A list that opens has it in its middle.
+  const ImGuiWindow& window = *ImGui::GetCurrentWindow();
+  if (window.Appearing && (window.Flags & ImGuiWindowFlags_Popup) != 0) ImGui::SetScrollHereY();
 }
 
 void mark_address(WidgetMap& map, const std::string& address) {

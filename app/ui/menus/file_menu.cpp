@@ -1,0 +1,76 @@
+#include "app/ui/menus/menu_commands.hpp"
+
+#include "app/ui/file_commands.hpp"
+
+#include <array>
+
+namespace flyball::menus {
+
+namespace {
+
+const std::array file_commands{
+    Command{.id = "file.new",
+            .title = "New",
+            .help = "An empty document.",
+            .key = ctrl('N'),
+            .run = new_document},
+    Command{.id = "file.open",
+            .title = "Open…",
+            .help = "Open a scene file.",
+            .key = ctrl('O'),
+            .run = open_dialog_of<&Panels::open>},
+    Command{.id = "file.examples",
+            .title = "Examples…",
+            .help = "Mechanisms to start from, with pictures.",
+            .key = ctrl_shift('O'),
+            .run = open_dialog_of<&Panels::gallery>},
+    Command{.id = "file.save",
+            .title = "Save",
+            .help = "Write the scene to its file.",
+            .key = ctrl('S'),
+            .run = save_document,
+            .separated = true},
+    Command{.id = "file.save_as",
+            .title = "Save as…",
+            .help = "Write the scene to another file.",
+            .key = ctrl_shift('S'),
+            .run = show_save_dialog},
+    Command{.id = "file.reload",
+            .title = "Reload",
+            .help = "Read the file again, as it is on disk now.",
+            .key = ctrl('R'),
+            .run = given<reload_document>,
+            .enabled = [](const App& app) { return !app.session.document.file().empty(); }},
+    Command{.id = "file.export",
+            .title = "Export a picture…",
+            .help = "Save what is seen as a PNG file.",
+            .key = ctrl('E'),
+            .run = [](App& app) { app.panels->picture.open(app.session, app.dialog, app.view.loads); },
+            .separated = true},
+    Command{.id = "file.report",
+            .title = "Export report…",
+            .help =
+                "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
+            .run = open_dialog_of<&Panels::report>,
+            .enabled =
+                [](const App& app) { return app.session.mistakes.empty() && !writing_report(app.report); }},
+    Command{.id = "file.model",
+            .title = "Export linear model…",
+            .help = "Write the linear model that Transfer shows for MATLAB, Python or NumPy, or as JSON.",
+            .run = open_dialog_of<&Panels::model>,
+            .enabled = [](const App& app) { return has_transfer(app.session); }},
+    Command{.id = "file.quit",
+            .title = "Quit",
+            .help = "Leave the program; asks before unsaved work is lost.",
+            .key = ctrl('Q'),
+            .run = quit,
+            .separated = true},
+};
+
+} // namespace
+
+std::span<const Command> file() {
+  return file_commands;
+}
+
+} // namespace flyball::menus

@@ -1,0 +1,35 @@
+#include "app/ui/menus/menu_commands.hpp"
+
+#include <array>
+
+namespace flyball::menus {
+
+namespace {
+
+const std::array help_commands{
+    Command{.id = "help.palette",
+            .title = "Find…",
+            .help = "Commands, parts and numbers by name; \"spin 15\" sets a number.",
+            .key = ctrl('P'),
+            .run = [](App& app) { app.panels->palette.open(); }},
+    Command{.id = "help.messages",
+            .title = "Messages",
+            .help = "What was told before, the latest first.",
+            .run = [](App& app) { app.notice_log.showing = !app.notice_log.showing; },
+            .checked = [](const App& app) { return app.notice_log.showing; }},
+    Command{.id = "help.shortcuts",
+            .title = "Shortcuts",
+            .help = "Every key and what it does.",
+            .key = plain('?'),
+            .also = plain(keys::f1),
+            .run = [](App& app) { app.panels->shortcuts.open = !app.panels->shortcuts.open; },
+            .checked = [](const App& app) { return app.panels->shortcuts.open; }},
+};
+
+} // namespace
+
+std::span<const Command> help() {
+  return help_commands;
+}
+
+} // namespace flyball::menus

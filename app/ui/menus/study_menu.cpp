@@ -1,0 +1,103 @@
+#include "app/ui/menus/menu_commands.hpp"
+
+#include <array>
+
+namespace flyball::menus {
+
+namespace {
+
+template <Filmed of>
+void film(App& app) {
+  app.panels->movie.open(app.session, app.dialog, app.movie, of);
+}
+
+const std::array study_commands{
+    Command{.id = "study.motion",
+            .title = "Motion",
+            .help = "The damped motion beside the steady state, and plots of it.",
+            .key = plain('M'),
+            .run = [](App& app) { open_study(app.session, StudyKind::motion); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::motion; }},
+    Command{.id = "study.response",
+            .title = "Response",
+            .help = "The steady states over one parameter: branches, folds and crossings, live.",
+            .key = plain('C'),
+            .run = [](App& app) { open_study(app.session, StudyKind::response); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::response; }},
+    Command{.id = "study.states",
+            .title = "All equilibria",
+            .help = "Every equilibrium that a bounded search finds, stable or not.",
+            .key = plain('E'),
+            .run = [](App& app) { open_study(app.session, StudyKind::states); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::states; }},
+    Command{.id = "study.modes",
+            .title = "Modes",
+            .help =
+                "How the steady state swings, moving in the view, and at which speeds (Campbell diagram).",
+            .key = plain('O'),
+            .run = [](App& app) { open_study(app.session, StudyKind::modes); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::modes; }},
+    Command{.id = "study.map",
+            .title = "Map of two parameters",
+            .help = "A coordinate in colours over the plane of two parameters, with the curves of folds.",
+            .key = plain('P'),
+            .run = [](App& app) { open_study(app.session, StudyKind::map); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::map; }},
+    Command{
+        .id = "study.spread",
+        .title = "Spread by tolerances",
+        .help =
+            "How the steady state scatters with tolerances of numbers: a histogram, and whose share it is.",
+        .run = [](App& app) { open_study(app.session, StudyKind::spread); },
+        .enabled = of_session<holds_parts>,
+        .checked = [](const App& app) { return app.session.study.open == StudyKind::spread; }},
+    Command{.id = "study.transfer",
+            .title = "Transfer function",
+            .help = "The linear model about the steady state: Bode's plots, poles and zeros, files for "
+                    "MATLAB and Python.",
+            .run = [](App& app) { open_study(app.session, StudyKind::transfer); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::transfer; }},
+    Command{.id = "study.compare",
+            .title = "Compare",
+            .help = "Error against run time: the direct solution and the damped motion.",
+            .run = [](App& app) { open_study(app.session, StudyKind::compare); },
+            .enabled = of_session<holds_parts>,
+            .checked = [](const App& app) { return app.session.study.open == StudyKind::compare; }},
+    Command{.id = "study.cycle",
+            .title = "Find the limit cycle",
+            .help = "Where the steady state is left by swings that grow: the motion that they come to, "
+                    "in the results.",
+            .run =
+                [](App& app) {
+                  find_cycle(app.session, !app.session.study.periodic.cycle_wanted);
+                  set_mode(app.session, Mode::explore);
+                },
+            .enabled = of_session<hunts>,
+            .checked = [](const App& app) { return app.session.study.periodic.cycle_wanted; }},
+    Command{.id = "study.export",
+            .title = "Export the run…",
+            .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",
+            .run = film<Filmed::run>,
+            .enabled =
+                [](const App& app) { return app.session.motion.on && shown_motion(app.session) != nullptr; },
+            .separated = true},
+    Command{.id = "study.export_mode",
+            .title = "Export the mode…",
+            .help = "Save the mode that is shown as a film that begins again without a jump.",
+            .run = film<Filmed::mode>,
+            .enabled = [](const App& app) { return moving_mode(app.session) != nullptr; }},
+};
+
+} // namespace
+
+std::span<const Command> study() {
+  return study_commands;
+}
+
+} // namespace flyball::menus
