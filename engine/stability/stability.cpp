@@ -113,6 +113,14 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return potential.positive_definite();
 }
 
+// Whether a matrix is positive semidefinite but for rounding.
+bool is_semidefinite(const Eigen::MatrixXd& a) {
+  Eigen::MatrixXd symmetric = (a + a.transpose()) / 2;
+  symmetric.diagonal().array() += 1e-12 * symmetric.norm();
+  Cholesky factors;
+  return symmetric.isZero(0) || factors.compute(symmetric);
+}
+
 // On the null space of the constraints, at the momenta that are kept, and the phases of what torques drive
 // among these directions: of a dense problem that is factored at z.
 struct SteadyMotion : LinearPencil {
@@ -209,6 +217,21 @@ bool torques_keep_minimum(const Problem& problem, const Eigen::MatrixXd& jacobia
   ReducedHessian energy;
   energy.factor(stiffness, terms, true);
   return energy.positive_definite();
+}
+
+// Whether the energy q'^T M q' / 2 + q^T K q / 2 of a linearised motion keeps it where it is (Lyapunov,
+// Dirichlet): with K symmetric and definite but along the phases that change nothing, and velocities that
+// give nothing. Nothing of it follows where it does not.
+bool energy_keeps(const SteadyMotion& motion) {
+  if (!is_semidefinite(motion.velocity) || !is_semidefinite(motion.mass)) return false;
+  if (motion.phases.cols() == 0) return is_minimum(motion.stiffness);
+  const Eigen::MatrixXd& k = motion.stiffness;
+  if (!((k * motion.phases).norm() + (k.transpose() * motion.phases).norm() <=
+        tolerance::symmetric * k.norm()))
+    return false;
+  const auto all = orthonormal_completion(motion.phases);
+  if (!all) return false;
+  return is_minimum(large::projected(k, all->rightCols(all->cols() - motion.phases.cols())));
 }
 
 // Without those of the phases of what torques drive.
@@ -342,6 +365,15 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   auto motion = steady_motion(problem, at.z, w);
   if (!motion) return out;
   if (potential && problem.system.torques.empty()) motion->stiffness = (reduced + reduced.transpose()) / 2;
+  constexpr int few = 20; // of which eigenvalues cost little, and tell more
+  if (of_angles && problem.system.nv > few && problem.system.conservative_at_speeds &&
+      energy_keeps(*motion)) {
+    out.stable = true;
+    out.reason = StabilityReason::minimum;
+    if (!with_eigenvalues) return out;
+    out.eigenvalues = eigenvalues_of(problem, *motion);
+    return out;
+  }
   out.eigenvalues = eigenvalues_of(problem, *motion);
   if (!problem.system.torques.empty() && problem.system.conserves && is_minimum(motion->stiffness)) {
     out.stable = true;
