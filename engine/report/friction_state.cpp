@@ -173,12 +173,15 @@ class Attempt {
     out.goes = true;
     bool slipping = false;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (parts_[i] == Part::none) continue;
       const Joint& joint = mechanism_.joints[place(frictions_[i].joint)];
       const auto is_it = [&](const auto& x) {
         return x.joint == joint.name && x.index == frictions_[i].coordinate;
       };
       const auto c = std::ranges::find_if(s.coordinates, is_it);
+      if (parts_[i] == Part::none) { // what goes on has friction against it
+        if (c != s.coordinates.end() && c->speed && std::abs(*c->speed) > c->speed_error) return false;
+        continue;
+      }
       const auto drive = std::ranges::find_if(s.drive_torques, is_it);
       if (c == s.coordinates.end()) return false;
       FrictionForce& force = s.frictions.emplace_back();

@@ -171,3 +171,21 @@ TEST_CASE("friction's branches end at once where they are cancelled, and tell ho
   CHECK(part < 0.2);
   CHECK(d.branches.empty());
 }
+
+TEST_CASE("a brake with friction turns with the shaft behind a sprung coupling, which gives way by T / k") {
+  const Mechanism m = clutch_and_brake(R"("spring": {"stiffness": 100}, "damping": 0.5)", half);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "clutch"), WithinRel(-0.005, 1e-12));
+  CHECK_THAT(rate(s, "brake"), WithinRel(clutch_shaft_speed, 1e-12));
+  REQUIRE(s.frictions.size() == 1);
+  CHECK(s.frictions[0].value == -0.5);
+  CHECK(s.stable == true);
+
+  SimulationOptions options;
+  options.duration = 5;
+  const Run motion = simulate(m, options);
+  INFO(motion.message);
+  CHECK_THAT(track(motion, "clutch").value.back(), WithinRel(-0.005, 1e-6));
+}
