@@ -48,7 +48,7 @@ void add_hunting_curves(Plot& plot, const PlaneCurves& curves) {
   for (const PlaneCurve& curve : curves.curves) {
     PlotCurve* before = nullptr;
     std::array<double, 2> last{};
-    std::string last_note;
+    double last_frequency = 0;
     for (const PlanePoint& p : curve.points) {
       if (!p.hopf) continue;
       PlotCurve like = part_like(*p.hopf);
@@ -57,23 +57,23 @@ void add_hunting_curves(Plot& plot, const PlaneCurves& curves) {
       auto mine = std::ranges::find(parts, like.name, &PlotCurve::name);
       if (mine == parts.end()) {
         const auto index = before ? before - parts.data() : 0;
+        like.along = PlotAlong{"hunts at", "Hz", {}};
         parts.push_back(std::move(like));
         mine = parts.end() - 1;
         if (before) before = parts.data() + index;
       }
-      const std::string note = "hunts at " + frequency_text(*p.hopf);
       if (before != &*mine) {
         if (!mine->points.empty()) {
           mine->points.push_back({broken, broken});
-          mine->notes.emplace_back();
+          mine->along->values.push_back(broken);
         }
         if (before) { // the two kinds of pieces meet
           mine->points.push_back(last);
-          mine->notes.push_back(last_note);
+          mine->along->values.push_back(last_frequency);
         }
       }
       mine->points.push_back(last = {p.x, p.y});
-      mine->notes.push_back(last_note = note);
+      mine->along->values.push_back(last_frequency = hertz(p.hopf->frequency));
       before = &*mine;
     }
     for (const PlanePoint& p : curve.bautin)

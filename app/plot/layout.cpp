@@ -170,11 +170,14 @@ struct Builder {
     const double legend_top = top;
     if (rows > 0) top += rows * (words_height + 4 * s()) + 4 * s();
     if (top == pad) top = std::max(top, digits / 2 + 2 * s());
-    const std::string x_words = words ? axis_text(plot.x.label, plot.x.unit) : "",
+    const bool x_below = least_sides.x_below;
+    const std::string x_words = words && !x_below ? axis_text(plot.x.label, plot.x.unit) : "",
                       y_words = words ? axis_text(plot.y.label, plot.y.unit) : "";
     const double x_labels = std::max(8 * s(), digits / 2 + s()); // below the frame
-    const double bottom =
-        out.height - x_labels - digits - (x_words.empty() ? 0.6 * pad : 0.6 * pad + words_height + 3 * s());
+    const double below = x_below
+                             ? digits / 2 + 2 * s()
+                             : x_labels + digits + 0.6 * pad + (x_words.empty() ? 0 : words_height + 3 * s());
+    const double bottom = out.height - below;
     // A label too long to stand beside a low frame lies above it.
     y_above = !y_words.empty() && metrics.width_of(PlotFont::words, y_words) > bottom - top;
     if (y_above) top += words_height + 3 * s();
@@ -218,7 +221,9 @@ struct Builder {
         },
         &out.x_minor);
     for (PlotTick& tick : out.x_ticks)
-      if (tick.label && (tick.label->box.left < 0 || tick.label->box.right > out.width)) tick.label.reset();
+      if (tick.label &&
+          (least_sides.x_below || tick.label->box.left < 0 || tick.label->box.right > out.width))
+        tick.label.reset();
   }
 
   void lay_words(bool title, double pad, const std::string& x_words, const std::string& y_words) {
@@ -273,7 +278,7 @@ struct Builder {
         lay_frame();
         settled = rows <= assumed;
       }
-      if (settled && out.area.width() >= 60 * s() && out.area.height() >= 60 * s()) return;
+      if (settled && out.area.width() >= 60 * s() && out.area.height() >= 40 * s()) return;
     }
     if (out.drawable()) return;
     out.x_ticks.clear();

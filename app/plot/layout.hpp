@@ -82,9 +82,10 @@ struct PlotInk {
   std::vector<char> squares;
 };
 
-// Room beside the frame (pixels).
+// Room beside the frame (pixels), and whether another plot right below has the numbers of x.
 struct PlotSides {
   double left = 0, right = 0;
+  bool x_below = false;
   bool operator==(const PlotSides&) const = default;
 };
 

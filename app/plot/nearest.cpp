@@ -8,13 +8,19 @@ namespace flyball {
 
 namespace {
 
+// The part of the way from one point of a line to the next at which it is drawn at `x`.
+double part_of_way(const PlotLayout& layout, const std::array<double, 2>& a, const std::array<double, 2>& b,
+                   double x) {
+  const double xa = layout.x.pixel(a[0]), xb = layout.x.pixel(b[0]), at = layout.x.pixel(x);
+  return xb == xa ? 0 : std::clamp((at - xa) / (xb - xa), 0., 1.);
+}
+
 // Where the value goes through `x` between two points of a line, as drawn.
 double value_between(const PlotLayout& layout, const std::array<double, 2>& a, const std::array<double, 2>& b,
                      double x) {
-  const double xa = layout.x.pixel(a[0]), xb = layout.x.pixel(b[0]), at = layout.x.pixel(x);
-  const double t = xb == xa ? 0 : (at - xa) / (xb - xa);
-  if (t <= 0) return a[1];
-  if (t >= 1) return b[1];
+  const double t = part_of_way(layout, a, b, x);
+  if (t == 0) return a[1];
+  if (t == 1) return b[1];
   return layout.y.logarithmic ? a[1] * std::pow(b[1] / a[1], t) : a[1] + t * (b[1] - a[1]);
 }
 
@@ -84,8 +90,7 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
   for (std::size_t c = 0; c < plot.curves.size(); ++c) {
     const std::string& name = plot.curves[c].name;
     if (!is_read(plot.curves[c], look) || !read.insert(name).second) continue;
-    std::optional<double> best;
-    std::string note;
+    std::optional<PlotReading> best;
     double least = 0;
     for (const PlotCurve& curve : plot.curves) {
       if (curve.name != name || !is_read(curve, look)) continue;
@@ -96,14 +101,18 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
         if (!std::isfinite(pixel)) continue;
         const double distance = std::abs(pixel - py);
         if (best && distance >= least) continue;
-        best = y;
+        best = PlotReading{c, y};
         least = distance;
         if (const std::size_t near = std::abs(x - a[0]) < std::abs(x - b[0]) ? i - 1 : i;
             near < curve.notes.size())
-          note = curve.notes[near];
+          best->note = curve.notes[near];
+        if (curve.along && i < curve.along->values.size()) {
+          const double from = curve.along->values[i - 1], to = curve.along->values[i];
+          best->along = {from + part_of_way(layout, a, b, x) * (to - from), std::abs(to - from)};
+        }
       }
     }
-    if (best) readings.push_back({c, *best, std::move(note)});
+    if (best) readings.push_back(std::move(*best));
   }
   return readings;
 }

@@ -23,6 +23,8 @@ struct PlotReading {
   std::size_t curve = 0; // the first shown of its name
   double y = 0;
   std::string note{}; // of the nearest point
+  // Of PlotAlong, between the two points beside it, and how far apart these are.
+  std::optional<std::array<double, 2>> along{};
 };
 
 // What the curves are at `x`, those of one name (or of none) together: of several crossings the one nearest

@@ -34,6 +34,12 @@ namespace plot_color {
 inline constexpr int blue = 0, vermillion = 1, green = 2, purple = 3, orange = 4, sky_blue = 5, neutral = 6;
 }
 
+// Another quantity along a curve, read off where the curve is.
+struct PlotAlong {
+  std::string label, unit;
+  std::vector<double> values; // by point
+};
+
 struct PlotCurve {
   std::string name; // in the legend, once for all curves that share it; empty: not there
   // In this order; a value that is not finite, or not positive on a logarithmic axis, breaks the line.
@@ -46,6 +52,7 @@ struct PlotCurve {
   bool hidden = false;               // neither drawn nor in the legend
   bool hatching = false;             // marks an area: nothing is read off it, nor is it data for a CSV file
   std::vector<std::string> notes{};  // by point, or none: what is said beside the value read off there
+  std::optional<PlotAlong> along{};
 };
 
 // An area between two values over x, such as a range that most keep to, or the bars of a histogram.

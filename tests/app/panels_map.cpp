@@ -343,8 +343,23 @@ TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft o
   const auto drawn = std::ranges::find(plot.curves, std::string("hunting begins hard"), &PlotCurve::name);
   REQUIRE(drawn != plot.curves.end());
   REQUIRE(drawn->points.size() == found.curves[0].points.size());
-  REQUIRE(drawn->notes.size() == drawn->points.size());
-  CHECK(drawn->notes[3] == "hunts at 6.55583 rad/s (1.04339 Hz)");
+  REQUIRE(drawn->along);
+  REQUIRE(drawn->along->values.size() == drawn->points.size());
+  CHECK(drawn->along->values[3] == Approx(1.04339).epsilon(1e-5));
+  // Between two points it is read between.
+  const std::array<double, 2> a = drawn->points[3], b = drawn->points[4];
+  const MapView& shown = robot.app.panels->studies.shown().map;
+  const PlotLayout& layout = *shown.view.kept.layout;
+  const WidgetRect area = robot.widget("plot/map/area");
+  robot.point({area.from.x + static_cast<float>(layout.x.pixel((a[0] + b[0]) / 2) - layout.area.left),
+               area.from.y + static_cast<float>(layout.y.pixel((a[1] + b[1]) / 2) - layout.area.top)});
+  robot.frames(2);
+  const auto told = std::ranges::find(shown.view.card, "hunts at", &PlotReadingLine::name);
+  REQUIRE(told != shown.view.card.end());
+  CHECK(told->unit == "Hz");
+  const auto [low, high] = std::minmax(drawn->along->values[3], drawn->along->values[4]);
+  CHECK(std::stod(told->value) > low);
+  CHECK(std::stod(told->value) < high);
   for (const auto& [damping, gain] : drawn->points)
     CHECK(gain / damping == Approx(7500 / 21.5343400233).epsilon(1e-9));
   // On the unstable side of it the cells are hatched.

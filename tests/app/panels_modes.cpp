@@ -5,6 +5,7 @@
 #include "app/session/modes.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/panel_list.hpp"
+#include "app/ui/studies/modes/campbell_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/view_frame.hpp"
 #include "engine/mechanism/address.hpp"
@@ -227,6 +228,14 @@ TEST_CASE("only of the branch that is shown is it said where it has no modes") {
   robot.widget("campbell/without");
   CHECK(robot.app.panels->studies.shown().campbell.without_modes.starts_with(
       "Without modes from 0 to 30 rad/s."));
+}
+
+TEST_CASE("why there is no Campbell diagram is said in the units and names that are shown") {
+  ModesRobot robot("horizontal_rotor");
+  robot.widget("campbell/problem");
+  CHECK(campbell_problem(robot.app.session).starts_with("At n = 5 rad/s: No steady state"));
+  robot.app.session.units.speed = SpeedUnit::rpm;
+  CHECK(campbell_problem(robot.app.session).starts_with("At n = 47.7465 rpm: No steady state"));
 }
 
 TEST_CASE("a click in the Campbell diagram sets the speed") {

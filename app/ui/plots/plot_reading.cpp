@@ -101,6 +101,8 @@ std::vector<PlotReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& 
     const std::string& name = frame.plot.curves[r.curve].name;
     lines.push_back({name.empty() ? name_of(frame.plot, 1) : name,
                      value_at(layout.y, r.y, frame.plot.y.whole), frame.plot.y.unit, color_of(r.curve)});
+    if (const auto& along = frame.plot.curves[r.curve].along; along && r.along)
+      lines.push_back({along->label, reading_text((*r.along)[0], (*r.along)[1]), along->unit});
     if (!r.note.empty()) lines.push_back({r.note, "", ""});
     if (pixel >= layout.area.top && pixel <= layout.area.bottom) dot(frame, at[0], pixel, color_of(r.curve));
   }

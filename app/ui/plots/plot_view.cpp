@@ -100,14 +100,15 @@ PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView
   return events;
 }
 
-void align_plots(const Ui& ui, std::initializer_list<std::pair<PlotView*, const Plot*>> plots, ImVec2 size) {
+void align_plots(const Ui& ui, std::initializer_list<StackedPlot> plots) {
   PlotSides most;
-  for (const auto& [view, plot] : plots) {
-    const PlotSides own = laid_out(ui, *view, *plot, whole_pixels(size))->own_sides;
+  for (const StackedPlot& each : plots) {
+    each.view.sides.x_below = &each != plots.end() - 1;
+    const PlotSides own = laid_out(ui, each.view, each.plot, whole_pixels(each.size))->own_sides;
     most = {std::max(most.left, own.left), std::max(most.right, own.right)};
   }
-  for (const auto& [view, plot] : plots)
-    view->sides = most;
+  for (const StackedPlot& each : plots)
+    each.view.sides = {most.left, most.right, each.view.sides.x_below};
 }
 
 void replace_plot(Plot& plot, Plot next) {

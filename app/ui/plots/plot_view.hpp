@@ -11,7 +11,6 @@
 
 #include <initializer_list>
 #include <memory>
-#include <utility>
 
 namespace flyball {
 
@@ -88,8 +87,14 @@ struct PlotView {
 PlotEvents plot_view(Session& session, Ui& ui, const std::string& name, PlotView& view, const Plot& plot,
                      ImVec2 size);
 
-// Gives plots of `size` that stand one above the other the same ends of their x axes.
-void align_plots(const Ui& ui, std::initializer_list<std::pair<PlotView*, const Plot*>> plots, ImVec2 size);
+// Plots that stand one above the other get the same ends of their x axes, which the lowest has the numbers
+// of.
+struct StackedPlot {
+  PlotView& view;
+  const Plot& plot;
+  ImVec2 size;
+};
+void align_plots(const Ui& ui, std::initializer_list<StackedPlot> plots);
 
 // Another takes its place and is laid out anew: with the next version.
 void replace_plot(Plot& plot, Plot next);

@@ -3,6 +3,7 @@
 #include "app/plot/campbell_plot.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -74,6 +75,19 @@ void draw_campbell(const Session& session, CampbellView& drawn) {
   }
   show_axis(plot, 0, unit, session.units);
   replace_plot(drawn.plot, std::move(plot));
+}
+
+std::string campbell_problem(const Session& session) {
+  const auto& diagram = session.study.modes.campbell.diagram;
+  std::string text = diagram.problem;
+  if (!diagram.found) return text;
+  const CampbellRequest& of = diagram.found->of;
+  const std::string si = parameter_unit(session.mechanism(), of.drive);
+  const ShownUnit unit = shown_unit(si, session.units);
+  const std::string value = " = " + rounded_text(of.from, 6) + " " + si;
+  if (const std::size_t at = text.find(value); at != std::string::npos)
+    text.replace(at, value.size(), " = " + short_text(unit.shown(of.from), 6) + " " + unit.text);
+  return with_phrase(std::move(text), of.drive);
 }
 
 } // namespace flyball

@@ -242,7 +242,8 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   CampbellState& campbell = session.study.modes.campbell;
   const float s = ui.scale;
   const std::vector<std::string> speeds = drive_speeds(session.mechanism());
-  ImGui::SetNextItemWidth(140 * s);
+  constexpr float others = 360; // points, of the range and the units
+  ImGui::SetNextItemWidth(std::clamp(ImGui::GetContentRegionAvail().x - others * s, 70 * s, 140 * s));
   ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   if (ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
     for (const std::string& speed : speeds) {
@@ -316,7 +317,10 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
                      colors.dim);
   campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
-  if (!diagram.problem.empty()) paragraph(diagram.problem, colors.bad);
+  if (const std::string problem = campbell_problem(session); !problem.empty()) {
+    paragraph(problem, colors.bad);
+    note_widget(ui.widgets, "campbell/problem");
+  }
   if (!diagram.found) return;
   draw_campbell(session, drawn);
   if (const std::string& words = drawn.critical; !words.empty()) {

@@ -148,13 +148,16 @@ void draw_transfer(Session& session, Ui& ui, TransferView& drawn) {
   const float gap = 8 * ui.scale, left = std::max(0.62f * (room.x - gap), 40.f),
               right = std::max(room.x - gap - left, 40.f), high = std::max((room.y - gap) / 2, 40.f);
   PlotView &gain = drawn.magnitude_view, &phase = drawn.phase_view;
-  align_plots(ui, {{&gain, &drawn.magnitude}, {&phase, &drawn.phase}}, {left, high});
+  const float numbers = 2.4f * ImGui::GetFontSize(); // of the frequency, below the lower frame
+  const ImVec2 upper(left, std::max(high - numbers / 2, 40.f)),
+      lower(left, std::max(high + numbers / 2, 40.f));
+  align_plots(ui, {{gain, drawn.magnitude, upper}, {phase, drawn.phase, lower}});
   const PlotLook before = gain.look;
   ImGui::BeginGroup();
   gain.followed = read_place(phase);
-  plot_view(session, ui, "transfer magnitude", gain, drawn.magnitude, {left, high});
+  plot_view(session, ui, "transfer magnitude", gain, drawn.magnitude, upper);
   phase.followed = read_place(gain);
-  plot_view(session, ui, "transfer phase", phase, drawn.phase, {left, high});
+  plot_view(session, ui, "transfer phase", phase, drawn.phase, lower);
   // Zoomed along the frequency together, too.
   for (const PlotLook& look : {gain.look, phase.look})
     if (look.range[0] != before.range[0] || look.logarithmic[0] != before.logarithmic[0])
