@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 namespace flyball {
 
@@ -23,6 +24,14 @@ const char* reason_text(StabilityReason reason) {
     return "The linearised motion turns with the drives, and no multipliers tell of it.";
   }
   return "";
+}
+
+std::string window_message(const Solution& solution) {
+  constexpr std::string_view command = "solve --all looks", own = "the tab States looks";
+  std::string text = solution.message;
+  if (const std::size_t at = text.find(command); at != std::string::npos)
+    text.replace(at, command.size(), own);
+  return text;
 }
 
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,

@@ -11,6 +11,9 @@ namespace flyball {
 // "A minimum of the amended potential."
 const char* reason_text(StabilityReason reason);
 
+// What the engine says of a state; where it names a command of the terminal, the window's own.
+std::string window_message(const Solution& solution);
+
 // Whether two lists of coordinates are one state but for rounding: whole turns, and joints in which nothing
 // resists, do not count.
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,

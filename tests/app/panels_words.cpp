@@ -2,8 +2,10 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
+#include "app/session/state_words.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/report/messages.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -37,6 +39,20 @@ int pixels_like(const Image& image, const WidgetRect& within, const ImVec4& colo
 }
 
 } // namespace
+
+TEST_CASE("where the engine names a command of the terminal the window names its own") {
+  OtherStates none, few;
+  few.searched = true;
+  few.end = SearchEnd::time;
+  for (const OtherStates& others : {none, few}) {
+    Solution solution;
+    solution.message = "Not converged. " + message(others, Status::not_converged);
+    INFO(solution.message);
+    REQUIRE(solution.message.find("--all") != std::string::npos);
+    CHECK(window_message(solution).find("the tab States looks for") != std::string::npos);
+    CHECK(window_message(solution).find("--") == std::string::npos);
+  }
+}
 
 TEST_CASE("lines are broken at blanks, never within a number") {
   const Robot robot;

@@ -74,7 +74,7 @@ void verdict(const Session& session, Ui& ui) {
     paragraph("Looking for a periodic motion…", colors.dim);
   // Where all went well the words above say it already.
   if (solution.status != Status::converged || solution.message != "Converged.")
-    paragraph(without_repetition(solution.message, headline),
+    paragraph(without_repetition(window_message(solution), headline),
               solution.status == Status::converged || motion ? colors.dim : colors.text);
 }
 
