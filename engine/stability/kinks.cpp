@@ -32,9 +32,9 @@ std::optional<std::array<double, 2>> jump_at(const Slope& slope, double x, doubl
   // A smooth slope differs by 1/64 as much.
   if (!(difference(close) > 1e-6 * largest) || difference(close) < 0.5 * difference(wide)) return {};
   // Where it jumps it is as before or as after in between, too; a smooth law that bends within so little has
-  // slopes of its own there.
-  for (int i = -3; i <= 3; ++i) {
-    const double there = slope(x + i / 4. * near * size);
+  // slopes of its own there. On the kink itself what is asked for twice has neither.
+  for (const double part : {-0.75, -0.5, -0.25, 0.25, 0.5, 0.75}) {
+    const double there = slope(x + part * near * size);
     if (std::min(std::abs(there - close[0]), std::abs(there - close[1])) > 0.1 * difference(close)) return {};
   }
   return close;
