@@ -3,8 +3,15 @@
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/force_law.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
+
+// Laws of drives are compiled with the places of points in the list.
+bool same_points(const Mechanism& a, const Mechanism& b) {
+  return std::ranges::equal(a.points, b.points, {}, &NamedPoint::name, &NamedPoint::name);
+}
 
 // Drives of coordinate i: none, by speed, or by torques that are both numbers or the same expressions.
 bool same_kind(const Mechanism& of_a, const Joint& a, const Mechanism& of_b, const Joint& b, int i) {
@@ -16,7 +23,9 @@ bool same_kind(const Mechanism& of_a, const Joint& a, const Mechanism& of_b, con
   for (const char* which : {"torque", "load"}) {
     const Formula *law_a = drive_law(of_a, a, i, which), *law_b = drive_law(of_b, b, i, which);
     if ((law_a == nullptr) != (law_b == nullptr)) return false;
-    if (law_a && with_measures(of_a, law_a->text) != with_measures(of_b, law_b->text)) return false;
+    if (!law_a) continue;
+    if (!same_points(of_a, of_b) || with_measures(of_a, law_a->text) != with_measures(of_b, law_b->text))
+      return false;
   }
   return true;
 }
