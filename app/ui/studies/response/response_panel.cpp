@@ -67,7 +67,7 @@ void range_row(Session& session, Ui& ui) {
   range_field(session, ui, "response/to", "The curve goes as far as this.", &ResponseChoice::to, each);
 }
 
-void quantity_choice(Session& session, Ui& ui) {
+void shown_quantity_choice(Session& session, Ui& ui) {
   const ResponseState& state = session.study.response;
   ImGui::SetNextItemWidth(row_label(ui, "Show", "What is drawn over it."));
   ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
@@ -373,7 +373,7 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
   }
   parameter_choice(session, ui);
   range_row(session, ui);
-  quantity_choice(session, ui);
+  shown_quantity_choice(session, ui);
   if (is_resonance(session)) {
     progress(session, ui, drawn);
     if (resonance_stopped(session)) {
