@@ -95,13 +95,43 @@ struct LawState {
     return numbers.slopes.empty() ? value(law, numbers, i).rate : numbers.slopes[i];
   }
 
-  // What the terms of a law may be in size: what it asks of points is a difference of places.
+  // What the terms of a law may be in size: what it asks of points is a difference of places; and terms may
+  // well cancel, and their sum vanish with what it asks for.
   double size(const DriveLaw& law, const DriveLawParameters& numbers) const {
-    double out = std::abs(value(law, numbers).value);
-    for (std::size_t i = 0; i < law.inputs.size(); ++i)
+    const double torque = std::abs(value(law, numbers).value);
+    double out = torque, terms = 0;
+    for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+      const double change = std::abs(slope(law, numbers, i));
       if (law.inputs[i].coordinate < 0)
-        out += std::abs(slope(law, numbers, i)) * law_input_size(system, p, law, numbers, i, q, k);
-    return out;
+        out += change * law_input_size(system, p, law, numbers, i, q, k);
+      else
+        terms += change * std::max(std::abs(input(law, numbers, i)), std::abs(start_of(law.inputs[i])));
+    }
+    if (!(terms > torque)) return out;
+    // A law that is steep here alone has no such terms.
+    return out + std::min(terms, std::max(elsewhere(law, numbers, false), elsewhere(law, numbers, true)));
+  }
+
+  // Where the search for a speed begins that is found; else zero.
+  double start_of(const DriveLaw::Input& asked) const {
+    if (!asked.rate()) return 0;
+    const auto l =
+        static_cast<std::size_t>(system.coordinates[static_cast<std::size_t>(asked.coordinate)].link);
+    return finds_speed(system.links[l]) ? p.links[l].speed : 0;
+  }
+
+  // The size of the law with coordinates and their rates at zero, or at what they begin with.
+  double elsewhere(const DriveLaw& law, const DriveLawParameters& numbers, bool at_start) const {
+    std::array<Dual, most_inputs> inputs;
+    for (std::size_t i = 0; i < law.inputs.size(); ++i) {
+      const DriveLaw::Input& asked = law.inputs[i];
+      if (asked.coordinate < 0)
+        inputs[i] = input(law, numbers, i);
+      else
+        inputs[i] = at_start ? start_of(asked) : 0;
+    }
+    const double out = std::abs(law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come).value);
+    return std::isfinite(out) ? out : 0;
   }
 
   // Calls add(row, column, derivative) for all inputs of a kind.
@@ -189,13 +219,24 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
     const LawState<double> state{system, p, q, k};
     force[link.v] += state.size(system.torques[i].torque, p.torques[i].torque) +
                      state.size(system.torques[i].load, p.torques[i].load);
-    if (finds_speed(link)) force[link.v] += std::abs(p.links[l].force[0].resistance(q[link.q]));
+    if (finds_speed(link)) {
+      const CoordinateForce& own = p.links[l].force[0];
+      force[link.v] += std::max(std::abs(own.resistance(q[link.q])),
+                                std::abs(own.resistance_slope(q[link.q]) * p.links[l].speed));
+    }
   }
 }
 
 double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
                     const Kinematics<double>& k) {
   return LawState<double>{system, p, q, k}.value(drive).value;
+}
+
+TorqueAndLoad torque_and_load(const System& system, const Parameters& p, std::size_t drive,
+                              const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  const LawState<double> state{system, p, q, k};
+  return {state.value(system.torques[drive].torque, p.torques[drive].torque).value,
+          state.value(system.torques[drive].load, p.torques[drive].load).value};
 }
 
 double law_input(const System& system, const Parameters& p, const DriveLaw& law,

@@ -289,11 +289,17 @@ struct MagnitudesPass {
           out.force[link.v] = link.type == LinkType::revolute ? out.link_moment[i] : out.link_force[i];
         if (lp.elastic && link.type != LinkType::spherical) {
           const CoordinateForce& c = lp.force[0];
-          out.force[link.v] += std::abs(c.friction) +
-                               std::abs(c.stiffness) * (std::abs(q[link.q]) + std::abs(c.free)) +
-                               (c.touched(q[link.q]) ? c.stop_stiffness : 0) *
-                                   (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
-          if (c.laws) out.force[link.v] += law_size(c.laws->spring, q[link.q] - c.laws->free, q[link.q]);
+          // Where it stands at zero, free of force, no more of it is known than this part of a radian or the
+          // reach.
+          const double least = 1e-6 * (link.type == LinkType::revolute ? 1 : p.length);
+          out.force[link.v] +=
+              std::abs(c.friction) +
+              std::abs(c.stiffness) * std::max(std::abs(q[link.q]) + std::abs(c.free), least) +
+              (c.touched(q[link.q]) ? c.stop_stiffness : 0) *
+                  (std::abs(q[link.q]) + std::max(std::abs(c.lower), std::abs(c.upper)));
+          if (c.laws)
+            out.force[link.v] +=
+                law_size(c.laws->spring, q[link.q] - c.laws->free, std::max(std::abs(q[link.q]), least));
         } else if (lp.elastic) {
           add_rotation_sizes(link, lp);
         }

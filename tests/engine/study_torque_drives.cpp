@@ -149,6 +149,52 @@ TEST_CASE("error against run time of Haug's governor with engine", "[torque]") {
   CHECK(c.motion[0].points[0].error > 10 * c.motion[1].points[0].error);
 }
 
+TEST_CASE("a balance whose terms all vanish is found like any other", "[torque]") {
+  // A cart by a law that names what rides on it, where no weight acts: what rides is free of force.
+  for (const double free : {0., 0.02})
+    for (const double start : {4., 5., -3.})
+      for (const std::string stiffness : {"200", "1", "1e6"}) {
+        CAPTURE(free, start, stiffness);
+        Mechanism m;
+        m.bodies = {body("cart", 2, {0, 0, 0}), body("rider", 0.5, {0, 0.2, 0})};
+        m.joints = {torque_driven(prismatic("p", "ground", "cart", {0, 0, 0}, {1, 0, 0}), start,
+                                  "6 N - 1.2 N s/m*rate(p) - 0.5 N/m*coordinate(s)"),
+                    dampened(sprung(prismatic("s", "cart", "rider", {0, 0.2, 0}, {0, 1, 0}),
+                                    std::stod(stiffness), free),
+                             5)};
+        validate(m);
+        const Solution s = Analysis(m).solve();
+        INFO(s.message);
+        REQUIRE(s.status == Status::converged);
+        CHECK(s.stable == true);
+        CHECK_THAT(speed(s, "p"), WithinRel((6 - 0.5 * free) / 1.2, 1e-14));
+        CHECK(std::abs(value(s, "s") - free) <= 1e-16);
+        CHECK(s.iterations < 10);
+      }
+  // Wheels on a rack, and rest as the answer.
+  Mechanism m;
+  m.bodies = {body("cart", 1, {0, 0, 0}), body("wheel", 1, {0, -0.2, 0}, {0.1, 0.1, 0.1}),
+              body("rider", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  Joint rack = gear("rack", "roll", "p", 0);
+  rack.kind = GearKind::rack;
+  rack.radii = {0.2, 1};
+  m.joints = {torque_driven(prismatic("p", "ground", "cart", {0, 0, 0}, {1, 0, 0}), 4,
+                            "6 N - 0.01 N/rad*coordinate(s)"),
+              dampened(sprung(revolute("s", "cart", "rider", {0, 0, 0}, {0, 1, 0}), 10), 0.1),
+              dampened(revolute("roll", "cart", "wheel", {0, -0.2, 0}, {0, 0, 1}), 0.2), rack};
+  validate(m);
+  const Solution rolling = Analysis(m).solve();
+  CHECK_THAT(speed(rolling, "p"), WithinRel(1.2, 1e-13));
+  CHECK_THAT(speed(rolling, "roll"), WithinRel(6, 1e-13));
+  Mechanism slow;
+  slow.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+  slow.joints = {torque_driven(revolute("a", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), 4,
+                               "table(rate(a), [-1e6, 1 N m], [1e6, -1 N m])")};
+  const Solution rest = Analysis(slow).solve();
+  REQUIRE(rest.status == Status::converged);
+  CHECK(std::abs(speed(rest, "a")) < 1e-9); // the table's ends round by that
+}
+
 TEST_CASE("Watt's height of the cone with the speed unknown", "[torque]") {
   Mechanism m = conical(0.5, 0, 5, 0.4);
   m.joints[0] = torque_driven(m.joints[0], 6, "20 N m * (0.9 - coordinate(swing))");
