@@ -99,6 +99,8 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
   const auto force = [&]() -> Vec3T<N> { // on the second body
     if (elastic.bearing >= 0) return -bearing().force;
     const SpringState<N> s = state();
+    const BasicPointSpringParameters<N>& spring = p.springs[static_cast<std::size_t>(elastic.spring)];
+    if (spring.without_length()) return spring.stiffness * (s.a - s.b); // they may meet
     return -s.tension * s.direction;
   };
   switch (quantity.result) {

@@ -40,7 +40,9 @@ S spring_force(Result result, const PointSpringElement& element, const PointSpri
   const SpringState<S> s = spring_state<S>(element, parameters, kinematics);
   if (result == Result::tension) return s.tension;
   if (result == Result::force) return abs(s.tension);
-  return -s.tension * s.direction[static_cast<int>(result) - static_cast<int>(Result::force_x)];
+  const int axis = static_cast<int>(result) - static_cast<int>(Result::force_x);
+  if (parameters.without_length()) return S(parameters.stiffness) * (s.a - s.b)[axis]; // they may meet
+  return -s.tension * s.direction[axis];
 }
 PointQuantityRates spring_force_rates(Result result, const PointSpringElement& element,
                                       const PointSpringParameters& parameters,
