@@ -278,7 +278,9 @@ bool put_law(Mechanism& mechanism, const std::string& address, const std::string
   const bool spring = key.ends_with("stiffness") && !key.starts_with("stop") && names(text, spring_variable);
   if (!spring && !(key.starts_with("damping") && names(text, damper_variable))) return false;
   const auto set = [&, &all = *formulas, &old = key](double& number, std::optional<double>& force,
-                                                     const std::string& law) {
+                                                     const std::string& law, bool angle) {
+    const auto check = spring ? check_spring_law : check_damper_law;
+    check(mechanism, {law, text}, angle, address);
     number = 0;
     force = 0;
     std::erase_if(all, [&](const Formula& each) { return each.key == old || each.key == law; });
@@ -289,18 +291,32 @@ bool put_law(Mechanism& mechanism, const std::string& address, const std::string
   };
   for (Force& each : mechanism.forces)
     if (&each.formulas == formulas && each.type == ForceType::spring)
-      return spring ? set(each.stiffness, each.force, "force")
-                    : set(each.damping, each.damping_force, "damping_force");
+      return spring ? set(each.stiffness, each.force, "force", false)
+                    : set(each.damping, each.damping_force, "damping_force", false);
   for (Joint& joint : mechanism.joints)
     for (std::size_t i = 0; &joint.formulas == formulas && i < joint.coordinates.size(); ++i) {
       Coordinate& c = joint.coordinates[i];
       const std::string of_spring = coordinate_key(joint, i, "spring");
+      const bool angle = is_angle(joint.type, static_cast<int>(i));
       if (spring && c.spring && key == of_spring + ".stiffness")
-        return set(c.spring->stiffness, c.spring->force, of_spring + ".force");
+        return set(c.spring->stiffness, c.spring->force, of_spring + ".force", angle);
       if (!spring && key == coordinate_key(joint, i, "damping"))
-        return set(c.damping, c.damping_force, coordinate_key(joint, i, "damping_force"));
+        return set(c.damping, c.damping_force, coordinate_key(joint, i, "damping_force"), angle);
     }
   return false;
+}
+
+// A torque or load that is a law of the state has no value that would tell that it means something.
+void check_drive_laws(const Mechanism& mechanism, const std::string& address) {
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; !joint.formulas.empty() && i < joint.coordinates.size(); ++i)
+      for (const char* which : {"torque", "load"}) {
+        const int coordinate = static_cast<int>(i);
+        if ("joints." + joint.name + "." + coordinate_key(joint, i, "drive") + "." + which != address)
+          continue;
+        if (const Formula* law = drive_law(mechanism, joint, coordinate, which))
+          check_drive_law(mechanism, *law, is_angle(joint.type, coordinate), address);
+      }
 }
 
 } // namespace
@@ -308,6 +324,7 @@ bool put_law(Mechanism& mechanism, const std::string& address, const std::string
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text) {
   all_or_nothing(mechanism, [&](Mechanism& next) {
     if (!put_law(next, address, text)) put(next, address, text);
+    check_drive_laws(next, address);
   });
 }
 

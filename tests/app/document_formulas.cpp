@@ -137,6 +137,26 @@ TEST_CASE("any number is given a name, and a name another") {
   }());
 }
 
+TEST_CASE("a law that means nothing is refused, and the one before stays") {
+  const Mechanism engine = load_scene(FLYBALL_ASSETS "/scenes/governor_engine.json");
+  const auto refused = [&](const char* address, const char* text) {
+    Mechanism m = engine;
+    const std::string why = refusal([&] { set_expression(m, address, text); });
+    CHECK(m == engine);
+    return why;
+  };
+  const char *torque = "joints.spin.drive.torque", *load = "joints.spin.drive.load";
+  CHECK(says(refused(torque, "2 N m s * rate(nothing)"), "nothing"));
+  CHECK(says(refused(torque, "2 N m s * rate(spin"), torque));
+  CHECK(says(refused(load, "7500 N * coordinate(spin)"), load));
+  CHECK(says(refused(load, "unknown * rate(spin)"), "unknown"));
+  CHECK(says(refused("joints.slide.spring.stiffness", "unknown * deflection"), "unknown"));
+  CHECK(says(refused("joints.slide.damping", "3 N * (rate"), "damping"));
+  Mechanism m = engine;
+  set_expression(m, load, "3 N m s * rate(spin)");
+  CHECK(formula_at(m, load) == "3 N m s * rate(spin)");
+}
+
 TEST_CASE("a law keeps acting without the parameter that it names, and keeps the point") {
   Mechanism engine = load_scene(FLYBALL_ASSETS "/scenes/governor_engine.json");
   remove_parameter(engine, "gain");

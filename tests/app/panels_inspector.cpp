@@ -311,6 +311,15 @@ TEST_CASE("a drive gives a torque where that is ticked, and its speed is found")
   hand.one_step([&] { hand.fill("inspector/drive/torque", "=7500 N*(coordinate(slide) - 0.15 m)"); });
   REQUIRE(hand.joint("spin").formulas.size() == 1);
   CHECK(find_mistakes(hand.mechanism()).empty());
+  for (const char* nonsense : {"=", "=2 N m s*rate(nothing)", "=2 N m s*rate(spin"}) {
+    CAPTURE(nonsense);
+    hand.fill("inspector/drive/torque", nonsense);
+    CHECK_FALSE(hand.app.ui.fields.typing.mistake.empty());
+    hand.key(key_escape);
+    hand.frames(2);
+    REQUIRE(hand.joint("spin").formulas.size() == 1);
+    CHECK(hand.joint("spin").formulas[0].text == "7500 N*(coordinate(slide) - 0.15 m)");
+  }
   hand.one_step([&] { hand.fill("inspector/drive/load", "25"); });
   set_mode(hand.app.session, Mode::explore);
   hand.frames(3);

@@ -72,6 +72,7 @@ void set_typed_expression(Mechanism& mechanism, const QuantityField& field, cons
 
 std::string mistake_in(const Session& session, const std::string& text, const QuantityField& field) {
   if (is_expression(field, text)) {
+    if (text.find_first_not_of(' ', 1) == std::string::npos) return "Expected an expression after the \"=\".";
     try {
       Mechanism copy = session.document.stored();
       set_typed_expression(copy, field, text.substr(1));
