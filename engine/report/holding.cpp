@@ -39,7 +39,8 @@ struct Compiled {
   Scaling scaling;
   VectorXd q;
 
-  explicit Compiled(const Mechanism& mechanism) : system(compile_for_drives(mechanism)) {
+  explicit Compiled(const Mechanism& mechanism) : Compiled(mechanism, compile_for_drives(mechanism)) {}
+  Compiled(const Mechanism& mechanism, System compiled) : system(std::move(compiled)) {
     bind(system, mechanism, parameters);
     set_scaling(system, parameters, scaling);
     drawn_configuration(system, parameters, q);
@@ -195,6 +196,20 @@ std::string at_found_speeds(const System& system, const VectorXd& q) {
   return out;
 }
 
+// How loops tie the coordinates that have friction, with what torques turn free to move as well.
+TiedMotions tied_motions_of(const Mechanism& mechanism, std::span<const CoordinateReference> frictions,
+                            const Compiled& free, const Coordinates& at, const std::atomic<bool>* cancel,
+                            Workspace& w) {
+  Compiled moving(mechanism, compile_for_motion(mechanism, free.system));
+  Coordinates places = at;
+  std::erase_if(places, [&](const auto& x) { return find_coordinate(mechanism, x.first).joint < 0; });
+  set_start(moving.system, moving.parameters, places, moving.q);
+  std::vector<int> entries;
+  for (const CoordinateReference& f : frictions)
+    entries.push_back(moving.link(moving.find(mechanism, f)).v);
+  return find_tied_motions(moving.problem(cancel), moving.q, entries, w);
+}
+
 Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
   Holding out;
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
@@ -216,10 +231,7 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   set_start(free.system, free.parameters, at, free.q);
 
   Workspace w;
-  std::vector<int> entries;
-  for (const CoordinateReference& f : frictions)
-    entries.push_back(free.link(free.find(mechanism, f)).v);
-  const TiedMotions which = find_tied_motions(free.problem(cancel), free.q, entries, w);
+  const TiedMotions which = tied_motions_of(mechanism, frictions, free, at, cancel, w);
 
   Mechanism locked = mechanism;
   for (const CoordinateReference& f : frictions) {

@@ -87,7 +87,10 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism, Begin be
     fastest = std::max(fastest, std::abs(p.links[l].speed) /
                                     (system.links[l].type == LinkType::revolute ? 1 : p.length));
   }
-  set_implied_rates(system, p);
+  if (system.nv <= few)
+    set_closing_rates(system, p);
+  else
+    set_implied_rates(system, p);
   Configuration<double> q;
   drawn_configuration(system, p, q);
   const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);

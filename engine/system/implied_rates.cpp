@@ -211,6 +211,13 @@ void set_implied_rates(const System& system, Parameters& p) {
       p.links[static_cast<std::size_t>(torque.link)].speed = (*rates)[link.v];
 }
 
+void set_closing_rates(const System& system, Parameters& p) {
+  if (system.torques.empty()) return;
+  const auto rates = closing_rates(system, p);
+  for (std::size_t l = 0; l < system.links.size() && rates; ++l)
+    if (const Link& link = system.links[l]; finds_speed(link)) p.links[l].speed = (*rates)[link.v];
+}
+
 void set_closures(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                   const Kinematics<double>& k, Eigen::VectorXd& phi) {
   for (std::size_t i = 0; i < system.cuts.size(); ++i) {

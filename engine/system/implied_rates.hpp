@@ -29,6 +29,11 @@ std::vector<CoordinateReference> slipping_turning(const System& system, const Pa
 // Where the search for implied rates begins: at those of the drawn pose.
 void set_implied_rates(const System& system, Parameters& parameters);
 
+// Puts all speeds that are found, those of drives by torque too, to rates with which the loops stay closed as
+// drawn, near where the search for them begins: what begins otherwise tells nothing of the loops. As they are
+// where there are none.
+void set_closing_rates(const System& system, Parameters& parameters);
+
 // Puts, for the loops whose equations are those of rates, how far they are open (m or 1) in the place of the
 // rates of that. Gears mesh wherever they are put together.
 void set_closures(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
