@@ -52,8 +52,8 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
   return false;
 }
 
-// Speeds that are to be found begin as drawn, or apart from each other: where two begin alike, as the wheels
-// of a differential, whatever turns by their difference seems to stand.
+// Speeds that are to be found begin as drawn, or apart from each other and from given ones: where two begin
+// alike, as the wheels of a differential, whatever turns by their difference seems to stand.
 enum class Begin { as_drawn, apart };
 
 Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) {
@@ -68,6 +68,18 @@ Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) 
     if (l.speed == 0) l.speed = l.gear_ratio;
     l.speed *= 1 + share;
     share *= 1.7; // no two of a few dozen alike, or twice one another
+  }
+  if (system.torques.empty()) return p;
+  std::vector<double> factors(system.drives.size(), 1);
+  for (std::size_t d = 0; d < system.drives.size(); ++d)
+    if (system.drives[d].motor == static_cast<int>(d)) {
+      factors[d] += share;
+      share *= 1.7;
+    }
+  for (const DrivenCoordinate& d : system.drives) {
+    if (finds_speed(system.links[static_cast<std::size_t>(d.link)])) continue;
+    LinkParameters& l = p.links[static_cast<std::size_t>(d.link)];
+    l.speed = (l.speed != 0 ? l.speed : l.gear_ratio) * factors[static_cast<std::size_t>(d.motor)];
   }
   return p;
 }
