@@ -121,6 +121,10 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   out["drive_torques"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)
     put(out["drive_torques"], d.joint, d.index, d.count, number_json(d.value));
+  for (const DriveTorque& d : s.drive_torques)
+    if (d.given)
+      put(out["drives_by_torque"], d.joint, d.index, d.count,
+          {{"torque", number_json(d.given->torque)}, {"load", number_json(d.given->load)}});
   if (!s.frictions.empty()) out["rests_on_friction"] = frictions_json(s.frictions);
   out["drive_torque_ranges"] = Json::object();
   for (const DriveTorque& d : s.drive_torques)

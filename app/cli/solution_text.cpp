@@ -155,6 +155,10 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
   for (const DriveTorque& d : s.drive_torques)
     out += fmt::format("  {:{}}  {:>22.9g} {}{}{}\n", shown_label(d), width, clean(d.value, load),
                        unit_of(d.angle), range_text(d), d.nonunique ? "  (not unique)" : "");
+  for (const DriveTorque& d : s.drive_torques)
+    if (d.given)
+      out += fmt::format("  {:{}}  {:>22} {:.9g} {} less a load of {:.9g} {}\n", shown_label(d), width,
+                         "gives", d.given->torque, unit_of(d.angle), d.given->load, unit_of(d.angle));
   if (!s.frictions.empty()) heading("friction that it rests on");
   for (const FrictionForce& f : s.frictions)
     out += fmt::format("  {:{}}  {:>22} of {:.9g} {}{}\n", shown_label(f), width,

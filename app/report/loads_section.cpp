@@ -34,13 +34,17 @@ Html drives(const Mechanism& m, const Solution& s) {
     const std::string_view unit = force_unit_of(d.angle);
     const double speed = drive_speed(m, s, d);
     Html range;
+    if (d.given)
+      range = "gives " + quantity(d.given->torque, unit, 9) + ", load " + quantity(d.given->load, unit, 9);
     if (d.varying && d.range)
       range = quantity(d.range->least, unit) + " to " + quantity(d.range->most, unit) + ", mean " +
               quantity(d.range->mean, unit);
     table.row({coordinate_label(d), quantity(speed, d.angle ? "rad/s" : "m/s"), quantity(d.value, unit, 9),
                quantity(d.value * speed, "W"), range, flags(d.varying, d.nonunique)});
   }
-  return heading_of("Drives") + paragraph_of("What each drive exerts, positive along its coordinate.") +
+  return heading_of("Drives") +
+         paragraph_of("What each drive exerts, positive along its coordinate; of one by torque what its "
+                      "torque exceeds its load by.") +
          table.html();
 }
 

@@ -2,6 +2,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,11 +38,17 @@ std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
       out.push_back({"value " + found->name, found->name, "Coordinates", std::string(found->unit), 1});
   for (const MeasureSolution& m : point.measures)
     out.push_back({"measure " + m.name, m.name, "Measures", m.unit, 1});
-  for (const DriveTorque& d : point.drive_torques)
+  for (const DriveTorque& d : point.drive_torques) {
+    const std::string name = coordinate_label(d), unit = d.angle ? "N m" : "N",
+                      kind = d.angle ? "torque" : "force";
+    if (d.given) {
+      out.push_back({"given " + name, "drive " + kind + " of " + name, "Drives", unit, 1});
+      out.push_back({"load " + name, "load on " + name, "Drives", unit, 1});
+    }
     if (!d.varying)
-      out.push_back({"drive " + coordinate_label(d),
-                     (d.angle ? "drive torque of " : "drive force of ") + coordinate_label(d), "Drives",
-                     d.angle ? "N m" : "N", 1});
+      out.push_back({"drive " + name, (d.given ? kind + " less load of " : "drive " + kind + " of ") + name,
+                     "Drives", unit, 1});
+  }
   for (const Reaction& r : point.reactions)
     out.push_back({"force " + r.joint, "force through " + r.joint, "Reactions", "N", 1});
   for (const Reaction& r : point.reactions)
@@ -64,7 +71,8 @@ void add_quantities(std::vector<ResponseQuantity>& to, const std::vector<Respons
 }
 
 bool needs_reactions(const std::string& key) {
-  return key.starts_with("drive ") || key.starts_with("force ") || key.starts_with("torque ");
+  constexpr std::array<std::string_view, 5> beginnings{"drive ", "given ", "load ", "force ", "torque "};
+  return std::ranges::any_of(beginnings, [&](std::string_view each) { return key.starts_with(each); });
 }
 
 std::vector<double> quantity_values(const ResponsePoint& point, const std::string& key) {
@@ -80,6 +88,12 @@ std::vector<double> quantity_values(const ResponsePoint& point, const std::strin
   } else if (const auto drive = after(key, "drive ")) {
     for (const DriveTorque& d : point.drive_torques)
       if (coordinate_label(d) == *drive) return {d.value};
+  } else if (const auto given = after(key, "given ")) {
+    for (const DriveTorque& d : point.drive_torques)
+      if (d.given && coordinate_label(d) == *given) return {d.given->torque};
+  } else if (const auto load = after(key, "load ")) {
+    for (const DriveTorque& d : point.drive_torques)
+      if (d.given && coordinate_label(d) == *load) return {d.given->load};
   } else if (const auto force = after(key, "force ")) {
     for (const Reaction& r : point.reactions)
       if (r.joint == *force) return {r.force.norm()};

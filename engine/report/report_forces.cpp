@@ -2,6 +2,7 @@
 
 #include "engine/report/phase_range.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/drive_torque.hpp"
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>
@@ -210,7 +211,7 @@ class ForceReport {
     }
   }
 
-  void drive_torques(Workspace& w, ReportedForces& out) const {
+  void drive_torques(const Kinematics<double>& drawn, Workspace& w, ReportedForces& out) const {
     std::vector<int> varying;
     for (std::size_t d = 0; d < system_.drives.size(); ++d) {
       if (system_.drives[d].motor != static_cast<int>(d)) continue;
@@ -227,6 +228,7 @@ class ForceReport {
       // coordinate keeps its sign.
       torque.value = drawn_.forces.drives[d];
       torque.nonunique = touched_.drives[d];
+      torque.given = given(system_.drives[d].link, drawn);
       for (const Snapshot& s : others_)
         if (std::abs(s.forces.drives[d] - torque.value) > torque_tolerance(torque.angle))
           torque.varying = true;
@@ -241,6 +243,17 @@ class ForceReport {
   }
 
  private:
+  // Nothing where the drive on this link gives no torque.
+  std::optional<DriveTorque::Given> given(int link, const Kinematics<double>& drawn) const {
+    for (std::size_t i = 0; i < system_.torques.size(); ++i) {
+      const DriveTorqueElement& element = system_.torques[i];
+      if (element.link != link || element.keeps_momentum || element.implied) continue;
+      const TorqueAndLoad parts = torque_and_load(system_, p_, i, q_, drawn);
+      return DriveTorque::Given{parts.torque, parts.load};
+    }
+    return std::nullopt;
+  }
+
   bool varies(const JointWrench& a, const Frames& fa, const JointWrench& b, const Frames& fb) const {
     const double least = std::max(varying_reaction * size_, rounding * loads_);
     const auto differs = [&](const Mat3& ra, const Mat3& rb) {
@@ -307,7 +320,7 @@ ReportedForces report_forces(const Mechanism& mechanism, const Problem& problem,
   report.reactions(out);
   report.bearings(out);
   report.gears(drawn, out);
-  report.drive_torques(w, out);
+  report.drive_torques(drawn, w, out);
   return out;
 }
 

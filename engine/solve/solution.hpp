@@ -113,6 +113,11 @@ struct DriveTorque {
   // than three drives of which no two return together.
   std::optional<PhaseRange> range{};
   bool nonunique = false; // loops are redundant, and share it among several drives: the minimum-norm share
+  // Of a drive by torque, in the state: what it gives, and the load against it, whose difference is `value`.
+  struct Given {
+    double torque = 0, load = 0;
+  };
+  std::optional<Given> given{};
 };
 
 // Of a joint with dry friction that a state rests on: there is none without it.

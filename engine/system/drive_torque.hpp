@@ -28,6 +28,13 @@ void add_drive_torque_sizes(const System& system, const Parameters& parameters, 
 double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
+// The same by themselves.
+struct TorqueAndLoad {
+  double torque = 0, load = 0;
+};
+TorqueAndLoad torque_and_load(const System& system, const Parameters& parameters, std::size_t drive,
+                              const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
+
 // What the law of a torque or load is given for one of its inputs, what it may be in size, and whether it
 // stands where that has no slope: a distance or the speed of a point of zero, an angle of 0 or pi, the size
 // of a spring's force that vanishes, what a spring exerts whose points meet.

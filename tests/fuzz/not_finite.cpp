@@ -33,7 +33,9 @@ std::optional<std::string> not_finite(const Solution& s) {
   if (s.eigenvalues)
     if (!is_finite(*s.eigenvalues)) return "eigenvalue";
   for (const DriveTorque& torque : s.drive_torques)
-    if (!std::isfinite(torque.value)) return "drive torque of " + torque.joint;
+    if (!std::isfinite(torque.value) ||
+        (torque.given && (!std::isfinite(torque.given->torque) || !std::isfinite(torque.given->load))))
+      return "drive torque of " + torque.joint;
   for (const Reaction& reaction : s.reactions)
     if (!reaction.force.allFinite() || !reaction.torque.allFinite()) return "reaction of " + reaction.joint;
   for (const Pose& pose : s.poses)

@@ -6,6 +6,8 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/damped.hpp"
+#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -82,14 +84,37 @@ struct CoordinateRows {
 
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
               const char* help, Least least = Least::any, const std::function<void()>& reset = {}) const {
+    number(label, address, value, unit, help, {}, least, reset);
+  }
+  // `various`: see QuantityField.
+  void number(const std::string& label, const std::string& address, double value, const std::string& unit,
+              const char* help, const std::string& various, Least least = Least::any,
+              const std::function<void()>& reset = {}) const {
     quantity_row(session, ui, label,
                  {.name = widget(address),
                   .value = value,
                   .unit = unit,
                   .help = help,
                   .least = least,
-                  .address = "joints." + joint.name + "." + address},
+                  .address = "joints." + joint.name + "." + address,
+                  .various = various},
                  reset);
+  }
+  // Of an expression of the state the value that it has there, where that is known; else the expression
+  // stands in its place.
+  void number_or_law(const std::string& label, const std::string& address, const Formula* law,
+                     const std::optional<double>& in_state, double value, const std::string& unit,
+                     const char* help) const {
+    number(label, address, law && in_state ? *in_state : value, unit, help,
+           law && !in_state ? law->text : std::string());
+  }
+
+  // What the drive gives in the steady state that is shown.
+  std::optional<DriveTorque::Given> given() const {
+    if (!converged(session)) return std::nullopt;
+    for (const DriveTorque& each : session.answer.solution.drive_torques)
+      if (each.joint == joint.name && each.index == i) return each.given;
+    return std::nullopt;
   }
 
   // Always in its place, so that nothing below it moves with what is ticked there or found meanwhile.
@@ -158,10 +183,17 @@ struct CoordinateRows {
     if (!drive.torque) left_to_itself(drive.keeps == DriveKeeps::momentum);
     const std::string unit = angle() ? "N m" : "N";
     if (drive.torque) {
-      number(angle() ? "Torque" : "Force", key("drive") + ".torque", *drive.torque, unit,
-             "What the drive gives along the coordinate: a number, or an expression of the state such as "
-             "=7500 N*(coordinate(slide) - 0.15 m) or =20 N m - 2 N m s*rate(spin).");
-      number("Load", key("drive") + ".load", drive.load.value_or(0), unit, "What acts against it; likewise.");
+      const std::optional<DriveTorque::Given> now = given();
+      number_or_law(
+          angle() ? "Torque" : "Force", key("drive") + ".torque",
+          drive_law(session.mechanism(), joint, i, "torque"), now ? std::optional(now->torque) : std::nullopt,
+          *drive.torque, unit,
+          "What the drive gives along the coordinate: a number, or an expression of the state such as "
+          "=7500 N*(coordinate(slide) - 0.15 m) or =20 N m - 2 N m s*rate(spin), of which the value in "
+          "the steady state is shown.");
+      number_or_law("Load", key("drive") + ".load", drive_law(session.mechanism(), joint, i, "load"),
+                    now ? std::optional(now->load) : std::nullopt, drive.load.value_or(0), unit,
+                    "What acts against it; likewise.");
     }
     number(drive.torque ? "Search from" : "Speed", key("drive") + ".speed", drive.speed, value_unit() + "/s",
            drive.torque ? "Where the search for the steady speed begins."
@@ -224,10 +256,11 @@ struct CoordinateRows {
     if (!coordinate().spring) return;
     const CoordinateSpring& spring = *coordinate().spring;
     if (spring.force)
-      number(angle() ? "Spring torque" : "Spring force", key("spring") + ".force", *spring.force,
-             force_unit(),
-             "Against the deflection: a number, or an expression of it such as =2000 N/m*deflection + 1e6 "
-             "N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
+      number_or_law(
+          angle() ? "Spring torque" : "Spring force", key("spring") + ".force", spring_law(joint, i), {},
+          *spring.force, force_unit(),
+          "Against the deflection: a number, or an expression of it such as =2000 N/m*deflection + 1e6 "
+          "N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).");
     else
       number("Stiffness", key("spring") + ".stiffness", coordinate().spring->stiffness, stiffness_unit(),
              angle()
@@ -257,10 +290,11 @@ struct CoordinateRows {
 
   void damper_numbers() const {
     if (coordinate().damping_force)
-      number(angle() ? "Damping torque" : "Damping force", key("damping_force"), *coordinate().damping_force,
-             force_unit(),
-             "Against the rate, an expression of it such as =40 N*tanh(rate/(0.1 m/s)) or =table(rate, "
-             "[-1 m/s, -30 N], [0 m/s, 0 N], [1 m/s, 90 N]).");
+      number_or_law(
+          angle() ? "Damping torque" : "Damping force", key("damping_force"), damper_law(joint, i), {},
+          *coordinate().damping_force, force_unit(),
+          "Against the rate, an expression of it such as =40 N*tanh(rate/(0.1 m/s)) or =table(rate, "
+          "[-1 m/s, -30 N], [0 m/s, 0 N], [1 m/s, 90 N]).");
     if (coordinate().damping != 0)
       number("Damping", key("damping"), coordinate().damping, damping_unit(),
              angle() ? "Torque by the speed of the angle. An expression of the rate is the whole torque."

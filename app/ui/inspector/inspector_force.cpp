@@ -3,6 +3,7 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 
 #include "engine/mechanism/fields.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -16,6 +17,11 @@ constexpr double usual_stiffness = 1000, usual_damping = 10; // N/m, N s/m; wher
 
 std::string address_of(const Force& force, const std::string& key) {
   return "forces." + force.name + "." + key;
+}
+
+// A law stands in its number's place.
+std::string law_text(const Formula* law) {
+  return law ? law->text : std::string();
 }
 
 void spring_rows(Session& session, Ui& ui, const Force& force) {
@@ -33,7 +39,8 @@ void spring_rows(Session& session, Ui& ui, const Force& force) {
                       "That pulls its ends together: a number, or an expression of the deflection such as "
                       "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
                       "[5 mm, 40 N]).",
-                  .address = address_of(force, "force")},
+                  .address = address_of(force, "force"),
+                  .various = law_text(spring_law(force))},
                  [&session, &ui, name = force.name] {
                    edit_force(session, ui, "Stiffness of " + name, name, [](Force& same) {
                      same.force.reset();
@@ -71,7 +78,8 @@ void spring_rows(Session& session, Ui& ui, const Force& force) {
                          .help = "Against the rate of its length, an expression of it such as =40 "
                                  "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
                                  "m/s, 90 N]).",
-                         .address = address_of(force, "damping_force")},
+                         .address = address_of(force, "damping_force"),
+                         .various = law_text(damper_law(force))},
                         [&session, &ui, name = force.name] {
                           edit_force(session, ui, "Damping of " + name, name, [](Force& same) {
                             same.damping_force.reset();

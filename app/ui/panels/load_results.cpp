@@ -31,28 +31,40 @@ void drive_torques(const Session& session, Ui& ui, ResultSections& open) {
   ImGui::Dummy({0, 2 * ui.scale});
   if (!section(ui, "results/torques", "Drive torques", open.torques)) return;
   double largest = 0;
+  enum class Part { whole, range, torque, load }; // of the last three one a line below the first
   struct Row {
     const DriveTorque* torque;
-    bool range; // least and greatest, below the mean
+    Part part;
   };
   std::vector<Row> rows;
   for (const DriveTorque& t : torques) {
-    largest = std::max({largest, std::abs(t.value), t.range ? t.range->most - t.range->least : 0});
-    rows.push_back({&t, false});
-    if (t.range) rows.push_back({&t, true});
+    largest = std::max({largest, std::abs(t.value), t.range ? t.range->most - t.range->least : 0,
+                        t.given ? std::max(std::abs(t.given->torque), std::abs(t.given->load)) : 0});
+    if (t.given) {
+      rows.push_back({&t, Part::torque});
+      rows.push_back({&t, Part::load});
+    }
+    rows.push_back({&t, Part::whole});
+    if (t.range) rows.push_back({&t, Part::range});
   }
   visible_rows(rows.size(), [&](std::size_t i) {
     const DriveTorque& t = *rows[i].torque;
     const char* unit = t.angle ? "N m" : "N";
     const auto text = [&](double value) { return force_text(value, largest, session.options.numbers); };
-    if (rows[i].range)
+    if (rows[i].part == Part::torque)
+      return row(ui, coordinate_label(t), text(t.given->torque), unit,
+                 "What the drive gives, positive along its coordinate.");
+    if (rows[i].part == Part::load)
+      return row(ui, "   load", text(t.given->load), unit, "What acts against it.");
+    if (rows[i].part == Part::range)
       return row(ui, "   least … greatest", text(t.range->least) + " … " + text(t.range->most), unit,
                  "Over all phases of the drives.");
-    std::string help = "By the drive, positive along its coordinate.";
+    std::string help = t.given ? "The drive's torque less its load: what turning takes."
+                               : "By the drive, positive along its coordinate.";
     if (t.varying)
       help += "\nChanges as the drives turn; at the drawn phase " + text(t.value) + " " + unit + ".";
     if (t.nonunique) help += "\nThe loops share it among several drives: the smallest that do it.";
-    const std::string name = coordinate_label(t);
+    const std::string name = t.given ? "   torque less load" : coordinate_label(t);
     row(ui,
         !t.varying ? name
         : t.range  ? name + " (mean)"

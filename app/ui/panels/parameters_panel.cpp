@@ -213,6 +213,13 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   ImGui::PopID();
 }
 
+bool finds_speeds(const Mechanism& mechanism) {
+  return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates,
+                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
+  });
+}
+
 bool sliders_moved(const Session& session) {
   return std::ranges::any_of(session.parameters, [](const ParameterControl& control) {
     return control.value != control.file_value;
@@ -265,7 +272,8 @@ float ParametersPanel::draw(Session& session, Ui& ui, const PanelRect& rect) {
     draw_group(session, ui, ParameterGroup::drives, "parameters/drives", speeds ? "Drive speeds" : "Drives",
                drives_);
     draw_group(session, ui, ParameterGroup::springs, "parameters/springs", "Spring constants", springs_);
-    if (session.motion.on) // dampers move no steady state
+    // Dampers move no steady state at prescribed speeds, but whether one that is found hunts hangs on them.
+    if (session.motion.on || finds_speeds(session.mechanism()))
       draw_group(session, ui, ParameterGroup::dampers, "parameters/dampers", "Dampers", dampers_);
     ImGui::PopStyleVar();
     if (text_button(ui, "parameters/restart", "Restart from drawn pose")) solve_from_drawn_pose(session);

@@ -56,6 +56,15 @@ void range_row(Session& session, Ui& ui, const RangeWords& words, const Periodic
   ImGui::Dummy({0, 0});
 }
 
+// Whether the drive gives a torque, of which a part is its load's.
+bool by_torque(const Mechanism& m, const PeriodicTorque& t) {
+  const int joint = joint_index(m, t.joint);
+  if (joint < 0) return false;
+  const auto& coordinates = m.joints[static_cast<std::size_t>(joint)].coordinates;
+  const auto i = static_cast<std::size_t>(t.index);
+  return i < coordinates.size() && coordinates[i].drive && coordinates[i].drive->torque;
+}
+
 std::string advance_words(const PeriodicCoordinate& c, const ShownUnit& unit) {
   if (!c.goes_on()) return "";
   return "less " +
@@ -92,7 +101,8 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
   for (const PeriodicMeasure& m : state.measures)
     range(m.name, m.range, shown_unit(m.unit, session.units));
   for (const PeriodicTorque& t : state.drive_torques)
-    range("Drive of " + coordinate_label(t), t.range, shown_unit(t.angle ? "N m" : "N", session.units));
+    range("Drive of " + coordinate_label(t) + (by_torque(session.mechanism(), t) ? " less load" : ""),
+          t.range, shown_unit(t.angle ? "N m" : "N", session.units));
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);

@@ -39,9 +39,10 @@ struct ResponseView {
     bool pulled = false; // the marker, in this moment
     bool operator==(const Of&) const = default;
   } of;
-  ResponseChoice fitted;     // what was chosen when all of the plot was last in view
-  std::uint64_t gesture = 0; // of the hand, when the plot's range of y was last fitted
-  double waiting_since = -1; // s, ImGui's clock; negative: nothing runs
+  ResponseChoice fitted;             // what was chosen when all of the plot was last in view
+  std::uint64_t gesture = 0;         // of the hand, when the plot's range of y was last fitted
+  double waiting_since = -1;         // s, ImGui's clock; negative: nothing runs
+  const void* answer_seen = nullptr; // the last of *Find*'s that was brought into sight
 };
 
 struct MapView {

@@ -72,6 +72,7 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
     typing.wants_focus = true;
   } else {
     leave(session, ui, field.at_once);
+    if (entered) ui.keyboard.focus = {}; // done: keys are commands again
   }
 }
 

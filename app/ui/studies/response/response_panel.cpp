@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace flyball {
 
@@ -175,8 +176,8 @@ void ribbon_choice(Session& session, Ui& ui) {
     paragraph(problem, colors_of(ui).bad);
 }
 
-// A bar for what takes long.
-void progress(Session& session, Ui& ui, ResponseView& drawn) {
+// A bar for what takes long; false where there is none.
+bool progress(Session& session, Ui& ui, ResponseView& drawn) {
   ResponseState& state = session.study.response;
   ResponseCurve& curve = state.curve;
   auto& design = state.design.answer;
@@ -185,10 +186,10 @@ void progress(Session& session, Ui& ui, ResponseView& drawn) {
   double& waiting_since = drawn.waiting_since;
   if (!curve.running() && !design.running() && !band.running() && !resonance.running()) {
     waiting_since = -1;
-    return;
+    return false;
   }
   if (waiting_since < 0) waiting_since = ImGui::GetTime();
-  if (ImGui::GetTime() - waiting_since < curve_patience) return;
+  if (ImGui::GetTime() - waiting_since < curve_patience) return false;
   const float room = ImGui::GetContentRegionAvail().x - 70 * ui.scale;
   const auto bar = [&](const auto& study) {
     task_bar(ui, "response/progress", study.progress(), study.seconds(), room);
@@ -208,6 +209,14 @@ void progress(Session& session, Ui& ui, ResponseView& drawn) {
     design.stop();
     band.stop();
   }
+  return true;
+}
+
+// How far the search is, and else what was found: in one place, so that nothing below moves as they change.
+void search_line(Session& session, Ui& ui, ResponseView& drawn) {
+  const float below = ImGui::GetCursorPosY() + ImGui::GetFrameHeightWithSpacing();
+  if (!progress(session, ui, drawn)) found(session, ui);
+  if (ImGui::GetCursorPosY() < below) ImGui::SetCursorPosY(below);
 }
 
 void branch_note(const Session& session, Ui& ui) {
@@ -217,24 +226,28 @@ void branch_note(const Session& session, Ui& ui) {
   help_on_hover("\"Restart from drawn pose\" leaves it, and so does undoing.");
 }
 
-// The coordinate of the answer that design mode asks for.
-const CoordinateSolution* design_coordinate(const Session& session) {
-  for (const CoordinateSolution& c : session.answer.summary.coordinates)
-    if (!c.driven && !c.dependent && coordinate_label(c) == session.study.response.design.coordinate)
-      return &c;
-  return nullptr;
+// With the speeds of the steady state where there is one.
+const std::vector<CoordinateSolution>& known_coordinates(const Session& session) {
+  return converged(session) ? session.answer.solution.coordinates : session.answer.summary.coordinates;
 }
 
-// The unit of what design mode asks for: of a coordinate, else of a measure.
+// The coordinate, or the speed that is found, of this name.
+std::optional<FoundNumber> number_named(const std::vector<CoordinateSolution>& all, const std::string& name) {
+  for (const CoordinateSolution& c : all)
+    if (const auto found = found_number(c); found && !c.dependent && found->name == name) return found;
+  return std::nullopt;
+}
+
+// The unit of what design mode asks for: of a coordinate or speed, else of a measure.
 std::string design_unit(const Session& session) {
-  if (const CoordinateSolution* c = design_coordinate(session)) return c->angle ? "rad" : "m";
+  if (const auto found = number_named(known_coordinates(session), session.study.response.design.coordinate))
+    return std::string(found->unit);
   const int i = measure_index(session.mechanism(), session.study.response.design.coordinate);
   return i < 0 ? "m" : session.mechanism().measures[static_cast<std::size_t>(i)].unit;
 }
 
 double present_value(const Session& session, const std::string& name) {
-  for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (coordinate_label(c) == name) return c.value;
+  if (const auto found = number_named(session.answer.solution.coordinates, name)) return found->value;
   for (const MeasureSolution& m : session.answer.solution.measures)
     if (m.name == name) return m.value.value_or(0);
   return 0;
@@ -246,7 +259,8 @@ void choose_design(Session& session, const std::string& name) {
   design.answer.found.reset();
   const ShownUnit unit = shown_unit(design_unit(session), session.units);
   const double shown = unit.shown(present_value(session, name));
-  if (!design_coordinate(session)) { // three digits
+  const auto found = number_named(known_coordinates(session), name);
+  if (!found || found->unit.ends_with("/s")) { // three digits
     design.value = unit.si(std::strtod(rounded_text(shown, 3).c_str(), nullptr));
     return;
   }
@@ -304,6 +318,12 @@ void solution_row(Session& session, Ui& ui, const DesignAnswer& answer, const De
   if (clicked) later(ui, [&session, solution = s] { go_to_design(session, solution); });
 }
 
+// Into sight where it lies below, once for each answer.
+void reveal_answer(const void* answer, ResponseView& drawn) {
+  if (std::exchange(drawn.answer_seen, answer) == answer || !answer) return;
+  if (ImGui::GetCursorPosY() - ImGui::GetScrollY() > ImGui::GetWindowHeight()) ImGui::SetScrollHereY(1);
+}
+
 void design_answer(Session& session, Ui& ui) {
   const ResponseDesign& design = session.study.response.design;
   const UiColors& colors = colors_of(ui);
@@ -323,12 +343,12 @@ void design_answer(Session& session, Ui& ui) {
         answer.message.c_str());
 }
 
-void design_rows(Session& session, Ui& ui) {
+void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
   const ParameterControl* control = response_control(session);
   if (!control) return;
   std::vector<std::string> names;
-  for (const CoordinateSolution& c : session.answer.summary.coordinates)
-    if (!c.driven && !c.dependent) names.push_back(coordinate_label(c));
+  for (const CoordinateSolution& c : known_coordinates(session))
+    if (const auto found = found_number(c); found && !c.dependent) names.push_back(found->name);
   const std::string first = names.empty() ? "" : names.back();
   for (const NamedMeasure& measure : session.mechanism().measures)
     names.push_back(measure.name);
@@ -341,9 +361,10 @@ void design_rows(Session& session, Ui& ui) {
     choose_design(session, shown == names.end() ? (first.empty() ? names.front() : first) : *shown);
   }
   heading(ui, ("Find the " + parameter_phrase(control->address)).c_str());
-  help_on_hover("Solves for the number so that a coordinate or measure has the value that is asked for.");
+  help_on_hover("Solves for the number so that a coordinate, a speed that is found or a measure has the "
+                "value that is asked for.");
   if (const auto chosen = name_choice_row(ui, "response/design", "so that", names, design.coordinate,
-                                          "The coordinate or measure that is wanted somewhere."))
+                                          "The coordinate, speed or measure that is wanted somewhere."))
     choose_design(session, *chosen);
   const float width = row_label(ui, "is", "Where it is wanted.");
   const float button = 62 * ui.scale, gap = 6 * ui.scale;
@@ -364,6 +385,7 @@ void design_rows(Session& session, Ui& ui) {
   if (text_button(ui, "response/find", "Find", true)) find_design(session);
   ImGui::EndDisabled();
   design_answer(session, ui);
+  reveal_answer(design.answer.found.get(), drawn);
 }
 
 void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
@@ -389,10 +411,9 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
     session.study.response.choice.all = !session.study.response.choice.all;
   band_choice(session, ui);
   ribbon_choice(session, ui);
-  progress(session, ui, drawn);
-  found(session, ui);
+  search_line(session, ui, drawn);
   branch_note(session, ui);
-  design_rows(session, ui);
+  design_rows(session, ui, drawn);
 }
 
 } // namespace
