@@ -106,7 +106,7 @@ class Searcher {
       known = list_.states.size();
       vain = 0;
     }
-    while (deflated_from_ < list_.states.size() && !ended())
+    while (deflated_from_ < list_.states.size() && list_.states.size() < most && !ended())
       deflate_from(Eigen::VectorXd(list_.states[deflated_from_++].q), 8);
   }
 
