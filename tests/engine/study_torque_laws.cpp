@@ -272,7 +272,7 @@ TEST_CASE("a torque may name measures of coordinates and rates") {
   CHECK_THAT(mistake("1 m*reaction(slide)/(1 N)", "gain*N"),
              ContainsSubstring("M asks for reaction(): a torque or load is one of"));
   CHECK_THAT(mistake("N", "gain*M"), ContainsSubstring("circle of measures"));
-  CHECK_THAT(mistake("coordinate(slide)", "1 m*spring(slide)"),
+  CHECK_THAT(mistake("coordinate(slide)", "1 m*reaction(slide)"),
              ContainsSubstring("is one of coordinates, rates"));
 }
 
