@@ -290,6 +290,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   out.status = steady.holds                               ? Status::converged
                : steady.found.status == Status::converged ? Status::no_steady_state
                                                           : steady.found.status;
+  if (!steady.holds && !options.explain) return out;
   if (!steady.holds) {
     const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
     out.message = failure_message(input, steady.elsewhere());

@@ -78,6 +78,7 @@ class Attempt {
     SolveOptions inner = options;
     inner.friction = inner.warm = false;
     inner.details = true; // what holding takes
+    inner.explain = false;
     std::erase_if(inner.start, [&](const auto& named) { return plays(named.first); });
     out.solution = out.analysis.solve(inner);
     if (out.solution.status != Status::converged || !tell(out)) return std::nullopt;
@@ -362,6 +363,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
   const bool all_hold =
       std::ranges::all_of(holding.independent, [&](std::size_t i) { return parts[i] == Part::holds; });
   if (all_hold) return hold_as_drawn(mechanism, frictions, parts, holding, inner);
+  inner.search = 0;
   auto state = Attempt(mechanism, frictions, parts).solve(inner);
   if (state)
     add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) + " as drawn.");
