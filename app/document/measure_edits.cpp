@@ -2,9 +2,13 @@
 
 #include "app/document/formula_edits.hpp"
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace flyball {
 namespace {
@@ -42,7 +46,68 @@ void replace_in_uses(Mechanism& mechanism, const std::string& name, const std::s
         formula.text = renamed_in(formula.text, name, text);
 }
 
+// Of a parameter, a measure or a point's coordinate.
+ValueDimension dimension_of_name(const Mechanism& mechanism, const std::string& name) {
+  const auto of_unit = [](const std::string& unit) {
+    return ValueDimension{parse_unit(unit).value_or(Unit{}).dimension.without_angle(), false};
+  };
+  if (const int i = parameter_index(mechanism, name); i >= 0)
+    return of_unit(mechanism.parameters[static_cast<std::size_t>(i)].unit);
+  if (const int i = measure_index(mechanism, name); i >= 0)
+    return of_unit(mechanism.measures[static_cast<std::size_t>(i)].unit);
+  return of_unit("m");
+}
+
+// "N m", "kg m^3/s^3".
+std::string si_unit(const Dimension& dimension) {
+  if (std::string usual = dimension_text(dimension); parse_unit(usual)) return usual;
+  std::string text;
+  const auto add = [&](std::string_view symbol, double exponent, bool below) {
+    if (exponent == 0 || (exponent < 0) != below) return;
+    const char* joint = !below                   ? (text.empty() ? "" : " ")
+                        : text.empty()           ? "1/"
+                        : text.starts_with("1/") ? " "
+                                                 : "/";
+    text += joint + std::string(symbol);
+    if (std::abs(exponent) != 1) text += "^" + rounded_text(std::abs(exponent), 6);
+  };
+  for (const bool below : {false, true}) {
+    add("kg", dimension.mass, below);
+    add("m", dimension.length, below);
+    add("s", dimension.time, below);
+  }
+  return text;
+}
+
 } // namespace
+
+NamedMeasure with_expression(const Mechanism& mechanism, NamedMeasure measure, const std::string& text) {
+  measure.text = text;
+  try {
+    const Expression expression(text, Expression::Results::allowed);
+    std::vector<ValueDimension> names, results;
+    for (const std::string& name : expression.names())
+      names.push_back(dimension_of_name(mechanism, name));
+    for (const ResultCall& call : expression.results()) {
+      const std::string_view unit = result_unit(find_quantity(mechanism, call));
+      results.push_back({parse_unit(unit).value_or(Unit{}).dimension.without_angle(), false});
+    }
+    const ValueDimension found = expression.dimension(names, results);
+    const auto fits = [&](std::string_view unit) {
+      const std::optional<Unit> read = parse_unit(unit);
+      return read && read->dimension.without_angle() == found.dimension;
+    };
+    if (found.plain || fits(measure.unit)) return measure;
+    const std::string first(expression.results().empty() ? "" : result_unit(mechanism, text));
+    for (const std::string& unit : {first, std::string(), si_unit(found.dimension)})
+      if (fits(unit)) {
+        measure.unit = unit;
+        break;
+      }
+  } catch (const ExpressionError&) { // told where it is set
+  }
+  return measure;
+}
 
 void set_measure(Mechanism& mechanism, const std::string& name, const NamedMeasure& measure) {
   Mechanism next = mechanism;

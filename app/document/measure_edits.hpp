@@ -11,6 +11,9 @@ namespace flyball {
 // What `measure` would have wrong in the mechanism, in place of the one of this name (empty: beside all);
 // empty where nothing is.
 std::string measure_mistake(const Mechanism& mechanism, const std::string& name, const NamedMeasure& measure);
+// The same measure with another expression. Where this is of another dimension its unit goes along: that of
+// the first result, or the SI's.
+NamedMeasure with_expression(const Mechanism& mechanism, NamedMeasure measure, const std::string& text);
 // Puts it in that place; where its name changes, other measures follow.
 void set_measure(Mechanism& mechanism, const std::string& name, const NamedMeasure& measure);
 // Where others use it they have its expression instead.

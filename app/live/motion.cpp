@@ -3,6 +3,7 @@
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -20,11 +21,32 @@ constexpr double slice = 0.02; // s of computing between looks at what else is w
 constexpr double apart = 0.04; // s between two pieces of news, at least
 constexpr double share = 10;   // copying the run must take no more than one part in so many of the time
 
+constexpr std::size_t least_samples = 5000; // whatever memory they take
+
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 } // namespace
+
+std::size_t memory_of(const Run& run) {
+  std::size_t bytes = 0;
+  const auto add = [&](const auto&... lists) { ((bytes += lists.size() * sizeof(lists[0])), ...); };
+  add(run.time, run.states, run.energy.kinetic, run.energy.potential, run.energy.jacobi,
+      run.energy.dissipated, run.energy.delivered, run.energy.applied, run.energy.balance, run.stops,
+      run.frictions);
+  for (const CoordinateTrack& track : run.coordinates)
+    add(track.value, track.rate);
+  for (const DriveTrack& track : run.drives)
+    add(track.torque);
+  for (const ReactionTrack& track : run.reactions)
+    add(track.force, track.torque);
+  for (const PointTrack& track : run.points)
+    add(track.position, track.velocity, track.acceleration);
+  for (const MeasureTrack& track : run.measures)
+    add(track.value);
+  return bytes;
+}
 
 Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context) {
   // The simulator looks at the flag by itself, and keeps what it has; nothing is thrown away by others.
@@ -57,6 +79,12 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
       until = std::min(end, until + step);
       well = simulator.advance(until, until == end);
       const double took = since(started);
+      const std::size_t samples = simulator.run().time.size() + last;
+      if (well && until < end && samples > least_samples &&
+          memory_of(simulator.run()) / simulator.run().time.size() * samples > request.most_memory)
+        return {so_far(), true,
+                "The run is kept up to " + rounded_text(until, 6) +
+                    " s: more of it would take too much memory. Keep its last state to start from there."};
       if (options.rate > 0) step *= std::clamp(slice / std::max(took, 1e-6), 0.5, 2.);
       if (well && until < end && since(told) > wait) {
         const auto copying = Clock::now();

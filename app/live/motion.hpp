@@ -12,6 +12,9 @@ struct MotionRequest {
   // To go on from its moment `time` (s), up to where it would have ended; null: a new run.
   std::shared_ptr<const Run> before;
   double time = 0;
+  // A run ends where its samples take more memory (bytes): some copies of it are held while it grows. Of
+  // large mechanisms a few thousand samples are kept whatever they take.
+  std::size_t most_memory = 256'000'000;
 };
 
 struct Motion {
@@ -19,6 +22,9 @@ struct Motion {
   bool finished = false;          // nothing more will come
   std::string problem;            // why no motion could begin, or go on
 };
+
+// Memory of a run's samples (bytes).
+std::size_t memory_of(const Run& run);
 
 // Publishes what there is from time to time. Cancelled, it returns what was computed.
 Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context);

@@ -4,6 +4,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -69,6 +70,23 @@ TEST_CASE("a motion in the background is the motion") {
     CHECK(track(*news.run, "slide").value == track(whole, "slide").value);
     CHECK_FALSE(live.running());
   }
+}
+
+TEST_CASE("a motion ends where it would take too much memory, and says so") {
+  MotionRequest request{shared(shipped("governor")), lasting(1e9), nullptr};
+  request.most_memory = 8'000'000;
+  Motions live(BackgroundWorker::Mode::immediate);
+  start(live, request);
+  const Motion end = finished(live);
+  REQUIRE(end.run);
+  CHECK(end.problem.find("too much memory") != std::string::npos);
+  CHECK(end.problem.find(rounded_text(end.run->time.back(), 6) + " s") != std::string::npos);
+  CHECK(memory_of(*end.run) > request.most_memory);
+  CHECK(memory_of(*end.run) < 2 * request.most_memory);
+  // A shorter one is whole.
+  request.options.duration = 20;
+  start(live, request);
+  CHECK(finished(live).problem.empty());
 }
 
 TEST_CASE("a long motion is told of as it grows, and can be stopped") {

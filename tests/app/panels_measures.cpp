@@ -5,6 +5,7 @@
 #include "app/document/rename.hpp"
 #include "app/session/response_quantity.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
@@ -73,6 +74,23 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
     d.frames(2);
     CHECK(d.app.session.document.position() == steps);
     CHECK(d.m().measures[0].text == "coordinate(slide) - 0.1 m");
+  }
+  SECTION("its unit goes with the expression") {
+    for (const auto& [text, unit] : {std::pair("torque(spin)", "N m"),
+                                     {"rate(slide)", "m/s"},
+                                     {"2*torque(spin)*speed(ball1)", "kg m^3/s^3"},
+                                     {"coordinate(arm1)", "rad"},
+                                     {"y(ball1)/y(ball2)", "rad"}}) {
+      CAPTURE(text);
+      d.enter("inspector/measure/rise", "=" + std::string(text));
+      CHECK(d.m().measures[0].text == text);
+      CHECK(d.m().measures[0].unit == unit);
+      CHECK(find_mistakes(d.m()).empty());
+    }
+    d.enter("inspector/measure/rise", "=y(collar)");
+    d.enter("inspector/measure/rise", "=y(ball1)/y(ball2)");
+    CHECK(d.m().measures[0].unit == "");
+    CHECK(find_mistakes(d.m()).empty());
   }
   SECTION("parts that are renamed are renamed in it") {
     edit(d.app.session, "rename", [](Mechanism& mechanism, Selection&) {

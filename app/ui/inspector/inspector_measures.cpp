@@ -97,10 +97,8 @@ void measure_row(Session& session, Ui& ui, const NamedMeasure& measure) {
   ImGui::SetCursorPosX(start + labels);
   measure_field(session, ui, measure, widget, "Change " + measure.name, "=" + measure.text,
                 std::max(width - labels - margin, 20 * ui.scale), "=y(ball)",
-                [measure](const std::string& typed) {
-                  NamedMeasure changed = measure;
-                  changed.text = without_sign(typed);
-                  return changed;
+                [&session, measure](const std::string& typed) {
+                  return with_expression(session.document.stored(), measure, without_sign(typed));
                 });
   help_on_hover(present_text(session, measure.name).c_str());
   ImGui::SameLine(0, 0);
