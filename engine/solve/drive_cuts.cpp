@@ -9,6 +9,7 @@
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 
 namespace flyball {
@@ -60,22 +61,19 @@ Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) 
   Parameters p;
   bind(system, mechanism, p);
   if (begin == Begin::as_drawn) return p;
-  double share = 0.1;
+  int drives = 0; // no two alike, nor twice one another, however many there are
+  const auto factor = [&] { return 1.5 + 0.4 * std::sin(1.1 + 2.3 * drives++); };
   for (const DriveTorqueElement& torque : system.torques) {
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
     if (torque.implied || !finds_speed(link)) continue;
     LinkParameters& l = p.links[static_cast<std::size_t>(torque.link)];
     if (l.speed == 0) l.speed = l.gear_ratio;
-    l.speed *= 1 + share;
-    share *= 1.7; // no two of a few dozen alike, or twice one another
+    l.speed *= factor();
   }
   if (system.torques.empty()) return p;
   std::vector<double> factors(system.drives.size(), 1);
   for (std::size_t d = 0; d < system.drives.size(); ++d)
-    if (system.drives[d].motor == static_cast<int>(d)) {
-      factors[d] += share;
-      share *= 1.7;
-    }
+    if (system.drives[d].motor == static_cast<int>(d)) factors[d] = factor();
   for (const DrivenCoordinate& d : system.drives) {
     if (finds_speed(system.links[static_cast<std::size_t>(d.link)])) continue;
     LinkParameters& l = p.links[static_cast<std::size_t>(d.link)];
