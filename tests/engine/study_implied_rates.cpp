@@ -2,6 +2,7 @@
 // speed or by a torque, against closed forms and motions that settle.
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
@@ -10,7 +11,10 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -191,6 +195,133 @@ TEST_CASE("two drives of a planetary set may begin alike, where the planet seems
   CHECK_THAT(speed(s, "carrier"), WithinRel(speeds[1], 1e-11));
   CHECK_THAT(speed(s, "planet"), WithinRel(-(speeds[0] - speeds[1]) * sun_teeth / planet_teeth, 1e-11));
   CHECK(s.stable == true);
+}
+
+namespace {
+
+// Carrier, sun and ring on the ground about one axis, one planet.
+Mechanism three_shafts(Joint carrier, Joint sun, Joint ring) {
+  Mechanism m;
+  m.bodies = {wheel("carrier", 0.15), wheel("sun", 0.05), wheel("ring", 0.25),
+              body("planet", 0.4, {0.9, 0, 0}, {0.02, 0.02, 0.02})};
+  m.joints = {std::move(carrier),
+              std::move(sun),
+              std::move(ring),
+              revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+              revolute("sun on carrier", "carrier", "sun", {0, 0, 0}, {0, 0, 1}),
+              revolute("ring on carrier", "carrier", "ring", {0, 0, 0}, {0, 0, 1}),
+              gear("inner mesh", "sun on carrier", "planet", -sun_teeth / planet_teeth),
+              gear("outer mesh", "planet", "ring on carrier", planet_teeth / ring_teeth)};
+  m.joints[1].cut = m.joints[2].cut = false;
+  return m;
+}
+
+Joint shaft(const std::string& name) {
+  return revolute(name, "ground", name, {0, 0, 0}, {0, 0, 1});
+}
+
+// Torques a - b w of the three: with k = sun / ring teeth, r = (1 + k) c - k s, and a torque t on the ring
+// comes as (1 + k) t to the carrier and -k t to the sun.
+struct ThreeTorques {
+  double a[3], b[3]; // carrier, sun, ring
+  Eigen::Vector2d speeds() const {
+    const double k = sun_teeth / ring_teeth;
+    const Eigen::Vector2d ring(1 + k, -k);
+    Eigen::Matrix2d m = Eigen::Vector2d(b[0], b[1]).asDiagonal();
+    m += b[2] * ring * ring.transpose();
+    return m.inverse() * (Eigen::Vector2d(a[0], a[1]) + a[2] * ring);
+  }
+};
+
+std::string line(const std::string& name, double a, double b) {
+  return number_text(a) + " N m - " + number_text(b) + " N m s * rate(" + name + ")";
+}
+
+} // namespace
+
+TEST_CASE("drives on all three shafts of a planetary set may begin at any speeds", "[implied]") {
+  const ThreeTorques given{{0.5, 10, -2}, {0.4, 0.1, 0.2}};
+  const Eigen::Vector2d speeds = given.speeds();
+  for (const auto& start :
+       {std::array{10., 10., -15.8}, std::array{10., 10., 10.}, std::array{3., -7., 1.}}) {
+    CAPTURE(start[0], start[1], start[2]);
+    const auto drive = [&](const std::string& name, std::size_t i) {
+      return torque_driven(shaft(name), start[i], line(name, given.a[i], given.b[i]));
+    };
+    const Mechanism m = three_shafts(drive("carrier", 0), drive("sun", 1), drive("ring", 2));
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "carrier"), WithinRel(speeds[0], 1e-11));
+    CHECK_THAT(speed(s, "sun"), WithinRel(speeds[1], 1e-11));
+    CHECK(s.stable == true);
+  }
+  // Two at given speeds, alike or not: the third follows.
+  for (const double second : {6., 5., 0.}) {
+    CAPTURE(second);
+    const double first = second == 0 ? 0 : 6;
+    const Mechanism m = three_shafts(torque_driven(shaft("carrier"), 2, line("carrier", 1, 0.4)),
+                                     driven(shaft("sun"), first), driven(shaft("ring"), second));
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    const double k = sun_teeth / ring_teeth;
+    CHECK(std::abs(speed(s, "carrier") - (second + k * first) / (1 + k)) < 1e-12);
+  }
+}
+
+TEST_CASE("both cranks of a parallelogram may have drives that begin apart", "[implied]") {
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0.15, 0}, {0.01, 0.01, 0.01}), body("c", 2, {0.5, 0.3, 0}, {0.1, 0.1, 0.2}),
+              body("b", 1, {1, 0.15, 0}, {0.01, 0.01, 0.01})};
+  const auto crank = [&](const std::string& name, double x, double guess, double torque) {
+    return torque_driven(revolute(name, "ground", name, {x, 0, 0}, {0, 0, 1}), guess,
+                         line(name, torque, 0.5));
+  };
+  m.joints = {crank("a", 0, 5, 3), crank("b", 1, 3, 1), revolute("ac", "a", "c", {0, 0.3, 0}, {0, 0, 1}),
+              revolute("bc", "c", "b", {1, 0.3, 0}, {0, 0, 1})};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "a"), WithinRel(4, 1e-12));
+  CHECK_THAT(speed(s, "b"), WithinRel(4, 1e-12));
+  m.joints[0] = driven(revolute("a", "ground", "a", {0, 0, 0}, {0, 0, 1}), 2);
+  CHECK_THAT(speed(Analysis(m).solve(), "b"), WithinRel(2, 1e-12));
+}
+
+TEST_CASE("a brake of a planetary set holds or slips", "[implied][friction]") {
+  const ThreeTorques given{{-5, 0, 3}, {0.3, 0, 0.4}};
+  const double k = sun_teeth / ring_teeth;
+  // With the sun held c and r = (1 + k) c; the sun takes what is left.
+  const double c = (given.a[0] + (1 + k) * given.a[2]) / (given.b[0] + (1 + k) * (1 + k) * given.b[2]),
+               ring = given.a[2] - given.b[2] * (1 + k) * c, needed = std::abs(k * ring);
+  const auto braked = [&](double limit) {
+    Joint sun = shaft("sun");
+    sun.coordinates[0].friction.emplace().limit = limit;
+    return three_shafts(torque_driven(shaft("carrier"), -16, line("carrier", given.a[0], given.b[0])), sun,
+                        torque_driven(shaft("ring"), 8, line("ring", given.a[2], given.b[2])));
+  };
+  const Mechanism firm = braked(1.25 * needed), weak = braked(0.8 * needed);
+  validate(firm);
+  const Solution held = Analysis(firm).solve();
+  INFO(held.message);
+  REQUIRE(held.status == Status::converged);
+  CHECK_THAT(speed(held, "carrier"), WithinRel(c, 1e-11));
+  CHECK_THAT(held.message, ContainsSubstring("takes 80 % of what it can give"));
+  const Solution slips = Analysis(weak).solve();
+  INFO(slips.message);
+  REQUIRE(slips.status == Status::converged);
+  CHECK_THAT(slips.message, ContainsSubstring("slips"));
+  ThreeTorques with_limit = given;
+  with_limit.a[1] = 0.8 * needed; // either way
+  const Eigen::Vector2d a = with_limit.speeds();
+  with_limit.a[1] = -with_limit.a[1];
+  const Eigen::Vector2d b = with_limit.speeds();
+  const double found = speed(slips, "carrier");
+  CHECK(std::min(std::abs(found - a[0]), std::abs(found - b[0])) < 1e-10);
 }
 
 TEST_CASE("a wheel on a bearing turns at the speed that its air gives it", "[implied]") {
