@@ -31,10 +31,10 @@ struct SolveOptions {
   // of one core, counted in operations (see SearchOptions). Zero: not at all.
   double search = 0.2;
   bool newton_only = false; // from the start by Newton-Raphson, with nothing that catches it
-  bool explain = true;      // why there is no steady state, which takes time: else the message is empty
   // Where there is no steady state without dry friction, and not for `nearest`: whether one that rests on it
   // is looked for (friction_state.hpp). Of solve_all: whether those are listed.
   bool friction = true;
+  bool explain = true; // why there is no steady state, which takes time: else the message is empty
   // Of solve_all, see SearchOptions.
   double search_time = 1;
   int search_starts = 0;

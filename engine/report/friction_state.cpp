@@ -323,7 +323,7 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std:
     all = std::move(longer);
   }
   FrictionParts held(frictions.size(), Part::none);
-  for (const std::size_t i : find_holding(mechanism, {}, cancel).independent)
+  for (const std::size_t i : find_holding(mechanism, {}, cancel, false).independent)
     held[i] = Part::holds;
   std::erase_if(all, [&](const FrictionParts& parts) {
     return parts == held || std::ranges::count(parts, Part::none) == std::ssize(parts);
@@ -359,7 +359,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
     if (state) add_message(*state, slipping_text(state->solution.frictions));
     return state;
   }
-  const Holding holding = find_holding(mechanism, inner.start, inner.cancel);
+  const Holding holding = find_holding(mechanism, inner.start, inner.cancel, false);
   const bool all_hold =
       std::ranges::all_of(holding.independent, [&](std::size_t i) { return parts[i] == Part::holds; });
   if (all_hold) return hold_as_drawn(mechanism, frictions, parts, holding, inner);

@@ -210,7 +210,8 @@ TiedMotions tied_motions_of(const Mechanism& mechanism, std::span<const Coordina
   return find_tied_motions(moving.problem(cancel), moving.q, entries, w);
 }
 
-Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
+Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel,
+             bool explain) {
   Holding out;
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   for (const CoordinateReference& f : frictions) {
@@ -293,8 +294,9 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   SteadyState steady;
   steady.find(problem, held.q, held.q, {.nearest = !at.empty()});
   if (!steady.holds) {
-    const std::string why =
-        held.system.torques.empty() ? "" : missing_speed_message(locked, problem, steady.elsewhere());
+    const std::string why = held.system.torques.empty() || !explain
+                                ? ""
+                                : missing_speed_message(locked, problem, steady.elsewhere());
     out.message =
         "With the joints that have friction standing still there, the others find no steady state." +
         (why.empty() ? "" : " " + why);
@@ -379,10 +381,11 @@ Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateR
   return out;
 }
 
-Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel) {
+Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel,
+                     bool explain) {
   const Interruptible scope(cancel);
   try {
-    return hold(mechanism, at, cancel);
+    return hold(mechanism, at, cancel, explain);
   } catch (const Interrupted&) {
     Holding out;
     out.message = "Cancelled.";
@@ -393,7 +396,7 @@ Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const st
 std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coordinates& at,
                                          const std::atomic<bool>* cancel) {
   std::vector<HeldSpeeds> out;
-  const Holding now = find_holding(mechanism, at, cancel);
+  const Holding now = find_holding(mechanism, at, cancel, false);
   if (!now.takes || !(*now.takes < 1)) return out;
   Mechanism varied = mechanism;
   for (Joint& joint : varied.joints)
@@ -410,7 +413,7 @@ std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coord
                       {}};
       const auto takes = [&](double part) { // at a part of the speed
         drive->speed = part * speed;
-        return find_holding(varied, at, cancel).takes.value_or(infinite);
+        return find_holding(varied, at, cancel, false).takes.value_or(infinite);
       };
       if (takes(0) > 1) held.lower = speed * find_slip(takes, 1, 0);
       for (double part = 1.125; part < 1000; part = 1 + 2 * (part - 1)) {

@@ -38,9 +38,10 @@ struct Holding {
 };
 
 // At the drawn pose with the coordinates of `at` ("joint" or "joint.index", rad or m) in place of the drawn
-// ones. Throws SceneError for names of no coordinate.
+// ones. Throws SceneError for names of no coordinate. `explain`: whether the message says why speeds that are
+// found are missing, which takes time.
 Holding find_holding(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& at,
-                     const std::atomic<bool>* cancel = nullptr);
+                     const std::atomic<bool>* cancel = nullptr, bool explain = true);
 
 // The mechanism with coordinates that have friction standing still as drawn, as if driven at the speed zero:
 // what is asked of their values by the laws of drives is in numbers.
