@@ -34,9 +34,9 @@ const ViewCamera& settled_camera(const ViewState& view) {
 
 void advance_glide(ViewState& view, double seconds) {
   if (!view.glide) return;
-  constexpr double longest_step = 0.04; // s: a window that has been idle does not jump
+  constexpr double longest_first = 0.04; // s: a window that has been idle does not jump
   CameraGlide& glide = *view.glide;
-  glide.elapsed += std::min(seconds, longest_step);
+  glide.elapsed += glide.elapsed == 0 ? std::min(seconds, longest_first) : seconds;
   view.camera = glide.elapsed >= CameraGlide::duration ? glide.to : glide.now();
   if (glide.elapsed >= CameraGlide::duration) view.glide.reset();
 }

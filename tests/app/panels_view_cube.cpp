@@ -119,3 +119,16 @@ TEST_CASE("the camera glides to where a command puts it, within a fifth of a sec
   robot.wheel("view", 1);
   CHECK_FALSE(app.view.glide);
 }
+
+TEST_CASE("the camera takes as long however few frames there are") {
+  Robot robot;
+  App& app = robot.app;
+  app.view.animated = true;
+  robot.frames(2);
+  app.commands.run("view.front");
+  // An idle window counts little of its first frame, then time is time.
+  robot.frames(1, 0.5);
+  CHECK(app.view.glide);
+  robot.frames(1, 0.5);
+  CHECK_FALSE(app.view.glide);
+}
