@@ -19,7 +19,8 @@ namespace {
 
 using Part = FrictionPart;
 
-constexpr std::size_t most_tried = 3; // joints that may slip: each forwards, backwards or not at all
+constexpr double balance_search = 0.02; // s, for what rests in balance beside what is held: see SolveOptions
+constexpr std::size_t most_tried = 3;   // joints that may slip: each forwards, backwards or not at all
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
@@ -284,20 +285,26 @@ std::string slipping_text(const std::vector<FrictionForce>& forces) {
          (holding.empty() ? "." : "; it holds " + holding + ".");
 }
 
-// With rates that are found by the torques or, where that leads to no state, of some that the drives give.
+// With rates that are found by the torques or, where that leads to no state, of some that the drives give:
+// at first by Newton-Raphson alone, as one of the two has none.
 std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
                                         const FrictionParts& parts, const SolveOptions& options) {
-  if (auto state = Attempt(mechanism, frictions, parts).solve(options)) return state;
   std::vector<std::size_t> may_close;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
-  for (std::size_t set = 1; set < std::size_t(1) << may_close.size(); ++set) {
-    std::vector<bool> implied(parts.size(), false);
-    for (std::size_t k = 0; k < may_close.size(); ++k)
-      implied[may_close[k]] = (set >> k & 1) != 0;
-    if (auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(options))
-      return state;
+  for (const bool newton_only : {true, false}) {
+    if (newton_only && may_close.empty()) continue;
+    if (!newton_only && options.newton_only && !may_close.empty()) break; // that has been
+    SolveOptions now = options;
+    now.newton_only = newton_only || options.newton_only;
+    for (std::size_t set = 0; set < std::size_t(1) << may_close.size(); ++set) {
+      std::vector<bool> implied(parts.size(), false);
+      for (std::size_t k = 0; k < may_close.size(); ++k)
+        implied[may_close[k]] = (set >> k & 1) != 0;
+      if (auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(now))
+        return state;
+    }
   }
   return std::nullopt;
 }
@@ -363,7 +370,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
   const bool all_hold =
       std::ranges::all_of(holding.independent, [&](std::size_t i) { return parts[i] == Part::holds; });
   if (all_hold) return hold_as_drawn(mechanism, frictions, parts, holding, inner);
-  inner.search = 0;
+  inner.search = inner.newton_only || inner.nearest ? 0 : balance_search;
   auto state = Attempt(mechanism, frictions, parts).solve(inner);
   if (state)
     add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) + " as drawn.");
