@@ -4,7 +4,7 @@
 #include "engine/solve/newton.hpp"
 #include "engine/system/drive_torque.hpp"
 
-#include <algorithm>
+#include <optional>
 #include <vector>
 
 namespace flyball {
@@ -47,69 +47,108 @@ VectorRates turn_of_arms(const PointsInMotion& motion, const TrackedPoints& poin
   return out;
 }
 
-} // namespace
+// How coordinates and their rates change an input, or what it is the size of.
+struct InputRates {
+  std::vector<Eigen::VectorXd> by_places, by_rates; // scaled, of coordinates; none that is nothing
+};
 
-bool is_moved(const Problem& problem, const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
-              const Eigen::VectorXd& q, const Kinematics<double>& k) {
+InputRates rates_of(const Problem& problem, const DriveLaw& law, const DriveLawParameters& numbers,
+                    std::size_t i, const Eigen::VectorXd& q, const Kinematics<double>& k) {
   const System& system = problem.system;
   const Parameters& p = problem.parameters;
   const DriveLaw::Input& input = law.inputs[i];
   const Result asked = input.quantity.result;
-  std::vector<Eigen::VectorXd> rates; // scaled, of coordinates
-  const auto take = [&](const Eigen::VectorXd& by, double size) {
+  InputRates out;
+  const auto take = [&](const Eigen::VectorXd& by, double size, std::vector<Eigen::VectorXd>& to) {
     if (!(size > 0)) return;
     const Eigen::VectorXd scaled = by.cwiseProduct(problem.scaling.column) / size;
-    if (largest_size(scaled) > moves) rates.push_back(scaled);
+    if (largest_size(scaled) > moves) to.push_back(scaled);
   };
-  const auto take_vector = [&](const VectorRates& by, double size) {
+  const auto take_vector = [&](const VectorRates& by, double size, std::vector<Eigen::VectorXd>& to) {
     for (const Eigen::Index axis : {0, 1, 2})
-      take(by.col(axis), size);
+      take(by.col(axis), size, to);
   };
   if (input.coordinate >= 0) {
     const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
     const Link& link = system.links[static_cast<std::size_t>(c.link)];
-    if (link.v < 0) return false;
+    if (link.v < 0) return out;
     const int count = link.type == LinkType::spherical ? 3 : 1;
     for (int v = link.v; v < link.v + count; ++v)
-      take(Eigen::VectorXd::Unit(system.nv, v), problem.scaling.column[v]);
-  } else {
-    const PointsInMotion motion{system, k};
-    const TrackedPoints& points = numbers.points[i];
-    const double size = asked == Result::angle ? 1 : p.length;
-    const bool kink = stands_on_own_kink(system, p, law, numbers, i, q, k);
-    const bool vanishes =
-        kink && (asked != Result::force || motion.way(points[0], points[1]).norm() <= moves * p.length);
-    if (asked == Result::angle && kink) {
-      take_vector(turn_of_arms(motion, points), size);
-    } else if (asked == Result::speed && kink) {
-      take_vector(motion.along(points[0], &PointRates::velocity),
-                  law_input_size(system, p, law, numbers, i, q, k));
-      take_vector(motion.along(points[0], &PointRates::position), size);
-    } else if (vanishes) {
-      take_vector(motion.apart(points[0], points[1]), size);
-    } else {
-      PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
-      if (asked == Result::force) { // of which the size is taken
-        const auto s = static_cast<std::size_t>(input.spring);
-        by = spring_force_rates(Result::tension, system.springs[s], p.springs[s], k);
-      }
-      Eigen::VectorXd by_places = Eigen::VectorXd::Zero(system.nv), by_rates = by_places;
-      add_coordinate_rates(system, by, points, k, [&](int v, double rate) { by_places[v] += rate; });
-      add_velocity_rates(system, by, points, k, [&](int v, double rate) { by_rates[v] += rate; });
-      const double most = law_input_size(system, p, law, numbers, i, q, k);
-      take(by_places, most);
-      take(by_rates, is_of_velocity(asked) ? size : most);
-    }
+      take(Eigen::VectorXd::Unit(system.nv, v), problem.scaling.column[v],
+           input.rate() ? out.by_rates : out.by_places);
+    return out;
   }
-  if (rates.empty() || system.rows == 0) return !rates.empty();
+  const PointsInMotion motion{system, k};
+  const TrackedPoints& points = numbers.points[i];
+  const double size = asked == Result::angle ? 1 : p.length;
+  const bool kink = stands_on_own_kink(system, p, law, numbers, i, q, k);
+  const bool vanishes =
+      kink && (asked != Result::force || motion.way(points[0], points[1]).norm() <= moves * p.length);
+  if (asked == Result::angle && kink) {
+    take_vector(turn_of_arms(motion, points), size, out.by_places);
+  } else if (asked == Result::speed && kink) {
+    take_vector(motion.along(points[0], &PointRates::velocity),
+                law_input_size(system, p, law, numbers, i, q, k), out.by_places);
+    take_vector(motion.along(points[0], &PointRates::position), size, out.by_rates);
+  } else if (vanishes) {
+    take_vector(motion.apart(points[0], points[1]), size, out.by_places);
+  } else {
+    PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
+    if (asked == Result::force) { // of which the size is taken
+      const auto s = static_cast<std::size_t>(input.spring);
+      by = spring_force_rates(Result::tension, system.springs[s], p.springs[s], k);
+    }
+    Eigen::VectorXd by_places = Eigen::VectorXd::Zero(system.nv), by_rates = by_places;
+    add_coordinate_rates(system, by, points, k, [&](int v, double rate) { by_places[v] += rate; });
+    add_velocity_rates(system, by, points, k, [&](int v, double rate) { by_rates[v] += rate; });
+    const double most = law_input_size(system, p, law, numbers, i, q, k);
+    take(by_places, most, out.by_places);
+    take(by_rates, is_of_velocity(asked) ? size : most, out.by_rates);
+  }
+  return out;
+}
+
+// What the loops leave of these, row by row; those of which they leave nothing are taken out.
+void keep_loops_closed(const Problem& problem, const Eigen::VectorXd& q,
+                       std::vector<Eigen::VectorXd>& rates) {
+  if (rates.empty() || problem.system.rows == 0) return;
   Workspace w;
-  evaluate(problem, {q, Eigen::VectorXd::Zero(system.rows)}, 0, w);
+  evaluate(problem, {q, Eigen::VectorXd::Zero(problem.system.rows)}, 0, w);
   factor_constraints(problem, w);
   Eigen::VectorXd left;
-  return std::ranges::any_of(rates, [&](const Eigen::VectorXd& rate) {
+  std::erase_if(rates, [&](Eigen::VectorXd& rate) {
     w.kkt(problem).project(rate, left);
-    return largest_size(left) > moves * largest_size(rate);
+    const bool none = !(largest_size(left) > moves * largest_size(rate));
+    rate = left;
+    return none;
   });
+}
+
+} // namespace
+
+bool is_moved(const Problem& problem, const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
+              const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  InputRates rates = rates_of(problem, law, numbers, i, q, k);
+  keep_loops_closed(problem, q, rates.by_places);
+  if (!rates.by_places.empty()) return true;
+  keep_loops_closed(problem, q, rates.by_rates);
+  return !rates.by_rates.empty();
+}
+
+std::optional<Eigen::VectorXd> single_motion(const Problem& problem, const DriveLaw& law,
+                                             const DriveLawParameters& numbers, std::size_t i,
+                                             const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  InputRates rates = rates_of(problem, law, numbers, i, q, k);
+  keep_loops_closed(problem, q, rates.by_rates);
+  keep_loops_closed(problem, q, rates.by_places);
+  if (!rates.by_rates.empty() || rates.by_places.empty()) return {};
+  const Eigen::VectorXd* largest = &rates.by_places.front();
+  for (const Eigen::VectorXd& rate : rates.by_places)
+    if (rate.norm() > largest->norm()) largest = &rate;
+  const Eigen::VectorXd direction = largest->normalized();
+  for (const Eigen::VectorXd& rate : rates.by_places)
+    if ((rate - rate.dot(direction) * direction).norm() > moves * largest->norm()) return {};
+  return direction;
 }
 
 } // namespace flyball

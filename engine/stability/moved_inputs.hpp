@@ -4,6 +4,8 @@
 
 #include "engine/kkt/problem.hpp"
 
+#include <optional>
+
 namespace flyball {
 
 // To first order, as the loops let the coordinates move. Of what is the size of something, as a distance, a
@@ -11,5 +13,11 @@ namespace flyball {
 // at the drawn phase.
 bool is_moved(const Problem& problem, const DriveLaw& law, const DriveLawParameters& numbers,
               std::size_t input, const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
+
+// Where one direction of the coordinates alone moves it, and no rate does: that direction, of length 1
+// (scaled).
+std::optional<Eigen::VectorXd> single_motion(const Problem& problem, const DriveLaw& law,
+                                             const DriveLawParameters& numbers, std::size_t input,
+                                             const Eigen::VectorXd& q, const Kinematics<double>& kinematics);
 
 } // namespace flyball

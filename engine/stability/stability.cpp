@@ -8,6 +8,7 @@
 #include "engine/solve/existence.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
+#include "engine/stability/moved_inputs.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/play.hpp"
@@ -452,13 +453,36 @@ Stability common_stability(const FactoredState& at, const std::vector<Kink>& kin
 // the opposite one either lies on that side, and the motion along it stays there. That both die out proves
 // that the state is stable where there is one eigenvalue, so that a motion stays on its side; with more of
 // them one that goes to and fro may grow all the same.
-std::optional<bool> stable_on_both_sides(const FactoredState& at, const Kink& of_drive) {
+//
+// Where the input itself has no slope, as an angle of 0, but one direction alone moves it, the sides are
+// looked at a little beside the state.
+std::optional<bool> stable_on_both_sides(const FactoredState& at, const std::vector<Kink>& of_drives) {
+  constexpr double beside = 1e-6; // scaled
+  const Kink& of_drive = of_drives.front();
+  const bool own = of_drive.gradients[0].empty();
+  std::optional<Eigen::VectorXd> across;
+  if (own) {
+    const DriveTorqueElement& e = at.problem.system.torques[of_drive.entry];
+    const DriveTorqueParameters& numbers = at.problem.parameters.torques[of_drive.entry];
+    const bool torque = of_drive.law == Kink::Law::torque;
+    across = single_motion(at.problem, torque ? e.torque : e.load, torque ? numbers.torque : numbers.load,
+                           of_drive.input, at.z.q, at.w.kinematics);
+    if (!across) return {};
+  }
   std::size_t dying = 0;
   for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    const Parameters numbers = beside_kink(at.problem, of_drive, side);
+    Parameters numbers = at.problem.parameters;
+    for (const Kink& kink : of_drives)
+      if (!own) numbers = beside_kink({at.problem.system, numbers, at.problem.scaling}, kink, side);
     const Problem problem{at.problem.system, numbers, at.problem.scaling, at.problem.cancel};
     Workspace w;
-    const Stability there = find_smooth_stability(factor_at(problem, at.z, w), true);
+    Unknowns z = at.z;
+    if (own) {
+      const Eigen::VectorXd step =
+          (side == 0 ? -beside : beside) * across->cwiseProduct(problem.scaling.column);
+      retract<double>(problem.system, step, z.q);
+    }
+    const Stability there = find_smooth_stability(factor_at(problem, z, w), true);
     if (!there.eigenvalues || there.floquet) return {};
     if (there.reason == StabilityReason::unstable &&
         std::ranges::any_of(*there.eigenvalues, [](Complex s) { return s.imag() == 0 && s.real() > 0; }))
@@ -469,10 +493,21 @@ std::optional<bool> stable_on_both_sides(const FactoredState& at, const Kink& of
   return {};
 }
 
+// Whether all are of laws that cross theirs as the same input does.
+bool cross_together(const System& system, const std::vector<Kink>& kinks) {
+  const auto input_of = [&](const Kink& kink) -> const DriveLaw::Input& {
+    const DriveTorqueElement& e = system.torques[kink.entry];
+    return (kink.law == Kink::Law::torque ? e.torque : e.load).inputs[kink.input];
+  };
+  return !kinks.empty() && std::ranges::all_of(kinks, [&](const Kink& kink) {
+    if (kink.of != Kink::Of::drive) return false;
+    return kinks.size() == 1 || (!kink.gradients[0].empty() && input_of(kink) == input_of(kinks.front()));
+  });
+}
+
 bool judge_kink_of_drive(const FactoredState& at, Stability& out) {
-  if (out.kinks.size() != 1 || out.kinks[0].of != Kink::Of::drive) return false;
-  if (out.kinks[0].gradients[0].empty()) return false;
-  const std::optional<bool> stable = stable_on_both_sides(at, out.kinks[0]);
+  if (!cross_together(at.problem.system, out.kinks)) return false;
+  const std::optional<bool> stable = stable_on_both_sides(at, out.kinks);
   if (!stable) return false;
   out.stable = stable;
   out.reason = *stable ? StabilityReason::asymptotic : StabilityReason::unstable;

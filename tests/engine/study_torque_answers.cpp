@@ -90,6 +90,13 @@ TEST_CASE("kinks of torques are told, and stability is where both sides prove it
     CHECK(!all.equilibria[0].stable);
     CHECK_THAT(all.message, ContainsSubstring("stands on a kink"));
   }
+  SECTION("torque and load bend at the same speed") {
+    const auto verdict = [](const char* load) {
+      return Analysis(lone_rotor(4, "max(0 N m, 5 N m - 1 N m s*rate(s))", load)).solve().stable;
+    };
+    CHECK(verdict("0.5 N m s*max(0 rad/s, rate(s) - 5 rad/s)") == true);
+    CHECK(verdict("-0.5 N m s*max(0 rad/s, rate(s) - 5 rad/s)") == false);
+  }
   SECTION("smooth laws have none") {
     for (const char* law : {"1 N m - 1 N m s^2 * rate(s) * abs(rate(s))",
                             "table(rate(s), [0, 12 N m], [2, 4 N m], [5, -10 N m])",

@@ -523,6 +523,43 @@ TEST_CASE("kinks of laws by places are told", "[torque][places]") {
   CHECK_THAT(resting, ContainsSubstring("slope with speed(collar) jumps from"));
 }
 
+TEST_CASE("what grows beside the kink of an angle of zero is left for what is stable",
+          "[torque][places][kinks]") {
+  // A pendulum on a shaft straight below it, which the angle from straight down slows; it moves the angle
+  // alone.
+  const auto pendulum = [](double torque) {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.points = {{"O", {0, 0, 0}}, {"Q", {0, -1, 0}}};
+    m.bodies = {body("h", 1, {0, 0, 0}, {0.3, 0.4, 0.3}),
+                body("b", 1, {0.05, -0.3, 0}, {0.001, 0.001, 0.001})};
+    m.joints = {driven(revolute("spin", "ground", "h", {0, 0, 0}, {0, 1, 0}), 3),
+                dampened(revolute("a", "h", "b", {0, 0, 0}, {0, 0, 1}), 0.2)};
+    m = with_torque(m,
+                    number_text(torque) + " N m - 1 N m s*rate(spin) - 1 N m*angle(b, ground@O, ground@Q)");
+    validate(m);
+    return m;
+  };
+  const double below = -std::atan2(0.05, 0.3);
+  SolveOptions nearest;
+  nearest.nearest = true;
+  const Solution straight = Analysis(pendulum(8)).solve(nearest);
+  CHECK(std::abs(value(straight, "a") - below) < 1e-9);
+  CHECK(straight.stable == false);
+  CHECK_THAT(straight.message, ContainsSubstring("jumps from"));
+  const Solution s = Analysis(pendulum(8)).solve();
+  INFO(s.message);
+  CHECK(s.stable == true);
+  const double a = std::abs(value(s, "a") - below), w = speed(s, "spin");
+  CHECK_THAT(w, WithinRel(8 - a, 1e-10));
+  // (I + m l^2) w^2 sin a cos a = m g l sin a, the sphere's inertia being the same about all axes
+  const double arm = std::hypot(0.05, 0.3);
+  CHECK_THAT(w * w * arm * std::cos(a), WithinRel(standard_gravity, 1e-10));
+  // Slower, where it hangs: a motion that goes to and fro across the kink is not told by either side.
+  const Solution hanging = Analysis(pendulum(3)).solve();
+  CHECK(hanging.stable == std::nullopt);
+}
+
 TEST_CASE("chains throttled by heights, of which the speeds border the tree", "[torque][places]") {
   for (const bool balls : {false, true}) {
     CAPTURE(balls);
