@@ -242,21 +242,22 @@ bool BranchFollower::holds_at_every_phase(const BranchState& s) {
 
 void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
   if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
-  constexpr int most_tries = 20;
+  constexpr int most_tries = 200;
   BranchState near = state; // and nearer, where the state changes too much on the way
-  double part = 1;
+  double step = border - state.parameter;
   for (int i = 0; i < most_tries; ++i) {
+    const bool whole = std::abs(step) >= std::abs(border - near.parameter);
     BranchState last = near;
-    last.parameter = part == 1 ? border : near.parameter + part * (border - near.parameter);
+    last.parameter = whole ? border : near.parameter + step;
     if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, near.z.q, 0.2)) {
-      part /= 2;
-    } else if (part == 1) {
+      step = (last.parameter - near.parameter) / 2;
+    } else if (whole) {
       out.points.push_back(point(last));
       out.states.push_back(std::move(last));
       return;
     } else {
       near = std::move(last);
-      part = 1;
+      step *= 2;
     }
   }
 }
