@@ -198,6 +198,22 @@ TEST_CASE("periodic motions are found one by one while the window goes on, until
   CHECK_FALSE(study.found->result.whole);
   CHECK_THAT(resonance_words(app.session), ContainsSubstring("stopped"));
   CHECK(app.ui.widgets.contains("plot/response/area"));
+  // What is there stays when it goes on.
+  const std::shared_ptr<const ResonancePoint> first = study.found->result.points.front();
+  const std::size_t before = study.found->result.points.size();
+  REQUIRE(app.ui.widgets.contains("response/go_on"));
+  io.MousePos = app.ui.widgets.at("response/go_on").center();
+  frame();
+  io.MouseDown[0] = true;
+  frame();
+  io.MouseDown[0] = false;
+  frame();
+  CHECK(study.running());
+  CHECK_FALSE(app.ui.widgets.contains("response/go_on"));
+  for (int i = 0; i < 4000 && study.found->result.points.size() <= before; ++i)
+    frame();
+  CHECK(study.found->result.points.size() > before);
+  CHECK(study.found->result.points.front() == first);
 }
 
 namespace {
