@@ -460,3 +460,17 @@ TEST_CASE("no line of the sheet of keys is cut") {
   CHECK(lines > 40);
   CHECK(robot.widget("shortcuts/Digits while placing").to.y < robot.widget("shortcuts/close").to.y);
 }
+
+TEST_CASE("in a small window the words beside keys are whole") {
+  Robot robot({900, 600});
+  robot.app.panels->shortcuts.open = true;
+  robot.frames(4);
+  int seen = 0;
+  for (const auto& [name, rect] : robot.app.ui.widgets) {
+    if (!name.starts_with("shortcuts/") || name == "shortcuts/close") continue;
+    CAPTURE(name);
+    ++seen;
+    CHECK(rect.to.y - rect.from.y < 3.7f * ImGui::GetFontSize()); // three lines at most
+  }
+  CHECK(seen > 20);
+}

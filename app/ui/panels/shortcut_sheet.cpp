@@ -39,9 +39,12 @@ constexpr std::array by_keys{
 void line(Ui& ui, const std::string& keys, const std::string& does) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
+  const bool shared = (ImGui::TableGetColumnFlags(0) & ImGuiTableColumnFlags_WidthStretch) != 0;
+  ImGui::PushTextWrapPos(shared ? 0 : -1);
   ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).accent);
   ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
   ImGui::TableNextColumn();
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(does.c_str());
@@ -49,17 +52,20 @@ void line(Ui& ui, const std::string& keys, const std::string& does) {
   note_widget(ui.widgets, "shortcuts/" + keys);
 }
 
-// Keys as wide as they are, and the rest for the words, so that none is cut.
-bool begin_lines(const char* name) {
+// Keys as wide as they are, and the rest for the words; where that would break words both share the width.
+bool begin_lines(const Ui& ui, const char* name) {
+  constexpr float roomy = 240; // points
+  const bool shared = ImGui::GetContentRegionAvail().x < roomy * ui.scale;
   if (!ImGui::BeginTable(name, 2)) return false;
-  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed);
+  ImGui::TableSetupColumn("keys",
+                          shared ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_WidthFixed);
   ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch);
   return true;
 }
 
 void lines(Ui& ui, const char* title, std::string_view prefix) {
   heading(ui, title);
-  if (!begin_lines(title)) return;
+  if (!begin_lines(ui, title)) return;
   for (const Command& command : commands()) {
     if (!std::string_view(command.id).starts_with(prefix) || command.key.key == 0) continue;
     const std::string also = key_text(command.also);
@@ -70,7 +76,7 @@ void lines(Ui& ui, const char* title, std::string_view prefix) {
 
 void fixed_lines(Ui& ui, const char* title, std::span<const NavigationLine> entries) {
   heading(ui, title);
-  if (!begin_lines(title)) return;
+  if (!begin_lines(ui, title)) return;
   for (const NavigationLine& entry : entries)
     line(ui, entry.keys, entry.does);
   ImGui::EndTable();
@@ -116,7 +122,7 @@ void ShortcutSheet::draw(Ui& ui, Navigation navigation) {
     lines(ui, "View", "view.");
     ImGui::TableNextColumn();
     heading(ui, "Mouse in the view");
-    if (begin_lines("mouse")) {
+    if (begin_lines(ui, "mouse")) {
       for (const NavigationLine& entry : navigation_lines(navigation))
         line(ui, entry.keys, entry.does);
       for (const NavigationLine& entry : mouse_lines)
