@@ -208,9 +208,10 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     const bool hidden = !app.movie.progress && !window.visible();
     const bool waits = hidden || (settling == 0 && !in_motion(app.session, app.view));
     const double longest =
-        waits ? std::min({idle, next_file_update(app.session),
-                          next_notice_change(app.session, app.notice_age), app.ui.tooltip.due})
-              : 0;
+        waits
+            ? std::min({idle, next_file_update(app.session), next_notice_change(app.session, app.notice_age),
+                        app.ui.tooltip.due, next_progress(app.session)})
+            : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
@@ -223,6 +224,8 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
     const bool something = stirred.exchange(false) || news || (hidden && window.visible());
     // Otherwise it was only time to look at the disk.
     settling = something ? settling_frames : std::max(settling - 1, 0);
+    // What moves but a number asks for one frame.
+    if (waits && elapsed >= next_progress(app.session)) settling = std::max(settling, 1);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
     app.ui.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not

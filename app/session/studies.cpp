@@ -2,6 +2,8 @@
 
 #include "app/session/session.hpp"
 
+#include <limits>
+
 namespace flyball {
 
 void open_study(Session& session, StudyKind study) {
@@ -39,6 +41,11 @@ bool studying(const Session& session) {
          study.spread.samples.running() || study.transfer.found.running() || study.band.computed.running() ||
          study.friction.report.running() || study.friction.ribbon.running() ||
          study.periodic.search.running() || study.periodic.cycle.running();
+}
+
+double next_progress(const Session& session) {
+  constexpr double beat = 0.2;
+  return studying(session) ? beat : std::numeric_limits<double>::infinity();
 }
 
 } // namespace flyball

@@ -38,5 +38,7 @@ void open_study(Session& session, StudyKind study);
 void update_studies(Session& session);
 // Whether one computes.
 bool studying(const Session& session);
+// s, until its progress is worth another look; infinite where none computes.
+double next_progress(const Session& session);
 
 } // namespace flyball

@@ -130,6 +130,7 @@ TEST_CASE("Session: many samples are made in the background, and can be cancelle
   open_study(session, StudyKind::spread);
   REQUIRE(wait([&] { return session.study.spread.samples.running(); }));
   CHECK(studying(session));
+  CHECK(next_progress(session) < 1); // its progress is looked at again and again
   session.study.spread.samples.stop();
   REQUIRE(wait([&] { return !session.study.spread.samples.problem.empty(); }));
   CHECK_FALSE(session.study.spread.samples.running());
