@@ -33,13 +33,18 @@ bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
   return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
 }
 
-// Of drives at given speeds, rad/s or m/s; 1 where none turns.
-double usual_speed(const Mechanism& mechanism) {
-  double fastest = 0;
+// The least and the largest of the drives' speeds, rad/s or m/s, of those that turn; 1 where none does.
+struct DriveSpeeds {
+  double least = 1, most = 1;
+};
+DriveSpeeds drive_speeds(const Mechanism& mechanism) {
+  std::vector<double> all;
   for (const Joint& joint : mechanism.joints)
     for (const Coordinate& c : joint.coordinates)
-      if (c.drive) fastest = std::max(fastest, std::abs(c.drive->speed));
-  return fastest > 0 ? fastest : 1;
+      if (c.drive && c.drive->speed != 0) all.push_back(std::abs(c.drive->speed));
+  if (all.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(all);
+  return {least, most};
 }
 
 bool is_slipping(Part part) {
@@ -104,7 +109,7 @@ class Attempt {
         continue;
       }
       joint.cut = false;
-      c.drive = Drive{.speed = usual_speed(mechanism_) * (parts_[i] == Part::slips_forwards ? 1 : -1),
+      c.drive = Drive{.speed = drive_speeds(mechanism_).most * (parts_[i] == Part::slips_forwards ? 1 : -1),
                       .torque = slipping_force(i),
                       .load = 0};
     }
@@ -125,7 +130,7 @@ class Attempt {
   bool slips(std::size_t i) const { return is_slipping(parts_[i]); }
 
   // rad/s or m/s: of what slips so slowly a rate that the drives give is not told from none.
-  double slowest() const { return 1e-3 * usual_speed(mechanism_); }
+  double slowest() const { return 1e-3 * drive_speeds(mechanism_).least; }
 
   // The limit against the rate, beside what dampers of its own give: a joint with a damper may close a loop.
   // From a tenth of the slowest rate on that is the limit to the last digit.
