@@ -21,6 +21,14 @@ bool is_known(const Problem& problem, const Eigen::VectorXd& q, const Eigen::Vec
   return !(largest(error.cwiseQuotient(problem.scaling.column)) > tolerance::known * distance);
 }
 
+// How far (scaled) what has no speed to be found went from a to b.
+double way_between(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  Eigen::VectorXd way = scaled_difference(problem, a, b);
+  for (const Link& link : problem.system.links)
+    if (finds_speed(link)) way[link.v] = 0;
+  return largest_size(way);
+}
+
 struct AnswerSearch {
   std::optional<Found> answer; // holds at every phase
   OtherStates others;
@@ -81,7 +89,25 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   }
   if (problem.system.torques.empty() || (found.minimum && phases.empty())) return;
   judge(problem);
-  if (!unstable_) return;
+  if (!unstable_) {
+    // Newton-Raphson that went far may have passed by what a motion from the start comes to.
+    constexpr double far = 0.5; // scaled
+    if (options.warm || problem.system.nv > largest_for_answer_search ||
+        !(way_between(problem, start, found.z.q) > far))
+      return;
+    Found candidate;
+    candidate.z = {start, Eigen::VectorXd::Zero(problem.system.rows)};
+    candidate.newton = follow_slow_motion(problem, candidate.z, balance_.elsewhere(), nullptr);
+    if (problem.cancelled() || !candidate.newton.converged ||
+        !same_assembly_mode(problem, balance_.elsewhere().kinematics) ||
+        !(way_between(problem, start, candidate.z.q) < 0.8 * way_between(problem, start, found.z.q)))
+      return;
+    candidate.status = Status::converged;
+    candidate.fallback = Fallback::slow_motion;
+    candidate.iterations = found.iterations + candidate.newton.iterations;
+    if (!take_if_stable(problem, drawn, std::move(candidate))) unstable_ = false;
+    return;
+  }
   if (options.warm) {
     SteadyStateOptions cold = options;
     cold.warm = false;
