@@ -1,9 +1,11 @@
 #include "app/session/state_words.hpp"
 
 #include "engine/mechanism/text.hpp"
+#include "engine/periodic/limit_cycle.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <string_view>
 
@@ -24,6 +26,17 @@ const char* reason_text(StabilityReason reason) {
     return "The linearised motion turns with the drives, and no multipliers tell of it.";
   }
   return "";
+}
+
+std::string growth_words(const Solution& solution) {
+  if (solution.stable != false || !solution.eigenvalues || solution.eigenvalues->empty()) return {};
+  const std::complex<double> fastest = *std::ranges::max_element(
+      *solution.eigenvalues, {}, [](const std::complex<double>& each) { return each.real(); });
+  if (!(fastest.real() > 0)) return {};
+  const std::string doubled = rounded_text(std::numbers::ln2 / fastest.real(), 3) + " s.";
+  if (fastest.imag() == 0) return "It is left without a swing: disturbances double every " + doubled;
+  return std::string(hunts(solution) ? "It hunts: swings" : "Swings") + " at " +
+         rounded_text(std::abs(fastest.imag()) / (2 * std::numbers::pi), 3) + " Hz double every " + doubled;
 }
 
 std::string window_message(const Solution& solution) {

@@ -11,6 +11,10 @@ namespace flyball {
 // "A minimum of the amended potential."
 const char* reason_text(StabilityReason reason);
 
+// How an unstable state is left: "It hunts: swings at 2.44 Hz double every 0.136 s."; empty where no
+// eigenvalue tells.
+std::string growth_words(const Solution& solution);
+
 // What the engine says of a state; where it names a command of the terminal, the window's own.
 std::string window_message(const Solution& solution);
 

@@ -24,6 +24,8 @@ struct Command {
   bool (*checked)(const App&) = nullptr;      // null: no state
   bool separated = false;                     // a line above it in the menu
   std::string (*label)(const App&) = nullptr; // a longer title; null: `title`
+  const char* words = nullptr;                // by which the palette finds it as well
+  const char* lacks = nullptr;                // a clause on why it is not enabled; null: a selection
 };
 
 std::span<const Command> commands();

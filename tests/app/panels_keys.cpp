@@ -102,6 +102,20 @@ TEST_CASE("what is typed after a click that missed a field changes nothing") {
   }
 }
 
+TEST_CASE("after Enter in a field keys are commands at once") {
+  Hand hand;
+  hand.double_click("inspector/drive/speed");
+  hand.key('A', true);
+  hand.type("12");
+  hand.key(key_enter);
+  hand.frames(2);
+  REQUIRE(get_parameter(hand.app.session.mechanism(), speed) == 12);
+  const bool view = GENERATE(true, false);
+  if (view) hand.point(hand.widget("view").center());
+  hand.key('K', false, true);
+  CHECK(hand.app.tool.tool == Tool::block);
+}
+
 TEST_CASE("letters are commands while the pointer works in the view, digits only after a click there") {
   Hand hand;
   const double azimuth = hand.app.view.camera.azimuth;

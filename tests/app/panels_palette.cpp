@@ -191,6 +191,35 @@ TEST_CASE("Enter does nothing before something is typed or an arrow chooses") {
   }
 }
 
+TEST_CASE("what is typed and Enter in one frame takes what was typed, not what was listed before") {
+  Finder robot;
+  App& app = robot.app;
+  robot.find("");
+  const bool grid = app.view.grid;
+  ImGui::GetIO().AddInputCharactersUTF8("grid");
+  robot.key(key_enter);
+  CHECK_FALSE(app.panels->palette.showing());
+  CHECK(app.view.grid != grid);
+  CHECK_FALSE(app.session.mechanism().bodies.empty());
+}
+
+TEST_CASE("commands are found by what they show, and what is not possible says what it waits for") {
+  Finder robot;
+  const auto [typed, id] = GENERATE(table<const char*, const char*>({{"hunting", "study.map"},
+                                                                     {"droop", "study.response"},
+                                                                     {"eigenvalues", "study.modes"},
+                                                                     {"resonance", "study.response"},
+                                                                     {"tutorial", "file.examples"}}));
+  robot.find(typed);
+  const std::vector<PaletteEntry>& found = robot.app.panels->palette.found();
+  CHECK(std::ranges::any_of(found, [&](const PaletteEntry& entry) { return entry.name == id; }));
+  robot.key(key_escape);
+  robot.frames(2);
+  robot.find("Export the run");
+  REQUIRE(robot.entry().name == "study.export");
+  CHECK(robot.entry().about == "Not now: no motion is shown; M computes one.");
+}
+
 TEST_CASE("what was used last comes first, and all commands without a word") {
   Finder robot;
   robot.find("");

@@ -3,7 +3,9 @@
 #include "robot.hpp"
 #include "session_wait.hpp"
 
+#include "app/render/imgui_compat.hpp"
 #include "app/session/response.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -550,6 +552,85 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   CHECK(app.ui.widgets.count("response/never") == 1);
   CHECK_THAT(state.design.answer.found->result.message,
              ContainsSubstring("with speed of spin from 0 to") && ContainsSubstring(" rad/s:"));
+}
+
+TEST_CASE("Find asks for a speed that is found: under which load does the engine turn at 12 rad/s?") {
+  ResponseRobot robot("governor_engine");
+  App& app = robot.app;
+  choose_response(app.session, "joints.spin.drive.load");
+  robot.frames(2);
+  robot.click("response/design");
+  robot.frames(2);
+  robot.click("response/design/spin.speed");
+  robot.frames(2);
+  REQUIRE(robot.state().design.coordinate == "spin.speed");
+  CHECK(robot.state().design.value == Approx(11.0)); // three digits of the present one
+  // Typed with its unit; the answer's place is told to nobody who looks elsewhere.
+  robot.click("response/value");
+  robot.key('A', true);
+  robot.type("11.5 rad/s");
+  robot.key(key_enter);
+  robot.frames(2);
+  REQUIRE(robot.state().design.answer.found);
+  const DesignAnswer& answer = robot.state().design.answer.found->result;
+  REQUIRE_FALSE(answer.solutions.empty());
+  Mechanism mechanism = app.session.mechanism();
+  set_parameter(mechanism, "joints.spin.drive.load", answer.solutions[0].parameter);
+  CHECK(*coordinate(Analysis(mechanism).solve({}), "spin").speed == Approx(11.5).epsilon(1e-10));
+}
+
+TEST_CASE("torque and load of a drive by torque are drawn, not only what the one exceeds the other by") {
+  ResponseRobot robot("governor_engine");
+  App& app = robot.app;
+  change_parameter(app.session, "joints.spin.drive.load", 20);
+  robot.frames(2);
+  const std::vector<DriveTorque>& torques = app.session.answer.solution.drive_torques;
+  REQUIRE(torques.size() == 1);
+  REQUIRE(torques[0].given);
+  CHECK(torques[0].given->load == 20);
+  CHECK(torques[0].given->torque == Approx(20).epsilon(1e-10));
+  for (const char* key : {"given spin", "load spin"}) {
+    const std::vector<ResponseQuantity> offered = offered_quantities(app.session);
+    const auto found = std::ranges::find(offered, std::string(key), &ResponseQuantity::key);
+    REQUIRE(found != offered.end());
+    choose_quantity(app.session, *found);
+    robot.frames(3);
+    REQUIRE(robot.drawn().plot.marker);
+    CHECK(robot.drawn().plot.marker->y == Approx(20).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a long list is searched by keys: arrows mark, Enter takes") {
+  ResponseRobot robot("chain20");
+  App& app = robot.app;
+  imgui_compat::map_key(ImGuiKey_DownArrow, keys::down);
+  robot.click("response/design");
+  robot.frames(3);
+  const std::string before = robot.state().design.coordinate;
+  SECTION("the first of what is found") {
+    robot.type("12");
+    robot.frames(2);
+    robot.key(key_enter);
+    robot.frames(3);
+    CHECK_THAT(robot.state().design.coordinate, ContainsSubstring("12"));
+    CHECK_FALSE(app.ui.widgets.contains("response/design/search"));
+  }
+  SECTION("the second") {
+    robot.key(keys::down);
+    robot.key(keys::down);
+    robot.key(key_enter);
+    robot.frames(3);
+    CHECK(robot.state().design.coordinate != before);
+    CHECK_FALSE(app.ui.widgets.contains("response/design/search"));
+  }
+  SECTION("nothing is found, and nothing taken") {
+    robot.type("zzz");
+    robot.frames(2);
+    robot.key(key_enter);
+    robot.frames(3);
+    CHECK(robot.state().design.coordinate == before);
+    CHECK(app.ui.widgets.contains("response/design/search"));
+  }
 }
 
 TEST_CASE("a list that is opened shows what is chosen, however far down it stands") {

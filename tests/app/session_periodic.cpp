@@ -1,10 +1,13 @@
 // The motion that takes the steady state's place, without a window.
 #include "app/session/session.hpp"
+#include "app/session/state_words.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <cmath>
+#include <complex>
+#include <cstdio>
 #include <numbers>
 
 using namespace flyball;
@@ -87,4 +90,27 @@ TEST_CASE("Session: the motion begins in the periodic one and stays there") {
 TEST_CASE("Session: the search is left to the background, and the window goes on") {
   RotorSession session(LiveSolver::Mode::background);
   CHECK(wait_until(session, [&] { return periodic_motion(session) != nullptr; }));
+}
+
+TEST_CASE("Session: how an unstable state is left is told in words") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, shipped_file("governor_engine"));
+  update(session, 0);
+  CHECK(growth_words(session.answer.solution).empty());
+  change_parameter(session, "joints.slide.damping", 15);
+  update(session, 0);
+  const Solution& hunting = session.answer.solution;
+  REQUIRE(hunting.stable == false);
+  const std::string words = growth_words(hunting);
+  INFO(words);
+  double growth = 0, turns = 0;
+  for (const std::complex<double>& each : *hunting.eigenvalues)
+    if (each.real() > growth) {
+      growth = each.real();
+      turns = std::abs(each.imag()) / (2 * std::numbers::pi);
+    }
+  double said = 0, doubled = 0;
+  REQUIRE(std::sscanf(words.c_str(), "It hunts: swings at %lf Hz double every %lf s.", &said, &doubled) == 2);
+  CHECK(said == Approx(turns).epsilon(0.01));
+  CHECK(doubled == Approx(std::log(2) / growth).epsilon(0.01));
 }

@@ -2,6 +2,7 @@
 
 #include "app/document/rename.hpp"
 #include "app/render/icons.hpp"
+#include "app/render/imgui_compat.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
@@ -12,6 +13,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -44,6 +46,39 @@ bool begin_choice(Ui& ui, const std::string& name, const std::string& label, con
     help_on_hover(help);
   }
   return open;
+}
+
+// The field above a long list; true where Enter takes what is marked.
+bool search_field(Ui& ui, const std::string& name, ChoiceSearch& search) {
+  if (ImGui::IsWindowAppearing() || std::exchange(search.wants_keys, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const std::string before = search.text;
+  const bool entered =
+      ImGui::InputTextWithHint("##search", "Search", &search.text, ImGuiInputTextFlags_EnterReturnsTrue);
+  note_widget(ui.widgets, name + "/search", KeyUse::type);
+  if (search.text != before) search.marked = search.text.empty() ? -1 : 0;
+  search.wants_keys = entered; // should there be nothing to take
+  return entered;
+}
+
+// While one types in the field above; returns whether another row is marked.
+bool move_by_arrows(ChoiceSearch& search, int rows) {
+  const bool down = imgui_compat::key_pressed(ImGuiKey_DownArrow),
+             up = imgui_compat::key_pressed(ImGuiKey_UpArrow);
+  if (down == up || rows == 0 || !ImGui::GetIO().WantTextInput) return false;
+  search.marked = down ? std::min(search.marked + 1, rows - 1) : std::max(search.marked - 1, 0);
+  return true;
+}
+
+// The rows of a long list, which go on below the field while it stays.
+void begin_rows(const Ui& ui, std::span<const std::string> options) {
+  constexpr float most_rows = 18;
+  float width = ImGui::GetContentRegionAvail().x;
+  for (const std::string& option : options)
+    width = std::max(width,
+                     ImGui::CalcTextSize(option.c_str()).x + ImGui::GetStyle().ScrollbarSize + 8 * ui.scale);
+  const float rows = std::min(static_cast<float>(options.size()), most_rows);
+  ImGui::BeginChild("rows", {width, rows * ImGui::GetTextLineHeightWithSpacing()});
 }
 
 // A body's point keeps being told of.
@@ -215,34 +250,41 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
                                            const char* help) {
   std::optional<std::string> other;
   if (!begin_choice(ui, name, label, chosen, help)) return other;
-  std::string& search = ui.fields.choice_search;
-  if (ImGui::IsWindowAppearing()) search.clear();
-  if (options.size() > searchable) {
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(-1);
-    ImGui::InputTextWithHint("##search", "Search", &search);
-    note_widget(ui.widgets, name + "/search", KeyUse::type);
-  }
+  ChoiceSearch& search = ui.fields.choice_search;
+  const bool appearing = ImGui::IsWindowAppearing(), searched = options.size() > searchable;
+  if (appearing) search = {};
+  const bool entered = searched && search_field(ui, name, search);
   std::vector<const std::string*> shown;
   for (const std::string& option : options)
-    if (search.empty() || contains(option, search)) shown.push_back(&option);
-  if (ImGui::IsWindowAppearing()) { // in its middle what is chosen, which else may not even be drawn
-    const auto at = std::ranges::find_if(shown, [&](const std::string* each) { return *each == chosen; });
+    if (search.text.empty() || contains(option, search.text)) shown.push_back(&option);
+  const auto present = std::ranges::find_if(shown, [&](const std::string* each) { return *each == chosen; });
+  const bool moved = searched && move_by_arrows(search, static_cast<int>(shown.size()));
+  const int marked = search.marked >= 0 ? search.marked : static_cast<int>(present - shown.begin());
+  if (searched) begin_rows(ui, options);
+  if (appearing || moved) { // what is marked, which else may not even be drawn
     const float row = ImGui::GetTextLineHeightWithSpacing();
     ImGui::SetScrollFromPosY(ImGui::GetCursorPosY() - ImGui::GetScrollY() +
-                             row * (static_cast<float>(at - shown.begin()) + 0.5f));
+                             row * (static_cast<float>(marked) + 0.5f));
   }
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(shown.size()));
+  std::optional<std::string> taken;
+  if (entered && marked < static_cast<int>(shown.size()) && search.marked >= 0)
+    taken = *shown[static_cast<std::size_t>(marked)];
   while (clipper.Step())
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const std::string& option = *shown[static_cast<std::size_t>(i)];
       ImGui::PushID(i);
-      if (ImGui::Selectable(option.c_str(), option == chosen) && option != chosen) other = option;
+      if (ImGui::Selectable(option.c_str(), i == marked)) taken = option;
       ImGui::PopID();
       note_widget(ui.widgets, name + "/" + option);
       if (option == chosen) mark_chosen(ui.widgets);
     }
+  if (searched) ImGui::EndChild();
+  if (taken) {
+    ImGui::CloseCurrentPopup();
+    if (*taken != chosen) other = taken;
+  }
   ImGui::EndCombo();
   return other;
 }

@@ -23,7 +23,8 @@ const std::array help_commands{
             .key = plain('?'),
             .also = plain(keys::f1),
             .run = [](App& app) { app.panels->shortcuts.open = !app.panels->shortcuts.open; },
-            .checked = [](const App& app) { return app.panels->shortcuts.open; }},
+            .checked = [](const App& app) { return app.panels->shortcuts.open; },
+            .words = "keyboard"},
 };
 
 } // namespace

@@ -77,7 +77,7 @@ std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
   ImGui::SetNextWindowPos({window.x / 2, 70 * s}, ImGuiCond_Always, {0.5f, 0});
   if (appearing) index_.fresh = false; // what can be done now may be something else
   const std::vector<PaletteEntry>& found = palette_entries(session, commands, index_, search_, recent_);
-  const int count = static_cast<int>(found.size());
+  int count = static_cast<int>(found.size());
   // As tall as what is found, up to a dozen rows.
   const float row = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
   const float list = row * static_cast<float>(std::clamp(count, 1, 14)) + 4 * s;
@@ -95,6 +95,9 @@ std::optional<PaletteEntry> CommandPalette::draw(const Session& session, Ui& ui,
           "##search", "Find a command, a part or a number; a number behind its name sets it", &search_))
     chosen_ = is_blank(search_) ? -1 : 0;
   note_widget(ui.widgets, "palette/search", KeyUse::none);
+  // What is taken below is of what was typed, also where both come in one frame: `found` is the index's.
+  palette_entries(session, commands, index_, search_, recent_);
+  count = static_cast<int>(found.size());
   bool accepted = false, moved = false, left = escape_pressed();
   for (const KeyPress& key : std::exchange(ui.keys, {})) {
     if (key.key == keys::enter) accepted = true;

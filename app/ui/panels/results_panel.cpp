@@ -66,14 +66,17 @@ void verdict(const Session& session, Ui& ui) {
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   note_widget(ui.widgets, "results/verdict");
+  const std::string growth = solution.status == Status::converged ? growth_words(solution) : std::string();
   if (solution.status == Status::converged && solution.stability_reason)
-    paragraph(reason_text(*solution.stability_reason), colors.dim);
+    paragraph(growth.empty() ? reason_text(*solution.stability_reason) : growth, colors.dim);
   if (const PeriodicState* state = periodic_state(session))
     paragraph(state->message, motion ? colors.dim : colors.text);
   else if (session.study.periodic.search.running())
     paragraph("Looking for a periodic motion…", colors.dim);
   // Where all went well the words above say it already.
-  if (solution.status != Status::converged || solution.message != "Converged.")
+  const bool said = solution.message == "Converged." ||
+                    (!growth.empty() && solution.message == "Converged. This state is unstable.");
+  if (solution.status != Status::converged || !said)
     paragraph(without_repetition(window_message(solution), headline),
               solution.status == Status::converged || motion ? colors.dim : colors.text);
 }

@@ -31,14 +31,21 @@ struct Scrub {
   float travelled = 0;        // pixels
 };
 
+// What is sought in a long list of names that is open.
+struct ChoiceSearch {
+  std::string text;
+  int marked = -1;         // row that Enter takes; none before something is typed or an arrow pressed
+  bool wants_keys = false; // to be given the keyboard when it is drawn next
+};
+
 struct FieldState {
   Typing typing;
   Scrub scrub;
   // Edits wait until the panels are drawn, which refer to the mechanism as it was before.
   std::vector<std::function<void()>> later;
   std::optional<double> plain; // what was typed in a field outside the document
-  std::string choice_search;   // in the open list of names
-  std::string picking;         // address of the vector for which the view is asked to pick a named point
+  ChoiceSearch choice_search;
+  std::string picking; // address of the vector for which the view is asked to pick a named point
 };
 
 } // namespace flyball
