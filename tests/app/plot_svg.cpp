@@ -148,7 +148,7 @@ TEST_CASE("numbers in CSV read back exactly, whatever the names", "[plot]") {
   CHECK(std::strtod(rows[2][1].c_str(), nullptr) == 1e-300);
   CHECK(std::strtod(rows[2][2].c_str(), nullptr) == -1.7976931348623157e308);
   CHECK(rows[3][1].empty());
-  CHECK(rows[4][0] == "curve 2");
+  CHECK(rows[4][0] == "angle"); // what has no name is what the axis says
   CHECK(std::strtod(rows[4][1].c_str(), nullptr) == 4.9e-324);
   CHECK(std::strtod(rows[4][2].c_str(), nullptr) == -0.45377171949723583);
   CHECK(rows[5][0] == "fold");
