@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace flyball {
 
 namespace {
@@ -33,10 +35,12 @@ std::string to_csv(const Plot& plot, const PlotLook& look) {
     out += ',';
     out += csv_number(y / plot.y.factor);
   };
+  const auto nameless = std::ranges::count(plot.curves, std::string(), &PlotCurve::name);
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const PlotCurve& curve = plot.curves[i];
     if (!is_shown(curve, look) || curve.hatching) continue;
-    const std::string otherwise = plot.y.label.empty() ? fmt::format("curve {}", i + 1) : plot.y.label;
+    const std::string otherwise =
+        plot.y.label.empty() || nameless > 1 ? fmt::format("curve {}", i + 1) : plot.y.label;
     const std::string name = csv_field(curve.name.empty() ? otherwise : curve.name);
     for (const auto& point : curve.points) {
       row(name, point[0], point[1]);
