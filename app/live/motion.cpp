@@ -83,7 +83,7 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
       if (well && until < end && samples > least_samples &&
           memory_of(simulator.run()) / simulator.run().time.size() * samples > request.most_memory)
         return {so_far(), true,
-                "The run is kept up to " + rounded_text(until, 6) +
+                "The run is kept up to " + rounded_text(simulator.run().time.back(), 6) +
                     " s: more of it would take too much memory. Keep its last state to start from there."};
       if (options.rate > 0) step *= std::clamp(slice / std::max(took, 1e-6), 0.5, 2.);
       if (well && until < end && since(told) > wait) {

@@ -205,6 +205,20 @@ TEST_CASE("curves without a name, and names for which the legend has no room, ar
   }
 }
 
+TEST_CASE("what goes along with a curve is read between its points", "[plot]") {
+  Plot plot;
+  plot.curves = {{.name = "boundary", .points = {{0, 1}, {10, 3}, {20, 3}}}};
+  plot.curves[0].along = PlotAlong{"hunts at", "Hz", {2, 6, 7}};
+  const PlotLayout layout = plot_layout(plot, {}, 400, 300, {});
+  const auto readings = readings_at(plot, {}, layout, 2.5, 0);
+  REQUIRE(readings.size() == 1);
+  CHECK(readings[0].y == Approx(1.5));
+  REQUIRE(readings[0].along);
+  CHECK((*readings[0].along)[0] == Approx(3));
+  CHECK((*readings[0].along)[1] == 4); // apart
+  CHECK((*readings_at(plot, {}, layout, 20, 0)[0].along)[0] == Approx(7));
+}
+
 TEST_CASE("a plot begins and ends where it is told to, as another above it does", "[plot]") {
   Plot plot;
   plot.y = {.label = "gain", .unit = "dB"};
