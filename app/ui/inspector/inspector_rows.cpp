@@ -259,12 +259,14 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
     if (search.text.empty() || contains(option, search.text)) shown.push_back(&option);
   const auto present = std::ranges::find_if(shown, [&](const std::string* each) { return *each == chosen; });
   const bool moved = searched && move_by_arrows(search, static_cast<int>(shown.size()));
-  const int marked = search.marked >= 0 ? search.marked : static_cast<int>(present - shown.begin());
+  // None where what is chosen is not among them, such as "another number…".
+  const int present_row = present == shown.end() ? -1 : static_cast<int>(present - shown.begin());
+  const int marked = search.marked >= 0 ? search.marked : present_row;
   if (searched) begin_rows(ui, options);
   if (appearing || moved) { // what is marked, which else may not even be drawn
     const float row = ImGui::GetTextLineHeightWithSpacing();
     ImGui::SetScrollFromPosY(ImGui::GetCursorPosY() - ImGui::GetScrollY() +
-                             row * (static_cast<float>(marked) + 0.5f));
+                             row * (static_cast<float>(std::max(marked, 0)) + 0.5f));
   }
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(shown.size()));
