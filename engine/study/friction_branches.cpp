@@ -258,6 +258,8 @@ class FrictionFollower {
       if (value == 0) break;
       bracket.take(here, value);
     }
+    constexpr double run_out = 1e-6;
+    if (!is_covered && margin(edge.last) < run_out) edge.slips = true; // as where its drive stands
     const bool held = is_covered && !covered(covered_, bad_number);
     edge.why = edge.slips   ? "a joint with friction begins to slip, or sticks"
                : held       ? "friction holds what rests here in balance"
