@@ -145,7 +145,7 @@ float row_height(const Ui& ui, ParameterGroup group) {
 
 void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterControl& control) {
   const float s = ui.scale, icon_width = 22 * s;
-  const std::string name = "parameters/" + control.address;
+  const std::string name = "parameters/" + control.address, value_name = name + "/value";
   ImGui::PushID(control.address.c_str());
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const float start = ImGui::GetCursorPosX(), room = ImGui::GetContentRegionAvail().x;
@@ -155,7 +155,7 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   const bool pinned = control.group == ParameterGroup::pinned;
   const bool changed = control.value != control.file_value;
   float value_width = std::min((room - icon_width) * 0.5f, 150 * s);
-  if (!typing_in(ui, name + "/value")) { // then the label comes first
+  if (!typing_in(ui, value_name)) { // then the label comes first
     const float buttons = (1.f + (pinned ? 1 : 0) + (changed ? 1 : 0)) * icon_width;
     const float left = room - buttons - control_label_width(ui, control) - 5 * s;
     value_width =
@@ -186,7 +186,7 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   }
   ImGui::SetCursorPosX(start + value_at);
   quantity_field(session, ui,
-                 {.name = name + "/value",
+                 {.name = value_name,
                   .value = control.value,
                   .unit = control.unit,
                   .help = "Click to type a number, with a unit if you like.",
@@ -202,9 +202,9 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   bool type_value = false;
   if (slider(session, ui, name, control, value, type_value)) later(ui, [set, value] { set(value); });
   if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) ImGui::OpenPopup("range");
-  if (takes_menu_key(ui, name) || takes_menu_key(ui, name + "/value")) ImGui::OpenPopup("range");
+  if (takes_menu_key(ui, name) || takes_menu_key(ui, value_name)) ImGui::OpenPopup("range");
   if (type_value)
-    later(ui, [&session, &ui, field = name + "/value",
+    later(ui, [&session, &ui, field = value_name,
                text = short_text(unit.shown(control.value), 12) + " " + unit.text] {
       start_typing(session, ui, field, text);
     });
