@@ -97,7 +97,7 @@ TEST_CASE("a quiet frame of ten thousand bodies costs what one of a hundred does
     INFO("allocations " << costs[0].allocations << ", " << costs[1].allocations);
     INFO("bytes " << costs[0].bytes << ", " << costs[1].bytes);
     if (FLYBALL_COUNT_MEMORY) CHECK(costs[0].allocations > 100);
-    CHECK(costs[1].allocations < costs[0].allocations + 150); // longer names in the same rows
+    CHECK(costs[1].allocations < costs[0].allocations + 150); // four sliders more are in sight
     CHECK(costs[1].bytes < costs[0].bytes + 20000);
   }
 }
