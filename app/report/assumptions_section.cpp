@@ -62,7 +62,10 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   const Mechanism& m = *contents.mechanism;
   const SystemSummary& system = contents.system;
   HtmlTerms terms;
-  terms.term("Bodies", "Rigid, joined by ideal joints without play or dry friction.");
+  terms.term("Bodies", has_friction(m)
+                           ? "Rigid, joined by ideal joints without play; dry friction (Coulomb's) where the "
+                             "scene has it, the same sticking and slipping."
+                           : "Rigid, joined by ideal joints without play or dry friction.");
   terms.term("Ground", "Fixed; the world's axes are an inertial frame, right-handed.");
   terms.term("Gravity", m.gravity.isZero() ? Html("None.")
                                            : vector_quantity(m.gravity, "m/s^2", 9) + ", size " +

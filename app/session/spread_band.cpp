@@ -30,6 +30,10 @@ FoundBand find_band(const BandRequest& request, const TaskContext<FoundBand>& co
   return found;
 }
 
+bool rests_on_friction(const ResponseLine& line) {
+  return !line.points.empty() && !line.points.front().frictions.empty();
+}
+
 std::string share_text(double share) {
   return share < 0.001 ? "under 0.1 %" : short_text(100 * share, 2) + " %";
 }
@@ -49,6 +53,7 @@ std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vecto
     places.clear();
     stretches.clear();
     for (const ResponseLine& line : curve.result.lines) {
+      if (rests_on_friction(line)) continue;
       bool on = false;
       double last = 0;
       for (std::size_t i = 0; i < line.points.size(); ++i) {
@@ -74,7 +79,10 @@ std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vecto
 }
 
 std::string band_refusal(const Session& session) {
-  if (!session.study.response.curve.found) return "There is no curve.";
+  const auto& curve = session.study.response.curve.found;
+  if (!curve) return "There is no curve.";
+  if (std::ranges::all_of(curve->result.lines, rests_on_friction))
+    return "What rests on friction has no band of tolerances.";
   if (session.study.spread.begun && chosen_tolerances(session).empty())
     return "No number has a tolerance: give one to some in Spread.";
   return {};

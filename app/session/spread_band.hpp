@@ -40,6 +40,7 @@ std::string band_words(const Session& session);
 std::optional<std::size_t> band_output(const Session& session);
 
 // The places of the curve's stable states about which samples are made: about a fortieth of the range apart.
+// None of what rests on friction.
 std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vector<BandStretch>& stretches);
 
 } // namespace flyball

@@ -68,6 +68,8 @@ TEST_CASE("the response curve shows what friction holds and what slips, each in 
   const auto curve = session.study.response.curve.found;
   robot.frames(5);
   CHECK(session.study.response.curve.found == curve);
+  CHECK(session.study.friction.ribbon.problem.empty());
+  CHECK_FALSE(band_refusal(session).empty()); // of tolerances
   // The state goes along the branch that it is taken to.
   const auto& lines = session.study.response.curve.found->result.lines;
   for (std::size_t i = 0; i < lines.size(); ++i) {
