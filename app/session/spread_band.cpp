@@ -81,7 +81,7 @@ std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vecto
 std::string band_refusal(const Session& session) {
   const auto& curve = session.study.response.curve.found;
   if (!curve) return "There is no curve.";
-  if (std::ranges::all_of(curve->result.lines, rests_on_friction))
+  if (!curve->result.lines.empty() && std::ranges::all_of(curve->result.lines, rests_on_friction))
     return "What rests on friction has no band of tolerances.";
   if (session.study.spread.begun && chosen_tolerances(session).empty())
     return "No number has a tolerance: give one to some in Spread.";
