@@ -209,6 +209,8 @@ TEST_CASE("periodic motions are found one by one while the window goes on, until
   io.MouseDown[0] = false;
   frame();
   CHECK(study.running());
+  for (int i = 0; i < 20 && app.ui.widgets.contains("response/go_on"); ++i)
+    frame();
   CHECK_FALSE(app.ui.widgets.contains("response/go_on"));
   for (int i = 0; i < 4000 && study.found->result.points.size() <= before; ++i)
     frame();
