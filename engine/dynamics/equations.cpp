@@ -133,7 +133,19 @@ double Equations::stored_energy() const {
 }
 
 double Equations::energy_scale() {
-  evaluate_magnitudes(system_, parameters_, q_, lambda_, kinematics_, magnitudes_);
+  // A spring at rest at zero has a size for the sake of rounding alone; stiff ones would count for more than
+  // all that moves.
+  constexpr double at_rest = 1e-6; // rad, or of the reach
+  Parameters moving = parameters_;
+  for (std::size_t i = 0; i < system_.links.size(); ++i) {
+    const Link& link = system_.links[i];
+    if (link.v < 0 || link.type == LinkType::spherical || !moving.links[i].elastic) continue;
+    const CoordinateForce& spring = moving.links[i].force[0];
+    const double reach = link.type == LinkType::prismatic ? parameters_.length : 1;
+    if (std::abs(q_[link.q]) + std::abs(spring.free) < at_rest * reach)
+      moving.links[i].force.hold(0).stiffness = 0;
+  }
+  evaluate_magnitudes(system_, moving, q_, lambda_, kinematics_, magnitudes_);
   double most = 0;
   for (const Link& link : system_.links) {
     if (link.v < 0) continue;
