@@ -28,7 +28,7 @@ std::string friction_note(const ResponsePoint& point) {
     if (force.slips)
       out += " slips against " + rounded_text(force.limit, 4) + unit;
     else if (force.value)
-      out += " is held by " + rounded_text(std::abs(*force.value), 4) + " of " +
+      out += " is held by " + rounded_text(std::abs(*force.value), 2) + " of " +
              rounded_text(force.limit, 4) + unit;
     else
       out += " is held";
