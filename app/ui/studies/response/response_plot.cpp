@@ -234,8 +234,8 @@ void draw_response(const Session& session, ResponseView& drawn) {
       session.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
-    const bool same = drawn.plot.y.label == quantity.title &&
-                      drawn.plot.x.label == parameter_phrase(curve->of.address);
+    const bool same =
+        drawn.plot.y.label == quantity.title && drawn.plot.x.label == parameter_phrase(curve->of.address);
     Plot plot = response_plot(*curve, quantity, session.units, drawn.pieces);
     if (design && "value " + design->of.coordinate == state.choice.quantity &&
         design->of.of.address == curve->of.address) {
