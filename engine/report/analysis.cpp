@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/topology.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
@@ -13,6 +14,7 @@
 #include "engine/report/report.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/search/find_equilibrium.hpp"
+#include "engine/search/phase_search.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/sensitivity.hpp"
@@ -134,6 +136,7 @@ struct Analysis::State {
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
+  bool turned = false;  // what turns at found speeds stands otherwise than drawn in `parameters`
   // Of the last solve's answer where that rests on dry friction: it is not among the states of this system.
   std::optional<Analysis> on_friction;
 
@@ -156,6 +159,59 @@ struct Analysis::State {
       const auto rate = along.col(static_cast<Eigen::Index>(i));
       out.sensitivities.back().measures.assign(rate.begin(), rate.end());
     }
+  }
+
+  // Looks for a steady state at other angles of what turns at found speeds: a stable one before others.
+  void find_turned(const Problem& problem) {
+    const std::vector<TurnedState> states = find_turned_states(problem, start, steady.elsewhere());
+    const Parameters as_drawn = parameters;
+    const auto take = [&](const TurnedState& state) {
+      for (std::size_t l = 0; l < parameters.links.size(); ++l)
+        parameters.links[l].start = state.starts[static_cast<Eigen::Index>(l)];
+      steady.reuse();
+      steady.found = {};
+      steady.found.status = Status::converged;
+      steady.found.z = state.z;
+      steady.found.iterations = 1;
+      steady.start = start;
+      steady.stability.reset();
+      steady.others.reset();
+      steady.phases = sample_phases(system, parameters);
+      steady.error = {};
+      steady.error.solution = state.error;
+      steady.error.data = steady.error.undetermined = Eigen::VectorXd::Zero(state.error.size());
+      steady.existence = check_existence(problem, state.z.q, steady.phases, steady.elsewhere());
+      steady.holds = steady.existence.holds;
+      turned = true;
+      return steady.holds;
+    };
+    const TurnedState* held = nullptr;
+    for (const TurnedState& state : states) {
+      if (!take(state)) continue;
+      if (stability_of(problem, steady, false, 0).stable == true) return;
+      if (!held) held = &state;
+    }
+    if (held && take(*held)) return;
+    if (!states.empty()) { // as it was
+      parameters = as_drawn;
+      turned = false;
+      steady.find(problem, start, drawn, {});
+    }
+  }
+
+  // The angles that find_turned() found, one sentence.
+  std::string turned_message() const {
+    std::string angles;
+    for (const DriveTorqueElement& torque : system.torques) {
+      const Link& link = system.links[static_cast<std::size_t>(torque.link)];
+      const double by = parameters.links[static_cast<std::size_t>(torque.link)].start;
+      if (std::abs(by) < 1e-12) continue;
+      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+      angles += (angles.empty() ? "" : ", ") +
+                coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " by " +
+                rounded_text(by, 6) + (link.type == LinkType::revolute ? " rad" : " m");
+    }
+    return "So that the balance stays it stands turned against the drawn pose: " + angles + ".";
   }
 
   // Where drives give torques: with the speeds that were found, for what turns with them.
@@ -243,6 +299,8 @@ Solution Analysis::solve(const SolveOptions& options) {
 
 Solution Analysis::solve_through(const SolveOptions& options) {
   State& s = *state_;
+  if (s.turned) s.bind_numbers();
+  s.turned = false;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
@@ -270,6 +328,9 @@ Solution Analysis::solve_through(const SolveOptions& options) {
       s.on_friction = std::move(state->analysis);
       return std::move(state->solution);
     }
+  if (!steady.holds && !on_friction && !options.nearest && !options.newton_only &&
+      problem.form == KktForm::dense && !problem.cancelled())
+    s.find_turned(problem);
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty() &&
       !stands_on_kink(problem, steady.found.z.q, steady.elsewhere())) {
@@ -329,7 +390,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   if (open && stability.reason != StabilityReason::neutral) leave_verdict_open(steady, stability);
   if (options.details) {
     add_condition(problem, steady, out);
-    s.add_rates(problem, out);
+    if (!s.turned) s.add_rates(problem, out); // those angles move, too
   }
   leave_out_modes(steady.error, stability, out);
   report_progress(options.progress, "reactions");
@@ -337,7 +398,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                           stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
-  if (options.details && !s.system.torques.empty())
+  if (s.turned) out.message += " " + s.turned_message();
+  if (options.details && !s.system.torques.empty() && !s.turned)
     out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);

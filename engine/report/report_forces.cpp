@@ -1,5 +1,6 @@
 #include "engine/report/report_forces.hpp"
 
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/report/phase_range.hpp"
 #include "engine/system/constraint_row.hpp"
 #include "engine/system/drive_torque.hpp"
@@ -92,7 +93,8 @@ Eigen::VectorXd self_balanced_multipliers(const Problem& problem, Workspace& w) 
   }
   const Eigen::VectorXd target = force.cwiseProduct(problem.scaling.column);
   Eigen::VectorXd found;
-  w.kkt(problem).balance_with_least_norm(target, found);
+  if (!balance_with_tied_angles(problem, w.kinematics, target, found))
+    w.kkt(problem).balance_with_least_norm(target, found);
   return (arbitrary - found).cwiseProduct(problem.scaling.row);
 }
 
@@ -293,7 +295,8 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
   if (problem.system.rows == 0) return z;
   factor_constraints(problem, w);
   w.scaled_force = -w.residual.f.cwiseProduct(problem.scaling.column);
-  w.kkt(problem).balance_with_least_norm(w.scaled_force, w.scaled_lambda);
+  if (!balance_with_tied_angles(problem, w.kinematics, w.scaled_force, w.scaled_lambda))
+    w.kkt(problem).balance_with_least_norm(w.scaled_force, w.scaled_lambda);
   z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
   return z;
 }

@@ -1,5 +1,6 @@
 #include "engine/solve/newton.hpp"
 
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/system/constraint_row.hpp"
@@ -105,7 +106,8 @@ int independent_rows(const Problem& problem, Workspace& w) {
 
 void best_multipliers(const Problem& problem, Workspace& w, Eigen::VectorXd& lambda) {
   w.scaled_force = -w.residual.f.cwiseProduct(problem.scaling.column);
-  w.kkt(problem).balance(w.scaled_force, w.scaled_lambda);
+  if (!balance_with_tied_angles(problem, w.kinematics, w.scaled_force, w.scaled_lambda))
+    w.kkt(problem).balance(w.scaled_force, w.scaled_lambda);
   lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
 }
 

@@ -1,5 +1,6 @@
 #include "engine/stability/linear_motion.hpp"
 
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/stability/phase_stiffness.hpp"
@@ -97,14 +98,17 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
     out.unit = scaling.column;
     ConstraintSpace space;
     Eigen::MatrixXd jacobian(system.rows, system.nv);
-    if (system.rows > 0) jacobian = scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal();
+    if (system.rows > 0)
+      jacobian = scaling.row.asDiagonal() *
+                 constraints_of_motion(system, problem.parameters, w.kinematics, l.constraint) *
+                 scaling.column.asDiagonal();
     space.factor(jacobian, rank_tolerance(problem, w.residual.phi));
     out.basis = space.basis();
     const Eigen::VectorXd change = scaling.column.cwiseQuotient(problem.scaling.column);
     Eigen::MatrixXd stiffness = change.asDiagonal() * w.dense.stiffness() * change.asDiagonal();
     make_stiffness_of_motion(system, stiffness);
     const PhaseStiffness phases = phase_stiffness(problem, z, w.elsewhere());
-    out.of_angles = !phases.entries.empty();
+    out.of_angles = !phases.entries.empty() || loops_tie_angles(problem, w.kinematics);
     for (std::size_t i = 0; i < phases.entries.size(); ++i) {
       const int v = phases.entries[i];
       stiffness.col(v) =

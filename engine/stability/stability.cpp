@@ -1,5 +1,6 @@
 #include "engine/stability/stability.hpp"
 
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/largest.hpp"
@@ -306,7 +307,8 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   Workspace& w = at.w;
   const bool varies =
       motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters), w.elsewhere());
-  const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty();
+  const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty() ||
+                         loops_tie_angles(problem, w.kinematics);
   // The potential at given speeds tells nothing of their angles.
   const bool potential = !of_angles && has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();

@@ -214,6 +214,8 @@ class Builder {
     for (const DriveTorqueElement& torque : steady_system_.torques) {
       const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
       balance_q_[link.q] = u_[link.v];
+      LinkParameters& numbers = steady_parameters_.links[static_cast<std::size_t>(torque.link)];
+      numbers.start = q_[link.q] - numbers.drawn; // at the angle where it stands
     }
   }
 

@@ -69,7 +69,7 @@ std::optional<Eigen::VectorXd> closing_rates(const System& system, const Paramet
 std::vector<CoordinateReference> implied_turning(const System& system, const Parameters& p, bool beside) {
   std::vector<CoordinateReference> out;
   if (system.rows == 0) return out;
-  const auto rates = closing_rates(system, p);
+  const auto rates = closing_rates(system, p, Elastic::stands);
   if (!rates) return out;
   std::vector<bool> turns(static_cast<std::size_t>(system.nv));
   std::vector<bool> may(static_cast<std::size_t>(system.nv));
@@ -213,7 +213,8 @@ void set_implied_rates(const System& system, Parameters& p) {
 
 void set_closing_rates(const System& system, Parameters& p) {
   if (system.torques.empty()) return;
-  const auto rates = closing_rates(system, p);
+  auto rates = closing_rates(system, p, Elastic::stands);
+  if (!rates) rates = closing_rates(system, p);
   for (std::size_t l = 0; l < system.links.size() && rates; ++l)
     if (const Link& link = system.links[l]; finds_speed(link)) p.links[l].speed = (*rates)[link.v];
 }

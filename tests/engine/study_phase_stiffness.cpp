@@ -10,6 +10,8 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -180,4 +182,107 @@ TEST_CASE("what is left to itself at rest above its hinge is not told to be stab
   REQUIRE(s.status == Status::converged);
   CHECK_FALSE(s.stable);
   CHECK_THAT(s.message, ContainsSubstring("an angle matters"));
+}
+
+namespace {
+
+// Of the characteristic polynomial of M q'' + C q' + K q = 0, beside its terms.
+double left_of(const Eigen::MatrixXd& m, const Eigen::MatrixXd& c, const Eigen::MatrixXd& k, Complex x) {
+  const Eigen::MatrixXcd all = x * x * m.cast<Complex>() + x * c.cast<Complex>() + k.cast<Complex>();
+  const Eigen::MatrixXd sizes = std::norm(x) * m.cwiseAbs() + std::abs(x) * c.cwiseAbs() + k.cwiseAbs();
+  return std::abs(all.determinant()) / sizes.rowwise().sum().prod();
+}
+
+} // namespace
+
+TEST_CASE("two shafts with different torques stand turned so that their spring carries the difference",
+          "[phase]") {
+  Mechanism m = shafts(false);
+  m.joints[0].formulas[0].text = "2 N m - 0.2 N m s * rate(p)";
+  m.joints[1].formulas[0].text = "-0.5 N m - 0.05 N m s * rate(q)";
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "p"), WithinRel(6, 1e-12)); // (2 - 0.5) / 0.25
+  CHECK_THAT(speed(s, "q"), WithinRel(6, 1e-12));
+  CHECK(s.stable == true);
+  CHECK_THAT(s.message, ContainsSubstring("stands turned against the drawn pose: q by"));
+  // The moment of the spring between points at 0.3 m, 0.5 m apart along the axis.
+  const double twist = coordinate(s, "q").value - coordinate(s, "p").value,
+               length = std::sqrt(0.25 + 2 * 0.09 * (1 - std::cos(twist)));
+  CHECK_THAT(50 * (length - 0.2) * 0.09 * std::sin(-twist) / length, WithinRel(0.8, 1e-10));
+  SimulationOptions run;
+  run.duration = 60;
+  const Run motion = simulate(m, run);
+  CHECK_THAT(motion.coordinates[0].rate.back(), WithinRel(6, 1e-8));
+  CHECK_THAT(motion.coordinates[1].value.back() - motion.coordinates[0].value.back(), WithinAbs(twist, 1e-7));
+}
+
+TEST_CASE("a motor drives a load through a flexible coupling, each in bearings of its own",
+          "[phase][coupling]") {
+  const double stiffness = 10, loss = 0.1;
+  const bool prescribed = GENERATE(false, true);
+  CAPTURE(prescribed);
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.3}), body("b", 1, {0, 0, 0.5}, {0.1, 0.1, 0.2})};
+  Joint load = revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1});
+  m.joints = {torque_driven(hinge("p", "ground", "a"), 5, "5 N m - 1 N m s * rate(p)"),
+              prescribed ? driven(load, 4) : torque_driven(load, 3, "-0.2 N m s * rate(q)"),
+              dampened(sprung(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), stiffness), loss)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double w = prescribed ? 4 : 5 / 1.2;
+  CHECK_THAT(speed(s, "p"), WithinRel(w, 1e-12));
+  CHECK_THAT(value(s, "c"), WithinRel(-(5 - w) / stiffness, 1e-10));
+  CHECK(std::abs(value(s, "c") + (5 - w) / stiffness) <= coordinate(s, "c").error);
+  CHECK(s.stable == true);
+  REQUIRE(s.eigenvalues);
+  if (prescribed) {
+    REQUIRE(s.eigenvalues->size() == 2);
+    for (const Complex x : *s.eigenvalues)
+      CHECK(std::abs(0.3 * x * x + (1 + loss) * x + stiffness) < 1e-10 * stiffness);
+    return;
+  }
+  CHECK(s.eigenvalues->size() == 3);
+  const Eigen::Matrix2d mass = Eigen::Vector2d(0.3, 0.2).asDiagonal(), difference{{1, -1}, {-1, 1}};
+  const Eigen::Matrix2d damping = loss * difference + Eigen::Matrix2d(Eigen::Vector2d(1, 0.2).asDiagonal());
+  for (const Complex x : *s.eigenvalues)
+    CHECK(left_of(mass, damping, stiffness * difference, x) < 1e-12);
+  SimulationOptions run;
+  run.duration = 30;
+  const Run motion = simulate(m, run);
+  REQUIRE(motion.status == RunStatus::completed);
+  CHECK_THAT(motion.coordinates[0].rate.back(), WithinRel(w, 1e-7));
+}
+
+TEST_CASE("a flexible shaft with a gear at its far end", "[phase][coupling]") {
+  const bool prescribed = GENERATE(false, true);
+  CAPTURE(prescribed);
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 0, 0.5}, {0.2, 0.2, 0.2}),
+              body("c", 1, {1, 0, 0.5}, {0.3, 0.3, 0.3})};
+  m.joints = {prescribed ? driven(hinge("p", "ground", "a"), 5)
+                         : torque_driven(hinge("p", "ground", "a"), 4, "2 N m - 0.2 N m s * rate(p)"),
+              dampened(sprung(revolute("t", "a", "b", {0, 0, 0.5}, {0, 0, 1}), 20), 0.1),
+              dampened(revolute("q", "ground", "c", {1, 0, 0.5}, {0, 0, 1}), 0.05),
+              revolute("bq", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), gear("g", "bq", "q", -2)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // 2 - 0.2 w = 4 * 0.05 w
+  CHECK_THAT(speed(s, "q"), WithinRel(-10, 1e-11));
+  CHECK_THAT(value(s, "t"), WithinRel(-4 * 0.05 * 5 / 20, 1e-9));
+  CHECK(s.stable == true);
+  REQUIRE(s.eigenvalues);
+  if (prescribed) return;
+  CHECK(s.eigenvalues->size() == 3);
+  const Eigen::Matrix2d mass = Eigen::Vector2d(0.1, 0.2 + 4 * 0.3).asDiagonal(), difference{{1, -1}, {-1, 1}};
+  const Eigen::Matrix2d damping =
+      0.1 * difference + Eigen::Matrix2d(Eigen::Vector2d(0.2, 4 * 0.05).asDiagonal());
+  for (const Complex x : *s.eigenvalues)
+    CHECK(left_of(mass, damping, 20 * difference, x) < 1e-12);
 }

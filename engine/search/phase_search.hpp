@@ -1,0 +1,25 @@
+// Steady states in which what turns at speeds that are found stands at another angle than drawn: two shafts
+// that a spring ties, or that close a loop through one, turn alike, the one some way behind the other.
+//
+// Angles along which the balance or the loops change cannot drift as the drives turn on. With V a basis of
+// these and w the speeds, V^T w + h = 0, h what drives at given speeds do; that is as many equations as there
+// are angles along V, and Newton-Raphson solves them by these, the speeds being those of the balance there.
+#pragma once
+
+#include "engine/solve/newton.hpp"
+
+#include <vector>
+
+namespace flyball {
+
+struct TurnedState {
+  Eigen::VectorXd starts; // by link: rad or m, Parameters::links[].start
+  Unknowns z;
+  Eigen::VectorXd error; // of q, as steps: estimated
+};
+
+// From q, found from several angles, each once; those that come to rest are left out. Whether they hold and
+// are stable is not looked at. Of small problems with speeds that are found.
+std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+
+} // namespace flyball
