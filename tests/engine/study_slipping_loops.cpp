@@ -6,6 +6,7 @@
 #include "engine/study/friction_ribbon.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
+#include "tests/support/parts.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <numbers>
@@ -188,4 +189,16 @@ TEST_CASE("a brake with friction turns with the shaft behind a sprung coupling, 
   const Run motion = simulate(m, options);
   INFO(motion.message);
   CHECK_THAT(track(motion, "clutch").value.back(), WithinRel(-0.005, 1e-6));
+}
+
+TEST_CASE("a slip that the drives give is told beside a rotor that turns a thousand times as fast") {
+  Mechanism m = clutch_and_brake(half, R"("damping": 0.5, "spring": {"stiffness": 100})");
+  m.bodies.push_back(body("rotor", 1, {3, 0, 0}, {0.01, 0.01, 0.02}));
+  m.joints.push_back(
+      driven(revolute("fast", "ground", "rotor", {3, 0, 0}, {0, 0, 1}), 1000 * clutch_shaft_speed));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "brake"), WithinRel(0.005, 1e-12));
+  CHECK_THAT(rate(s, "clutch"), WithinRel(-clutch_shaft_speed, 1e-12));
 }
