@@ -2,6 +2,7 @@
 
 #include "engine/dynamics/start.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
@@ -231,6 +232,7 @@ class Builder {
       evaluate(problem, z, 0, w);
       factor_constraints(problem, w);
       best_multipliers(problem, w, z.lambda);
+      if (loops_tie_angles(problem, w.kinematics)) return true;
     }
     return !phase_stiffness(problem, z, w).entries.empty();
   }

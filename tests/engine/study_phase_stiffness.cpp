@@ -251,6 +251,20 @@ TEST_CASE("a motor drives a load through a flexible coupling, each in bearings o
   const Eigen::Matrix2d damping = loss * difference + Eigen::Matrix2d(Eigen::Vector2d(1, 0.2).asDiagonal());
   for (const Complex x : *s.eigenvalues)
     CHECK(left_of(mass, damping, stiffness * difference, x) < 1e-12);
+  const LinearModel model = linearize(m, std::vector<std::string>{"torque(q)"},
+                                      std::vector<std::string>{"rate(p)", "coordinate(c)"});
+  INFO(model.refusal);
+  REQUIRE(model.refusal.empty());
+  for (const Complex x : *s.eigenvalues) {
+    double nearest = 1e9;
+    for (const Complex y : model.poles)
+      nearest = std::min(nearest, std::abs(x - y));
+    CHECK(nearest < 1e-9 * std::abs(x));
+  }
+  const auto slow = transfer(best_form(model), Complex(0, 1e-6)); // both go faster, by 1 / 1.2
+  REQUIRE(slow);
+  CHECK(std::abs((*slow)(0, 0) - 1 / 1.2) < 1e-5);
+  CHECK(std::abs((*slow)(1, 0) - 1 / 1.2 / stiffness) < 1e-5);
   SimulationOptions run;
   run.duration = 30;
   const Run motion = simulate(m, run);
