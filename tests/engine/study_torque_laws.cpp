@@ -301,3 +301,19 @@ TEST_CASE("a law keeps the coordinates that it asks for, wherever loops could be
   CHECK_THAT(0.3 * wc * wc + 0.4 * wr * wr, WithinRel(torque * ws, 1e-12));
   CHECK_THAT(-0.4 * wr, WithinRel(torque * ring / sun, 1e-12));
 }
+
+TEST_CASE("a kink at which a law asks twice for the same has both its sides' slopes", "[torque][kinks]") {
+  // 0.5 per rad/s of the speed below 10 rad/s, where it grows, and -0.5 above.
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+  m.joints = {torque_driven(revolute("p", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), 10,
+                            "-1.5 N m s*(rate(p) - 10 rad/s) + min(1 N m s*(rate(p) - 10 rad/s), "
+                            "2 N m s*(rate(p) - 10 rad/s))")};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "p"), WithinRel(10, 1e-12));
+  CHECK(s.stable == false);
+  CHECK_THAT(s.message, ContainsSubstring("kink"));
+}

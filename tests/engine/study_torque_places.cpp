@@ -234,6 +234,20 @@ TEST_CASE("a governor throttled by the distance of its balls", "[torque][places]
     CHECK(std::abs(cubic(p, x)) < 1e-9 * std::abs(p[1]) * std::norm(x));
 }
 
+TEST_CASE("a law by points goes on with them where the list of points is another", "[torque][places]") {
+  const Mechanism by_bodies = governor("3000 N*(0.226 m - distance(ball1, ball2))");
+  Mechanism m = by_bodies;
+  m.points.push_back({"left", {-0.16, 0.2, 0}});
+  m.points.push_back({"right", {0.16, 0.2, 0}});
+  m = with_torque(std::move(m), "3000 N*(0.226 m - distance(ball1@left, ball2@right))");
+  const Solution direct = Analysis(by_bodies).solve();
+  Analysis analysis(m);
+  CHECK_THAT(speed(analysis.solve(), "spin"), WithinRel(speed(direct, "spin"), 1e-12));
+  m.points.erase(m.points.begin());
+  analysis.update(m);
+  CHECK_THAT(speed(analysis.solve(), "spin"), WithinRel(speed(direct, "spin"), 1e-12));
+}
+
 TEST_CASE("laws by velocities of points", "[torque][places]") {
   // The collar's velocity is the rate of its coordinate, turned round.
   const Solution by_rate = Analysis(governor(by_coordinate + " - 200 N s*rate(slide)")).solve(),
