@@ -90,8 +90,9 @@ bool may_command(Session& session, Ui& ui, const KeyPress& key) {
     typed = focus.among_fields && edits_text(key);
   }
   if (typed)
-    session.notice = "No field is being typed in, so " + key_text(key) +
-                     " did nothing. Keys are commands again once the view is clicked or Esc is pressed.";
+    session.notice = key_text(key) +
+                     " did nothing: the panel has the keys, and no field of it is open. A click into the "
+                     "view or Esc gives them to commands.";
   return !typed;
 }
 

@@ -73,7 +73,19 @@ TEST_CASE("the list of parameters and points") {
   CHECK(std::abs(get_parameter(d.m(), "parameters.c") - 0.081) < 1e-15);
   d.click("inspector/parameters/add");
   d.frames(2);
-  CHECK(parameter_index(d.m(), "p") >= 0);
+  REQUIRE(parameter_index(d.m(), "p") >= 0);
+  // As long as it has no unit it takes that which is typed, of SI.
+  const auto added = [&] { return d.m().parameters[static_cast<std::size_t>(parameter_index(d.m(), "p"))]; };
+  d.enter("inspector/parameter/p", "3 rpm");
+  CHECK(added().value == 1);
+  CHECK(added().unit.empty());
+  d.key(keys::escape);
+  d.enter("inspector/parameter/p", "3 N m s");
+  CHECK(added().value == 3);
+  CHECK(added().unit == "N m s");
+  d.enter("inspector/parameter/p", "4");
+  CHECK(added().value == 4);
+  CHECK(added().unit == "N m s");
   d.click("inspector/parameter/k/more");
   d.frames(2);
   d.enter("inspector/parameter/k/to", "8000");

@@ -127,13 +127,19 @@ void parameter_row(Session& session, Ui& ui, const NamedParameter& parameter) {
   named_field(session, ui, widget + "/name", parameter.name, labels - 4 * ui.scale, rename_parameter);
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + labels);
-  quantity_field(session, ui,
-                 {.name = widget,
-                  .value = parameter.value,
-                  .unit = parameter.unit,
-                  .help = parameter.description,
-                  .address = "parameters." + parameter.name},
-                 std::max(width - labels - margin, 20 * ui.scale));
+  QuantityField field{.name = widget,
+                      .value = parameter.value,
+                      .unit = parameter.unit,
+                      .help = parameter.description,
+                      .address = "parameters." + parameter.name};
+  if (parameter.unit.empty())
+    field.set_with_unit = [&session, &ui, name = parameter.name](double value, const std::string& unit) {
+      edit_parameter_of_name(session, ui, "Set " + name, name, [value, unit](NamedParameter& each) {
+        each.value = value;
+        each.unit = unit;
+      });
+    };
+  quantity_field(session, ui, field, std::max(width - labels - margin, 20 * ui.scale));
   ImGui::SameLine(0, 0);
   ImGui::PushID(widget.c_str());
   if (margin_button(ui, widget + "/more", icon::gear, "Unit, range, note; remove it."))

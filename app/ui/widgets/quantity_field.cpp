@@ -57,6 +57,23 @@ Quantity typed_quantity(const Session& session, const std::string& text, const Q
   return typed_quantity(text, field.unit, shown_unit(field.unit, session.units).text);
 }
 
+struct NumberWithUnit {
+  double value = 0;
+  std::string unit;
+};
+
+// "3 N m s" where the field's unit is open; nothing for what else is typed.
+std::optional<NumberWithUnit> with_own_unit(const QuantityField& field, const std::string& text) {
+  if (!field.set_with_unit) return {};
+  for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
+    const Quantity number = parse_quantity(text.substr(0, space), "");
+    std::string unit = text.substr(space + 1);
+    if (const std::optional<Unit> si = parse_unit(unit); number && si && si->factor == 1)
+      return NumberWithUnit{number.value, std::move(unit)};
+  }
+  return {};
+}
+
 bool is_expression(const QuantityField& field, std::string_view text) {
   return !place_of(field).empty() && text.starts_with('=');
 }
@@ -82,7 +99,10 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
       return error.expected();
     }
   }
+  if (with_own_unit(field, text)) return {};
   const Quantity typed = typed_quantity(session, text, field);
+  if (!typed && field.set_with_unit)
+    return "Expected a number, by itself or with an SI unit, e.g. 2, 1/3 or 3 N m s.";
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
 
@@ -104,6 +124,8 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
     });
+  if (const std::optional<NumberWithUnit> own = with_own_unit(field, typed))
+    return field.set_with_unit(own->value, own->unit);
   const double value = typed_quantity(session, typed, field).value;
   if (formula_of(session, field))
     return edit(session, step, [&](Mechanism& mechanism, Selection&) {
