@@ -79,7 +79,7 @@ TEST_CASE("the list of parameters and points") {
   d.enter("inspector/parameter/p", "3 rpm");
   CHECK(added().value == 1);
   CHECK(added().unit.empty());
-  d.key(keys::escape);
+  d.key(key_escape);
   d.enter("inspector/parameter/p", "3 N m s");
   CHECK(added().value == 3);
   CHECK(added().unit == "N m s");
