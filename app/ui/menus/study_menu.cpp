@@ -21,16 +21,18 @@ const std::array study_commands{
             .checked = [](const App& app) { return app.session.study.open == StudyKind::motion; },
             .words = "simulation, transient; a plot's menu saves CSV and SVG",
             .lacks = "there is no part yet."},
-    Command{.id = "study.response",
-            .title = "Response",
-            .help = "The steady states over one parameter: branches, folds and crossings, live.",
-            .key = plain('C'),
-            .run = [](App& app) { open_study(app.session, StudyKind::response); },
-            .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::response; },
-            .words = "droop curve, resonance curve, bifurcation diagram, hysteresis, sweep; a plot's menu "
-                     "saves CSV and SVG",
-            .lacks = "there is no part yet."},
+    Command{
+        .id = "study.response",
+        .title = "Response",
+        .help = "The steady states over one parameter: branches, folds and crossings, live.",
+        .key = plain('C'),
+        .run = [](App& app) { open_study(app.session, StudyKind::response); },
+        .enabled = of_session<holds_parts>,
+        .checked = [](const App& app) { return app.session.study.open == StudyKind::response; },
+        .words =
+            "droop curve, resonance curve, bifurcation diagram, hysteresis, friction, sweep; a plot's menu "
+            "saves CSV and SVG",
+        .lacks = "there is no part yet."},
     Command{.id = "study.states",
             .title = "All equilibria",
             .help = "Every equilibrium that a bounded search finds, stable or not.",
