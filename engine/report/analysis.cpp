@@ -428,6 +428,8 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
 
 AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
+  if (s.turned) s.bind_numbers();
+  s.turned = false;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
   for (const BodyPoint& point : options.points)
     find_point(s.system, *s.mechanism, s.parameters, point);
@@ -523,6 +525,15 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
       const bool slips = std::ranges::any_of(state.frictions, &FrictionForce::slips);
       if (slips || entries.empty()) out.equilibria.push_back(std::move(state)); // else bands tell of it
     }
+  // What stands turned against the drawn pose is looked for where nothing holds as drawn.
+  const bool may_turn = !s.system.torques.empty() && undetermined.empty() && !options.nearest;
+  if (out.equilibria.empty() && may_turn && !problem.cancelled()) {
+    SolveOptions turned = options;
+    turned.search = 0; // looked for above
+    turned.friction = false;
+    Solution solution = solve_through(turned);
+    if (solution.status == Status::converged && s.turned) out.equilibria.push_back(std::move(solution));
+  }
   out.message = out.equilibria.empty() && !undetermined.empty() ? undetermined : message(out);
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (!entries[i].kinks.empty()) out.message += " In " + std::to_string(i + 1) + ": " + entries[i].kinks;

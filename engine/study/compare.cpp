@@ -317,6 +317,10 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   Unknowns answer;
   if (!direct.answer(answer)) { // found above, unless it is all too long
     broken_off();
+    if (!time.watch.over())
+      out.message =
+          "The steady state stands turned against the drawn pose: the direct solution from there is "
+          "not compared with motions.";
     return;
   }
   direct.settle_reference(answer, out);
