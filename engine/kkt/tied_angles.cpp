@@ -3,6 +3,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
@@ -16,7 +17,11 @@ void for_angles(const System& system, const Parameters& p, const Kinematics<doub
   if (system.torques.empty()) return;
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
     const CutJoint& cut = system.cuts[c];
-    if (cut.by_rates || cut.type == JointType::gear) continue;
+    if (cut.by_rates || cut.type == JointType::gear ||
+        std::ranges::none_of(cut.ends.support, [&](const SupportColumn& column) {
+          return finds_speed(system.links[static_cast<std::size_t>(column.link)]);
+        }))
+      continue;
     for (std::size_t r = 0; r < cut.rows.size(); ++r)
       row_gradient(cut, p.cuts[c], cut.rows[r], k, [&](int v, double g) {
         for (const SupportColumn& column : cut.ends.support)

@@ -6,6 +6,7 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 
 namespace flyball {
@@ -27,6 +28,18 @@ double way_between(const Problem& problem, const Eigen::VectorXd& a, const Eigen
   for (const Link& link : problem.system.links)
     if (finds_speed(link)) way[link.v] = 0;
   return largest_size(way);
+}
+
+// Whether Newton-Raphson went so far from a to b that it may have passed by what a motion from a comes to:
+// about half a turn or the reach, or less while a speed became another altogether.
+bool went_far(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  constexpr double far = 3, far_with_speeds = 0.5; // scaled
+  const double way = way_between(problem, a, b);
+  return way > far ||
+         (way > far_with_speeds && std::ranges::any_of(problem.system.links, [&](const Link& link) {
+            return finds_speed(link) &&
+                   std::abs(b[link.q] - a[link.q]) > 0.5 * std::max(std::abs(a[link.q]), std::abs(b[link.q]));
+          }));
 }
 
 struct AnswerSearch {
@@ -90,10 +103,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   if (problem.system.torques.empty() || (found.minimum && phases.empty())) return;
   judge(problem);
   if (!unstable_) {
-    // Newton-Raphson that went far may have passed by what a motion from the start comes to.
-    constexpr double far = 0.5; // scaled
-    if (options.warm || problem.system.nv > largest_for_answer_search ||
-        !(way_between(problem, start, found.z.q) > far))
+    if (options.warm || problem.system.nv > largest_for_answer_search || !went_far(problem, start, found.z.q))
       return;
     Found candidate;
     candidate.z = {start, Eigen::VectorXd::Zero(problem.system.rows)};
