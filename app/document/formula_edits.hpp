@@ -20,7 +20,8 @@ std::optional<std::string> expression_at(const Mechanism& mechanism, const std::
 double expressed_value(const Mechanism& mechanism, const std::string& address);
 // The number at an address is given by an expression from now on (without its "="), or, where that is empty,
 // stays by itself what it is. One of the deflection or rate, given for a stiffness or damping, is the law of
-// the whole force in its place (force_law.hpp). Refuses laws that cannot be read or ask for what is not there.
+// the whole force in its place (force_law.hpp). Refuses laws that cannot be read or ask for what is not
+// there.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
 // It is by itself this value (SI units, radians) from now on.
 void set_by_itself(Mechanism& mechanism, const std::string& address, double value);

@@ -13,7 +13,8 @@ bool slips_on_friction(const ResponsePoint& point);
 // A curve without points, for a stretch of such a branch.
 PlotCurve friction_curve(bool slips, std::optional<bool> stable);
 
-// What is said beside such a point and near it: "clutch is held by 0.36 of 0.5 N m", "free slips against 0.5 N m".
+// What is said beside such a point and near it: "clutch is held by 0.36 of 0.5 N m", "free slips against 0.5
+// N m".
 std::string friction_note(const ResponsePoint& point);
 
 } // namespace flyball

@@ -161,42 +161,50 @@ struct Analysis::State {
     }
   }
 
-  // Looks for a steady state at other angles of what turns at found speeds: a stable one before others.
+  // Looks for a steady state at other angles of what turns at found speeds, a stable one before others, which
+  // then takes the place of what does not hold.
   void find_turned(const Problem& problem) {
     const std::vector<TurnedState> states = find_turned_states(problem, start, steady.elsewhere());
-    const Parameters as_drawn = parameters;
-    const auto take = [&](const TurnedState& state) {
+    if (states.empty()) return;
+    const auto turn = [&](const Eigen::VectorXd& starts) {
       for (std::size_t l = 0; l < parameters.links.size(); ++l)
-        parameters.links[l].start = state.starts[static_cast<Eigen::Index>(l)];
-      steady.reuse();
-      steady.found = {};
-      steady.found.status = Status::converged;
-      steady.found.z = state.z;
-      steady.found.iterations = 1;
-      steady.start = start;
-      steady.stability.reset();
-      steady.others.reset();
-      steady.phases = sample_phases(system, parameters);
-      steady.error = {};
-      steady.error.solution = state.error;
-      steady.error.data = steady.error.undetermined = Eigen::VectorXd::Zero(state.error.size());
-      steady.existence = check_existence(problem, state.z.q, steady.phases, steady.elsewhere());
-      steady.holds = steady.existence.holds;
-      turned = true;
-      return steady.holds;
+        parameters.links[l].start = starts[static_cast<Eigen::Index>(l)];
     };
-    const TurnedState* held = nullptr;
+    const auto stand = [&](const TurnedState& state, SteadyState& there) {
+      turn(state.starts);
+      there.reuse();
+      there.found = {};
+      there.found.status = Status::converged;
+      there.found.z = state.z;
+      there.found.iterations = state.iterations;
+      there.history = state.history;
+      there.start = start;
+      there.stability.reset();
+      there.others.reset();
+      there.phases = sample_phases(system, parameters);
+      there.error = {};
+      there.error.solution = state.error;
+      there.error.data = there.error.undetermined = Eigen::VectorXd::Zero(state.error.size());
+      there.existence = check_existence(problem, state.z.q, there.phases, there.elsewhere());
+      there.holds = there.existence.holds;
+      return there.holds;
+    };
+    Eigen::VectorXd as_drawn(static_cast<Eigen::Index>(parameters.links.size()));
+    for (std::size_t l = 0; l < parameters.links.size(); ++l)
+      as_drawn[static_cast<Eigen::Index>(l)] = parameters.links[l].start;
+    const TurnedState* taken = nullptr;
+    SteadyState there;
     for (const TurnedState& state : states) {
-      if (!take(state)) continue;
-      if (stability_of(problem, steady, false, 0).stable == true) return;
-      if (!held) held = &state;
+      if (!stand(state, there)) continue;
+      const bool stable = stability_of(problem, there, false, 0).stable == true;
+      if (stable || !taken) taken = &state;
+      if (stable) break;
     }
-    if (held && take(*held)) return;
-    if (!states.empty()) { // as it was
-      parameters = as_drawn;
-      turned = false;
-      steady.find(problem, start, drawn, {});
-    }
+    turned = taken != nullptr;
+    if (turned)
+      stand(*taken, steady);
+    else
+      turn(as_drawn);
   }
 
   // The angles that find_turned() found, one sentence.

@@ -136,6 +136,7 @@ class PhaseSearch {
     double last = 1;
     for (int i = 0; i < 60; ++i) {
       evaluate(problem_, z, 0, w_);
+      history_.push_back(scaled_residual(problem_, w_));
       linearize(system, p_, z.q, z.lambda, w_.kinematics, w_.residual, linearization_);
       const Eigen::MatrixXd& of_balance = linearization_.constraint;
       matrix_.setZero(n + rows, n + rows);
@@ -199,6 +200,7 @@ class PhaseSearch {
   }
 
   std::optional<TurnedState> solve_from(Eigen::VectorXd& along) {
+    history_.clear();
     Unknowns z{q_, Eigen::VectorXd::Zero(given_.system.rows)};
     auto drift = drift_at(along, z);
     const Eigen::Index count = along.size();
@@ -213,6 +215,8 @@ class PhaseSearch {
         TurnedState out;
         out.z = z;
         out.error = rounding();
+        out.iterations = static_cast<int>(history_.size());
+        out.history = history_;
         out.starts.resize(static_cast<Eigen::Index>(p_.links.size()));
         for (std::size_t l = 0; l < p_.links.size(); ++l)
           out.starts[static_cast<Eigen::Index>(l)] = p_.links[l].start;
@@ -264,7 +268,8 @@ class PhaseSearch {
   Eigen::MatrixXd directions_;     // V
   Eigen::VectorXd drift_;          // h, 1/s
   Linearization linearization_;
-  Eigen::MatrixXd matrix_; // of balance()
+  Eigen::MatrixXd matrix_;      // of balance()
+  std::vector<double> history_; // of solve_from()
 };
 
 } // namespace

@@ -15,7 +15,9 @@ namespace flyball {
 struct TurnedState {
   Eigen::VectorXd starts; // by link: rad or m, Parameters::links[].start
   Unknowns z;
-  Eigen::VectorXd error; // of q, as steps: estimated
+  Eigen::VectorXd error;       // of q, as steps: estimated
+  int iterations = 0;          // of Newton-Raphson, at all the angles on the way
+  std::vector<double> history; // scaled residuals of these
 };
 
 // From q, found from several angles, each once; those that come to rest are left out. Whether they hold and
