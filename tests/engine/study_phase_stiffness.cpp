@@ -209,6 +209,9 @@ TEST_CASE("two shafts with different torques stand turned so that their spring c
   CHECK_THAT(speed(s, "q"), WithinRel(6, 1e-12));
   CHECK(s.stable == true);
   CHECK_THAT(s.message, ContainsSubstring("stands turned against the drawn pose: q by"));
+  // Every iteration on the way there is told.
+  CHECK(s.iterations > 1);
+  CHECK(s.history.size() == static_cast<std::size_t>(s.iterations));
   Analysis again(m);
   for (int i = 0; i < 2; ++i) { // as often as asked
     const AllSolutions all = again.solve_all();
