@@ -67,7 +67,7 @@ std::string save_to(Session& session, const fs::path& file) {
     return own.filename().string() + " was not saved: " + why + ".";
   }
   session.document.mark_saved(own);
-  session.parameters = parameter_controls(session.mechanism(), session.document.stored());
+  session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
   session.problem.clear();
   session.files.conflict = session.files.save_wanted = false;
   session.files.aside.clear();
@@ -91,7 +91,7 @@ void reload_document(Session& session) {
     const bool had_edits = session.document.unsaved();
     edit(session, "Reload", [&](Mechanism& mechanism, Selection&) { mechanism = std::move(theirs); });
     session.document.mark_saved(file);
-    session.parameters = parameter_controls(session.mechanism(), session.document.stored());
+    session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
     session.problem.clear();
     session.files.watch = FileWatch(file, text);
     session.files.conflict = session.files.save_wanted = false;

@@ -1,6 +1,7 @@
 #include "app/session/map.hpp"
 
 #include "app/session/session.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
@@ -154,35 +155,19 @@ bool choose(Session& session) {
 } // namespace
 
 std::vector<std::string> map_addresses(const Session& session) {
-  constexpr std::size_t many = 60; // bodies
-  std::vector<std::string> all;
-  // Dampers move no steady state, but what hunts.
-  const bool dampers = session.study.map.choice.hunting;
-  for (const ParameterControl& control : session.parameters)
-    if (dampers || control.group != ParameterGroup::dampers) all.push_back(control.address);
-  if (session.mechanism().bodies.size() > many) return all;
-  for (const std::string& address : parameter_addresses(session.mechanism()))
-    if (!address.starts_with("simulation.") && (dampers || address.find(".damping") == std::string::npos) &&
-        std::ranges::find(all, address) == all.end())
-      all.push_back(address);
-  return all;
+  return variable_numbers(session, session.study.map.choice.hunting ? Dampers::with : Dampers::without);
 }
 
 MapAxis map_axis(const Session& session, const std::string& address) {
-  Slider slider = slider_for(session.mechanism(), address);
-  for (const ParameterControl& control : session.parameters)
-    if (control.address == address) {
-      slider.from = control.from;
-      slider.to = control.to;
-      slider.scale = control.log ? SliderScale::log : SliderScale::linear;
-    }
-  MapAxis axis{
-      .address = address, .from = std::min(slider.from, slider.to), .to = std::max(slider.from, slider.to)};
+  const std::optional<ParameterControl> control = control_of(session, address);
+  if (!control) return {.address = address};
+  MapAxis axis{.address = address,
+               .from = std::min(control->from, control->to),
+               .to = std::max(control->from, control->to)};
   // Decades do not show on an even axis.
-  const double value = get_parameter(session.mechanism(), address);
-  if (slider.scale == SliderScale::log && value > 0) {
-    axis.from = value / 4;
-    axis.to = value * 2;
+  if (control->log && control->value > 0) {
+    axis.from = control->value / 4;
+    axis.to = control->value * 2;
   }
   return axis;
 }

@@ -74,8 +74,7 @@ std::string map_problem(const Session& session);
 Progress map_progress(const Session& session);
 double map_seconds(const Session& session); // since it was begun
 
-// Addresses of the numbers that may be varied: those with a slider first, then every other unless they are
-// very many.
+// Addresses of the numbers that may be varied, dampers where the boundary of hunting is asked for.
 std::vector<std::string> map_addresses(const Session& session);
 // An axis over the number, with the range of its slider or of one that suits it.
 MapAxis map_axis(const Session& session, const std::string& address);

@@ -19,6 +19,13 @@
 
 namespace flyball {
 
+double round_up(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double m : {1.0, 2.0, 5.0})
+    if (value <= m * power * (1 + 1e-12)) return m * power;
+  return 10 * power;
+}
+
 namespace {
 
 std::vector<std::string> split(std::string_view address) {
@@ -32,14 +39,6 @@ std::vector<std::string> split(std::string_view address) {
   return parts;
 }
 
-// 1, 2 or 5 times a power of ten, not below the value.
-double round_up(double value) {
-  const double power = std::pow(10, std::floor(std::log10(value)));
-  for (const double m : {1.0, 2.0, 5.0})
-    if (value <= m * power * (1 + 1e-12)) return m * power;
-  return 10 * power;
-}
-
 double power_of_ten(double value) {
   return std::pow(10, std::round(std::log10(value)));
 }
@@ -49,7 +48,7 @@ struct Range {
   bool log = false;
 };
 
-// For a number that is zero: what a person may want to try.
+// For a number that is zero: what a person may want to try, in SI units.
 double usual(std::string_view unit) {
   if (unit == "rad/s") return 20;
   if (unit == "rad") return 3;
@@ -58,14 +57,22 @@ double usual(std::string_view unit) {
   return unit == "N" || unit == "N m" || unit == "N s/m" ? 100 : 1;
 }
 
-Range range_for(double value, std::string_view unit, bool stiffness) {
-  const double size = std::abs(value);
-  if (stiffness && value > 0) return {power_of_ten(value / 100), power_of_ten(value * 100), true};
+// With ends that are round in the unit that is shown.
+Range range_for(double si, std::string_view unit, bool stiffness, const DisplayUnits& units) {
+  const ShownUnit shown = shown_unit(unit, units);
+  const double value = shown.shown(si), size = std::abs(value);
+  const auto ends = [&](double from, double to, bool log) {
+    return Range{shown.si(from), shown.si(to), log};
+  };
+  if (stiffness && value > 0) return ends(power_of_ten(value / 100), power_of_ten(value * 100), true);
   // What has no direction is not negative.
   const bool one_sided = unit == "kg" || unit == "kg m^2" || unit == "s" || unit == "N s/m" ||
                          unit == "N m s/rad" || unit == "N s^2/m^2" || stiffness;
-  if (size == 0) return {one_sided ? 0 : -usual(unit), usual(unit), false};
-  return value < 0 ? Range{-round_up(2 * size), 0, false} : Range{0, round_up(2 * size), false};
+  if (size == 0) {
+    const double most = shown.text == "°" ? 180 : round_up(shown.shown(usual(unit)));
+    return ends(one_sided ? 0 : -most, most, false);
+  }
+  return value < 0 ? ends(-round_up(2 * size), 0, false) : ends(0, round_up(2 * size), false);
 }
 
 bool is_stiffness(std::string_view address) {
@@ -148,6 +155,17 @@ ParameterControl named_control(const std::string& address, ParameterGroup group,
   return control;
 }
 
+void set_range(ParameterControl& control, const Range& range) {
+  control.from = range.from;
+  control.to = range.to;
+  control.log = range.log;
+}
+
+void set_step(ParameterControl& control) {
+  const double span = std::abs(control.to - control.from);
+  if (!control.log && span > 0) control.step = slider_step(span);
+}
+
 // Where the parts of the file are, by name.
 struct FileParts {
   explicit FileParts(const Mechanism& file) {
@@ -165,16 +183,18 @@ struct FileParts {
   std::unordered_map<std::string_view, const Force*> forces;
 };
 
-Range range_of(const Mechanism& mechanism, const std::string& address, double value, std::string_view unit) {
+Range range_of(const Mechanism& mechanism, const std::string& address, double value, std::string_view unit,
+               const DisplayUnits& units) {
   if (address.starts_with("parameters."))
     if (const int i = parameter_index(mechanism, address.substr(address.find('.') + 1)); i >= 0)
       if (const auto& range = mechanism.parameters[static_cast<std::size_t>(i)].range)
         return {(*range)[0], (*range)[1], false};
-  return range_for(value, unit, is_stiffness(address));
+  return range_for(value, unit, is_stiffness(address), units);
 }
 
 // Of every named parameter, drive and spring, in the scene's order.
-std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file) {
+std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file,
+                                                 const DisplayUnits& units) {
   const FileParts saved(file);
   std::vector<ParameterControl> controls;
   for (const NamedParameter& parameter : mechanism.parameters) {
@@ -234,12 +254,8 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
                                      force.stiffness,
                                      was_spring ? std::optional(found->second->stiffness) : std::nullopt));
   }
-  for (ParameterControl& control : controls) {
-    const Range range = range_of(mechanism, control.address, control.file_value, control.unit);
-    control.from = range.from;
-    control.to = range.to;
-    control.log = range.log;
-  }
+  for (ParameterControl& control : controls)
+    set_range(control, range_of(mechanism, control.address, control.file_value, control.unit, units));
   std::erase_if(controls, [&](const ParameterControl& control) {
     return formula_at(mechanism, control.address).has_value();
   });
@@ -248,7 +264,8 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
 
 } // namespace
 
-std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file) {
+std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file,
+                                                 const DisplayUnits& units) {
   std::vector<ParameterControl> controls;
   std::unordered_set<std::string> pinned;
   for (const Slider& slider : mechanism.sliders) {
@@ -263,14 +280,23 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
     control.to = slider.to;
     control.log = slider.scale == SliderScale::log;
   }
-  for (ParameterControl& control : automatic_controls(mechanism, file))
+  for (ParameterControl& control : automatic_controls(mechanism, file, units))
     if (!pinned.contains(control.address)) controls.push_back(std::move(control));
-  for (ParameterControl& control : controls) {
-    const double span = std::abs(control.to - control.from);
-    if (!control.log && span > 0) control.step = slider_step(span);
-  }
+  for (ParameterControl& control : controls)
+    set_step(control);
   std::ranges::stable_sort(controls, {}, &ParameterControl::group);
   return controls;
+}
+
+std::optional<ParameterControl> number_control(const Mechanism& mechanism, const Mechanism& file,
+                                               const std::string& address, const DisplayUnits& units) {
+  const std::optional<double> value = number_at(mechanism, address);
+  if (!value || formula_at(mechanism, address)) return std::nullopt;
+  ParameterControl control = named_control(address, ParameterGroup::named, parameter_unit(mechanism, address),
+                                           *value, number_at(file, address));
+  set_range(control, range_of(mechanism, address, control.file_value, control.unit, units));
+  set_step(control);
+  return control;
 }
 
 bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
@@ -286,9 +312,9 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
   return true;
 }
 
-Slider slider_for(const Mechanism& mechanism, const std::string& address) {
-  const Range range =
-      range_of(mechanism, address, get_parameter(mechanism, address), parameter_unit(mechanism, address));
+Slider slider_for(const Mechanism& mechanism, const std::string& address, const DisplayUnits& units) {
+  const Range range = range_of(mechanism, address, get_parameter(mechanism, address),
+                               parameter_unit(mechanism, address), units);
   Slider slider;
   slider.parameter = address;
   slider.from = range.from;

@@ -2,8 +2,10 @@
 // speed and every spring's stiffness; for the motion, every damper. None that an expression gives.
 #pragma once
 
+#include "app/session/units.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,16 +29,25 @@ struct ParameterControl {
 
 // In groups; within a group in the scene's order. `file` is what the file says (of which the mechanism may
 // have gone away by edits): file_value and an automatic slider's range come from there where it has the
-// number.
-std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file);
+// number. Ends of automatic sliders are round in `units`.
+std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file,
+                                                 const DisplayUnits& units = {});
+
+// Of any number, with a range that suits it: as pinning it would make one. None where there is no such
+// number, or an expression gives it.
+std::optional<ParameterControl> number_control(const Mechanism& mechanism, const Mechanism& file,
+                                               const std::string& address, const DisplayUnits& units);
 
 // After the number at `address` was set in the mechanism and nowhere else: the same as parameter_controls()
 // anew. False where that takes more than the value of one of them.
 bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
                 const std::string& address);
 
-// A slider with a range that suits the number's present value. Throws SceneError for an unknown address.
-Slider slider_for(const Mechanism& mechanism, const std::string& address);
+// A slider with a range that suits the number's present value and is round in `units`. Throws SceneError for
+// an unknown address.
+Slider slider_for(const Mechanism& mechanism, const std::string& address, const DisplayUnits& units);
+// 1, 2 or 5 times a power of ten, the least that is not below the value, which is above zero.
+double round_up(double value);
 // "speed of spin", "mass of ball1", "y of gravity".
 std::string parameter_phrase(std::string_view address);
 // The sentence with the number's phrase where it names the address.

@@ -1,7 +1,9 @@
 #include "app/session/response.hpp"
 
 #include "app/session/resonance.hpp"
+#include "app/session/response_design.hpp"
 #include "app/session/session.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/study/friction_branches.hpp"
 
@@ -17,14 +19,9 @@ namespace {
 constexpr int most_points = 1500, most_branches = 16;
 constexpr int many_coordinates = 60; // from which on steps are longer and eigenvalues left out
 
-// Scaled. Low on a logarithmic axis a small part of the range is a long way.
-double largest_step(const ResponseRequest& of) {
-  return of.logarithmic ? 0.005 : 0.02;
-}
-
 BranchOptions follow_options(const ResponseRequest& of, double present) {
   BranchOptions options;
-  options.largest_step = largest_step(of);
+  options.largest_step = response_step(of);
   options.max_points = most_points;
   options.max_branches = most_branches;
   options.all = of.all;
@@ -39,22 +36,6 @@ BranchOptions follow_options(const ResponseRequest& of, double present) {
     options.eigenvalues = false;
   }
   return options;
-}
-
-// What the present choices ask for; none where there is nothing to follow.
-std::optional<ResponseRequest> wanted_now(Session& session) {
-  ResponseState& state = session.study.response;
-  if (session.mechanism().bodies.empty() || !session.mistakes.empty() || !response_control(session))
-    return std::nullopt;
-  const ResponseChoice& choice = state.choice;
-  return ResponseRequest{.mechanism =
-                             state.varied.of(session.document.shared(), {{choice.address, choice.from}}),
-                         .address = choice.address,
-                         .from = choice.from,
-                         .to = choice.to,
-                         .logarithmic = choice.logarithmic,
-                         .all = choice.all,
-                         .reactions = needs_reactions(choice.quantity)};
 }
 
 ResponseResult result_of(ResponseDiagram diagram, const std::string& address) {
@@ -116,35 +97,15 @@ void take_curve(ResponseCurve& curve) {
   if (!curve.problem.empty()) curve.found.reset();
 }
 
-// How far a state is from the present one (rad and m, added up).
-double away(const Session& session, const ResponsePoint& point) {
-  const std::vector<CoordinateSolution>& now = session.answer.solution.coordinates;
-  double sum = 0;
-  for (std::size_t i = 0; i < now.size() && i < point.coordinates.size(); ++i) {
-    const double apart = point.coordinates[i].value - now[i].value;
-    if (!now[i].driven) sum += std::abs(now[i].angle ? std::remainder(apart, 2 * std::numbers::pi) : apart);
-  }
-  return sum;
-}
-
-// Stable states first, then those that are like the present one.
-void take_design(Session& session) {
-  auto& answer = session.study.response.design.answer;
-  if (!answer.take()) return;
-  if (!answer.problem.empty()) answer.found.reset();
-  if (!answer.found) return;
-  DesignAnswer& found = answer.found->result;
-  found.message = with_phrase(std::move(found.message), answer.found->of.of.address);
-  std::ranges::stable_sort(found.solutions, {}, [&](const DesignSolution& s) {
-    return std::pair(s.at.stable != true, away(session, s.at));
-  });
-}
-
 // First the parameter that is likely meant: a drive's speed.
 void choose_first(Session& session) {
   if (response_control(session)) return;
   if (session.parameters.empty()) {
-    session.study.response.choice.address.clear();
+    const std::vector<std::string> all = variable_numbers(session, Dampers::with);
+    if (all.empty())
+      session.study.response.choice.address.clear();
+    else
+      choose_response(session, all.front());
     return;
   }
   const auto drive = std::ranges::find_if(session.parameters, [](const ParameterControl& control) {
@@ -243,6 +204,26 @@ ResponsePoint rounded_point(const ResponseLine& line, double at, double step) {
 
 } // namespace
 
+std::optional<ResponseRequest> response_wanted(Session& session) {
+  ResponseState& state = session.study.response;
+  if (session.mechanism().bodies.empty() || !session.mistakes.empty() || !response_control(session))
+    return std::nullopt;
+  const ResponseChoice& choice = state.choice;
+  return ResponseRequest{.mechanism =
+                             state.varied.of(session.document.shared(), {{choice.address, choice.from}}),
+                         .address = choice.address,
+                         .from = choice.from,
+                         .to = choice.to,
+                         .logarithmic = choice.logarithmic,
+                         .all = choice.all,
+                         .reactions = needs_reactions(choice.quantity)};
+}
+
+double response_step(const ResponseRequest& of) {
+  // Low on a logarithmic axis a small part of the range is a long way.
+  return of.logarithmic ? 0.005 : 0.02;
+}
+
 std::optional<ResponsePoint> present_point(const Session& session, const std::string& address) {
   try {
     return response_point(session.answer.solution, get_parameter(*session.answer.mechanism, address));
@@ -272,7 +253,7 @@ void update_response(Session& session) {
   choose_kind(session);
   choose_first(session);
   choose_first_quantity(session);
-  std::optional<ResponseRequest> wanted = wanted_now(session);
+  std::optional<ResponseRequest> wanted = response_wanted(session);
   if (state.resonates) {
     if (wanted) wanted->all = wanted->reactions = false; // there is nothing of these
     state.curve = {};
@@ -305,20 +286,18 @@ bool computing_response(const Session& session) {
   return state.curve.running() || state.resonance.running() || state.design.answer.running();
 }
 
-const ParameterControl* response_control(const Session& session) {
-  const auto found = std::ranges::find(session.parameters, session.study.response.choice.address,
-                                       &ParameterControl::address);
-  return found == session.parameters.end() ? nullptr : &*found;
+std::optional<ParameterControl> response_control(const Session& session) {
+  return control_of(session, session.study.response.choice.address);
 }
 
 void choose_response(Session& session, const std::string& address) {
-  const auto found = std::ranges::find(session.parameters, address, &ParameterControl::address);
-  if (found == session.parameters.end()) return;
+  const std::optional<ParameterControl> control = control_of(session, address);
+  if (!control) return;
   ResponseState& state = session.study.response;
   state.choice.address = address;
-  state.choice.from = found->from;
-  state.choice.to = found->to;
-  state.choice.logarithmic = found->log;
+  state.choice.from = control->from;
+  state.choice.to = control->to;
+  state.choice.logarithmic = control->log;
   state.design.answer.found.reset();
 }
 
@@ -326,7 +305,7 @@ void choose_response_end(Session& session, double ResponseChoice::*end, double v
   ResponseState& state = session.study.response;
   if (value == (end == &ResponseChoice::from ? state.choice.to : state.choice.from)) return;
   state.choice.*end = value;
-  const ParameterControl* varied = response_control(session);
+  const std::optional<ParameterControl> varied = response_control(session);
   state.choice.logarithmic = varied && varied->log && std::min(state.choice.from, state.choice.to) > 0;
 }
 
@@ -371,32 +350,6 @@ void go_to_response(Session& session, std::size_t line_index, double at, double 
     go_to_state(session, address, point.parameter, start_values(point.coordinates));
   else
     change_parameter(session, address, point.parameter);
-}
-
-void find_design(Session& session) {
-  ResponseDesign& wanted = session.study.response.design;
-  const std::optional<ResponseRequest> of = wanted_now(session);
-  if (!of || wanted.coordinate.empty()) return;
-  // The same question about a mechanism that is being changed: every answer is worth seeing.
-  const auto& found = wanted.answer.found;
-  const bool same = found && found->of.coordinate == wanted.coordinate && found->of.value == wanted.value;
-  wanted.answer.ask(
-      session.options, {*of, wanted.coordinate, wanted.value},
-      [](const DesignRequest& request, const TaskContext<DesignAnswer>& context) {
-        DesignOptions options;
-        options.largest_step = largest_step(request.of);
-        options.cancel = &context.cancel;
-        options.progress = context.progress;
-        return design(*request.of.mechanism, request.of.address, request.of.from, request.of.to,
-                      request.coordinate, request.value, options);
-      },
-      same ? ResponseCurve::Running::finished : ResponseCurve::Running::cancelled);
-  take_design(session);
-}
-
-void go_to_design(Session& session, const DesignSolution& solution) {
-  if (const auto& found = session.study.response.design.answer.found)
-    go_to_state(session, found->of.of.address, solution.parameter, start_values(solution.at.coordinates));
 }
 
 } // namespace flyball

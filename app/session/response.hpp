@@ -42,16 +42,27 @@ struct ResponseResult {
 using ResponseCurve = Study<ResponseRequest, ResponseResult>;
 using ResonanceStudy = Study<ResponseRequest, ResonanceCurve>;
 
+// What can be wanted somewhere: a coordinate, a speed that is found, a measure, what a drive gives or a joint
+// bears.
+struct DesignGoal {
+  std::string key;             // of the goal: "slide", "spin.speed", a measure's name, or "torque(spin)"
+  std::string title;           // as Show lists it
+  std::string unit;            // SI
+  std::optional<double> value; // now
+  bool place = false;          // an angle or a length, of a coordinate
+  std::string expression{};    // where only a measure tells it
+};
+
 struct DesignRequest {
   ResponseRequest of;
-  std::string coordinate;
+  DesignGoal goal;
   double value = 0;
 };
 
 // "Find the parameter so that the coordinate is this": design mode.
 struct ResponseDesign {
-  std::string coordinate; // "joint" or "joint.index", or a measure; empty: not chosen
-  double value = 0;       // rad or m, or in the measure's unit
+  std::string coordinate; // key of the goal; empty: not chosen
+  double value = 0;       // rad or m, or in the goal's unit
   Study<DesignRequest, DesignAnswer> answer;
 };
 
@@ -84,12 +95,12 @@ void update_response(Session& session);
 void close_response(Session& session);
 bool computing_response(const Session& session);
 
-// The parameter that is varied, with the range of its slider.
+// The number that is varied, with the range of its slider, or one that suits it.
 void choose_response(Session& session, const std::string& address);
 // One end of its range, `from` or `to`.
 void choose_response_end(Session& session, double ResponseChoice::*end, double value);
-// The control of the varied parameter; null: there is none.
-const ParameterControl* response_control(const Session& session);
+// The control of the varied number, with a slider or without; none: there is no such number.
+std::optional<ParameterControl> response_control(const Session& session);
 // Why there is no curve, a sentence; empty where there is one.
 std::string response_refusal(const Session& session);
 
@@ -104,9 +115,10 @@ void go_to_response(Session& session, std::size_t line, double at, double step, 
 // The answer as a point of a curve over the number; none where its mechanism has no such number.
 std::optional<ResponsePoint> present_point(const Session& session, const std::string& address);
 
-// Looks for the parameter at which the design's coordinate has its value; the solution then becomes present.
-void find_design(Session& session);
-void go_to_design(Session& session, const DesignSolution& solution);
+// What the present choices ask for; none where there is nothing to follow.
+std::optional<ResponseRequest> response_wanted(Session& session);
+// The largest step along its branches, scaled.
+double response_step(const ResponseRequest& of);
 
 // A diagram's branches with their special points in their places. Takes them out of it.
 std::vector<ResponseLine> response_lines(ResponseDiagram& diagram);

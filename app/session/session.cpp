@@ -56,7 +56,7 @@ void take_document(Session& session, bool another, bool warm, StartValues start 
     validate_number(session, address);
   if (address.empty() ||
       !take_value(session.parameters, session.mechanism(), session.document.stored(), address))
-    session.parameters = parameter_controls(session.mechanism(), session.document.stored());
+    session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
   session.drawn = drawn_poses(session.mechanism());
   session.moved_time = true;
   ask(session, another, warm, std::move(start));

@@ -1,6 +1,7 @@
 #include "app/session/spread.hpp"
 
 #include "app/session/session.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
@@ -83,7 +84,7 @@ void choose_tolerances(Session& session) {
 }
 
 std::vector<std::string> numbers_without_tolerance(const Session& session) {
-  std::vector<std::string> addresses = map_addresses(session);
+  std::vector<std::string> addresses = variable_numbers(session, Dampers::without);
   std::erase_if(addresses, [&](const std::string& address) {
     return std::ranges::find(session.study.spread.choice.tolerances, address, &ChosenTolerance::address) !=
            session.study.spread.choice.tolerances.end();
@@ -94,7 +95,7 @@ std::vector<std::string> numbers_without_tolerance(const Session& session) {
 void add_tolerance(Session& session, const std::string& address) {
   ChosenTolerance chosen{.address = address};
   if (get_parameter(session.mechanism(), address) == 0) { // of which 1 % is nothing
-    const Slider slider = slider_for(session.mechanism(), address);
+    const Slider slider = slider_for(session.mechanism(), address, session.units);
     chosen.percent = false;
     chosen.width = std::abs(slider.to - slider.from) / 100;
   }

@@ -1,6 +1,7 @@
 #include "app/session/transfer.hpp"
 
 #include "app/session/session.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/result_functions.hpp"
@@ -43,13 +44,6 @@ std::vector<std::string> coordinates_of(const Session& session, bool driven) {
   return names;
 }
 
-// "ball.1" as a result asks for it.
-std::string argument_of(const std::string& label) {
-  const std::size_t dot = label.rfind('.');
-  return dot == std::string::npos ? argument_text(label)
-                                  : argument_text(label.substr(0, dot)) + label.substr(dot);
-}
-
 void choose_at_first(Session& session) {
   TransferChoice& choice = session.study.transfer.choice;
   const std::vector<std::string> inputs = transfer_inputs(session), outputs = transfer_outputs(session);
@@ -68,9 +62,10 @@ void choose_at_first(Session& session) {
 } // namespace
 
 std::vector<std::string> transfer_inputs(const Session& session) {
-  std::vector<std::string> all = map_addresses(session);
+  std::vector<std::string> all = variable_numbers(session, Dampers::without);
   for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (!c.dependent && is_found(c)) all.push_back("torque(" + argument_of(coordinate_label(c)) + ")");
+    if (!c.dependent && is_found(c))
+      all.push_back("torque(" + coordinate_argument(coordinate_label(c)) + ")");
   for (const std::string& address : parameter_addresses(session.mechanism()))
     if (address.find(".damping") != std::string::npos) all.push_back(address);
   for (const Body& body : session.mechanism().bodies)
@@ -82,11 +77,11 @@ std::vector<std::string> transfer_inputs(const Session& session) {
 std::vector<std::string> transfer_outputs(const Session& session) {
   std::vector<std::string> all = coordinates_of(session, false);
   for (const std::string& label : coordinates_of(session, false))
-    all.push_back("rate(" + argument_of(label) + ")");
+    all.push_back("rate(" + coordinate_argument(label) + ")");
   for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (c.speed) all.push_back("rate(" + argument_of(coordinate_label(c)) + ")");
+    if (c.speed) all.push_back("rate(" + coordinate_argument(coordinate_label(c)) + ")");
   for (const DriveTorque& drive : session.answer.solution.drive_torques)
-    all.push_back("torque(" + argument_of(coordinate_label(drive)) + ")");
+    all.push_back("torque(" + coordinate_argument(coordinate_label(drive)) + ")");
   for (const NamedMeasure& measure : session.mechanism().measures)
     all.push_back(measure.name);
   return all;

@@ -23,6 +23,7 @@ void keep_choices(const Session& session, const Ui& ui, const ViewState& view) {
 bool choose_units(Session& session, const Ui& ui, const ViewState& view, const DisplayUnits& units) {
   if (session.units == units) return false;
   session.units = units;
+  session.parameters = parameter_controls(session.mechanism(), session.document.stored(), units);
   keep_choices(session, ui, view);
   return true;
 }

@@ -89,4 +89,10 @@ std::string argument_text(std::string_view name) {
   return quote + std::string(name) + quote;
 }
 
+std::string coordinate_argument(std::string_view label) {
+  const std::size_t dot = label.rfind('.');
+  if (dot == std::string_view::npos) return argument_text(label);
+  return argument_text(label.substr(0, dot)) + std::string(label.substr(dot));
+}
+
 } // namespace flyball

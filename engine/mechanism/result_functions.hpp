@@ -82,5 +82,7 @@ std::string_view noun(ArgumentKind kind);
 
 // A part's name as an argument: in quotes where it is no word.
 std::string argument_text(std::string_view name);
+// A coordinate's label as an argument: "slide", "ball.1", of which the joint's name is quoted.
+std::string coordinate_argument(std::string_view label);
 
 } // namespace flyball

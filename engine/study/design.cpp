@@ -57,6 +57,8 @@ class Designer {
   }
 
  private:
+  static constexpr double slack = 1e-9; // of unit(): what differs by less is the same
+
   void prepare() {
     scale_ = scale_of_measure(value_, out_.lowest, out_.highest);
     balance_.emplace(system_, with_parameter(mechanism_, address_, from_), std::vector{address_},
@@ -200,39 +202,24 @@ class Designer {
       if (x != y) return x;
       return a.connected != b.connected ? a.connected : a.parameter < b.parameter;
     });
-    const std::string unit = shown_unit();
-    const auto text = [&](double v) { return number_text(v) + unit; };
-    const std::string varied_unit = parameter_unit(mechanism_, address_);
-    const std::string limits = address_ + " from " + number_text(from_) + " to " + number_text(to_) +
-                               (varied_unit.empty() ? "" : " " + varied_unit);
-    const char* open = options_.all
-                           ? " The search for branches is bounded; there may be more."
-                           : " Branches that nothing connects with the drawn pose's were not followed.";
-    if (!out_.solutions.empty()) {
-      const auto n = out_.solutions.size();
-      out_.status = Status::converged;
-      out_.message =
-          std::to_string(n) + (n == 1 ? " solution" : " solutions") + " with " + limits + "." + open;
-    } else if (cancelled()) {
-      out_.status = Status::not_converged;
-      out_.message = "Cancelled.";
-    } else if (constant_) {
-      out_.status = Status::not_converged;
-      out_.message =
-          name_ + " is " + text(value_) + " all along a branch: no value of " + address_ + " is singled out.";
-    } else {
-      out_.status = Status::not_converged;
-      out_.message = name_ + " never is " + text(value_) + " with " + limits +
-                     (covered().empty() ? ": it has no value there." : ": it covers " + covered() + ".") +
-                     open;
-    }
+    out_.status = out_.solutions.empty() ? Status::not_converged : Status::converged;
+    out_.end = !out_.solutions.empty() ? DesignEnd::found
+               : cancelled()           ? DesignEnd::cancelled
+               : constant_             ? DesignEnd::constant
+                                       : DesignEnd::never;
+    find_covered();
+    out_.message = design_message(out_, from_, to_, options_.all,
+                                  {.wanted = name_,
+                                   .wanted_unit = out_.unit,
+                                   .varied = address_,
+                                   .varied_unit = parameter_unit(mechanism_, address_),
+                                   .shown = {},
+                                   .shown_varied = {}});
   }
 
-  std::string shown_unit() const { return out_.unit.empty() ? "" : " " + out_.unit; }
-
-  // "-1.4 rad to 1.4 rad and 3.14159 rad": what the branches cover, together where they overlap.
-  std::string covered() const {
-    std::vector<std::pair<double, double>> parts;
+  // -1.4 to 1.4 and 3.14159: what the branches cover, together where they overlap.
+  void find_covered() {
+    std::vector<std::array<double, 2>> parts;
     for (const ResponseBranch& b : diagram_.branches) {
       double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
       for (const ResponsePoint& p : b.points) {
@@ -240,26 +227,17 @@ class Designer {
         lowest = std::min(lowest, value_of(p));
         highest = std::max(highest, value_of(p));
       }
-      if (lowest <= highest) parts.emplace_back(lowest, highest);
+      if (lowest <= highest) parts.push_back({lowest, highest});
     }
     std::ranges::sort(parts);
-    std::vector<std::pair<double, double>> merged;
-    const double slack = 1e-9 * unit();
     for (const auto& part : parts) {
-      if (!merged.empty() && part.first <= merged.back().second + slack)
-        merged.back().second = std::max(merged.back().second, part.second);
+      if (!out_.covered.empty() && part[0] <= out_.covered.back()[1] + slack * unit())
+        out_.covered.back()[1] = std::max(out_.covered.back()[1], part[1]);
       else
-        merged.push_back(part);
+        out_.covered.push_back(part);
     }
-    const std::string unit_name = shown_unit();
-    std::string out;
-    for (std::size_t i = 0; i < merged.size(); ++i) {
-      const auto& [lowest, highest] = merged[i];
-      if (i > 0) out += i + 1 == merged.size() ? " and " : ", ";
-      out += rounded_text(lowest, 6) + unit_name;
-      if (highest > lowest + slack) out += " to " + rounded_text(highest, 6) + unit_name;
-    }
-    return out;
+    for (auto& [lowest, highest] : out_.covered) // what differs by rounding is one
+      if (highest <= lowest + slack * unit()) highest = lowest;
   }
 
   const Mechanism& mechanism_;
@@ -280,6 +258,38 @@ class Designer {
 };
 
 } // namespace
+
+std::string design_message(const DesignAnswer& answer, double from, double to, bool all,
+                           const DesignWords& words) {
+  if (answer.end == DesignEnd::no_branch) return answer.message;
+  if (answer.end == DesignEnd::cancelled) return "Cancelled.";
+  const auto with = [](std::string number, const std::string& unit) {
+    return unit.empty() ? number : number + " " + unit;
+  };
+  const auto shown = [&](double value) { return words.shown ? words.shown(value) : value; };
+  const auto varied = [&](double value) {
+    return number_text(words.shown_varied ? words.shown_varied(value) : value);
+  };
+  const std::string value = with(number_text(shown(answer.value)), words.wanted_unit);
+  if (answer.end == DesignEnd::constant)
+    return words.wanted + " is " + value + " all along a branch: no value of " + words.varied +
+           " is singled out.";
+  const std::string limits =
+      words.varied + " from " + varied(from) + " to " + with(varied(to), words.varied_unit);
+  const std::string open = all ? " The search for branches is bounded; there may be more."
+                               : " Branches that nothing connects with the drawn pose's were not followed.";
+  if (const std::size_t n = answer.solutions.size(); n > 0)
+    return std::to_string(n) + (n == 1 ? " solution" : " solutions") + " with " + limits + "." + open;
+  std::string covered;
+  for (std::size_t i = 0; i < answer.covered.size(); ++i) {
+    const auto& [lowest, highest] = answer.covered[i];
+    if (i > 0) covered += i + 1 == answer.covered.size() ? " and " : ", ";
+    covered += with(rounded_text(shown(lowest), 6), words.wanted_unit);
+    if (highest > lowest) covered += " to " + with(rounded_text(shown(highest), 6), words.wanted_unit);
+  }
+  return words.wanted + " never is " + value + " with " + limits +
+         (covered.empty() ? ": it has no value there." : ": it covers " + covered + ".") + open;
+}
 
 DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,
                     const std::string& coordinate, double value, const DesignOptions& options) {

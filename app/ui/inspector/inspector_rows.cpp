@@ -13,6 +13,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <unordered_set>
 #include <utility>
 
 namespace flyball {
@@ -245,11 +246,12 @@ std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std
   return other;
 }
 
-std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
-                                           std::span<const std::string> options, const std::string& chosen,
-                                           const char* help) {
+namespace {
+
+// The list of a choice that is open; ends it.
+std::optional<std::string> choose_among(Ui& ui, const std::string& name, std::span<const std::string> options,
+                                        const std::string& chosen) {
   std::optional<std::string> other;
-  if (!begin_choice(ui, name, label, chosen, help)) return other;
   ChoiceSearch& search = ui.fields.choice_search;
   const bool appearing = ImGui::IsWindowAppearing(), searched = options.size() > searchable;
   if (appearing) search = {};
@@ -289,6 +291,33 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
   }
   ImGui::EndCombo();
   return other;
+}
+
+} // namespace
+
+std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
+                                           std::span<const std::string> options, const std::string& chosen,
+                                           const char* help) {
+  if (!begin_choice(ui, name, label, chosen, help)) return std::nullopt;
+  return choose_among(ui, name, options, chosen);
+}
+
+std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, const std::string& label,
+                                             const std::function<std::vector<std::string>()>& addresses,
+                                             const std::string& chosen, const char* help) {
+  if (!begin_choice(ui, name, label, chosen, help)) return std::nullopt;
+  const std::vector<std::string> all = addresses();
+  std::vector<std::string> phrases;
+  phrases.reserve(all.size());
+  std::unordered_set<std::string> taken;
+  for (const std::string& address : all) {
+    // Numbers that would be called the same go by their address.
+    std::string phrase = parameter_phrase(address);
+    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
+  }
+  const auto other = choose_among(ui, name, phrases, chosen);
+  if (!other) return std::nullopt;
+  return all[static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin())];
 }
 
 bool check_row(Ui& ui, const std::string& name, const std::string& label, bool on, const char* help,

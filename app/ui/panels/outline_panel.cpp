@@ -25,7 +25,6 @@ namespace flyball {
 
 namespace {
 
-constexpr std::size_t searchable_parts = 15; // parts, from which on there is a field to search them
 constexpr std::size_t most_mistakes = 4;
 
 struct SectionWords {
@@ -300,12 +299,8 @@ void part_section(Outline& outline, std::size_t section) {
   ImGui::PopID();
 }
 
-void search_field(const Session& session, Ui& ui, OutlineState& state) {
-  const Mechanism& mechanism = session.mechanism();
-  if (mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size() < searchable_parts) {
-    state.search.clear();
-    return;
-  }
+// There whatever there is to search, so that no row moves when a part is added.
+void search_field(Ui& ui, OutlineState& state) {
   ImGui::SetNextItemWidth(-1);
   ImGui::InputTextWithHint("##search", "Search", &state.search);
   note_widget(ui.widgets, "outline/search", KeyUse::type);
@@ -334,7 +329,7 @@ void OutlinePanel::draw(Session& session, Ui& ui, ViewState& view, const Command
                         const PanelRect& rect) {
   begin_panel("outline", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 0});
-  search_field(session, ui, state_);
+  search_field(ui, state_);
   // What is missing stays in view below the list.
   const float footer = session.mistakes.empty() ? 0 : state_.missing_height;
   const float room = ImGui::GetContentRegionAvail().y;

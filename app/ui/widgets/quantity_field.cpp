@@ -456,7 +456,7 @@ void pin(Session& session, const std::string& address, bool pinned) {
   edit(session, (pinned ? "Pin " : "Unpin ") + parameter_phrase(address),
        [&](Mechanism& mechanism, Selection&) {
          if (pinned)
-           mechanism.sliders.push_back(slider_for(mechanism, address));
+           mechanism.sliders.push_back(slider_for(mechanism, address, session.units));
          else
            std::erase_if(mechanism.sliders,
                          [&](const Slider& slider) { return slider.parameter == address; });

@@ -35,23 +35,17 @@ void axis_choice(Session& session, Ui& ui, MapView& drawn, std::size_t which) {
   MapState& map = session.study.map;
   const MapAxis& axis = map.choice.axes[which];
   const std::string name = which == 0 ? "map/x" : "map/y";
-  std::vector<std::string> phrases, addresses;
-  std::set<std::string> taken;
-  for (std::string& address : map_addresses(session)) {
-    if (address == map.choice.axes[1 - which].address) continue;
-    // Numbers that would be called the same go by their address.
-    std::string phrase = parameter_phrase(address);
-    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
-    addresses.push_back(std::move(address));
-  }
-  if (const auto chosen = name_choice_row(ui, name, which == 0 ? "Across" : "Up", phrases,
-                                          parameter_phrase(axis.address), "The number along this axis.")) {
-    const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *chosen) - phrases.begin());
-    later(ui, [&session, &drawn, which, address = addresses[i]] {
+  const auto addresses = [&] {
+    std::vector<std::string> all = map_addresses(session);
+    std::erase(all, map.choice.axes[1 - which].address);
+    return all;
+  };
+  if (const auto chosen = number_choice_row(ui, name, which == 0 ? "Across" : "Up", addresses,
+                                            parameter_phrase(axis.address), "The number along this axis."))
+    later(ui, [&session, &drawn, which, address = *chosen] {
       session.study.map.choice.axes[which] = map_axis(session, address);
       fit_plot(drawn.view);
     });
-  }
   if (!has_number(session.mechanism(), axis.address)) return; // gone in this frame, by an undo
   const auto end = [&](const char* key, double value, bool upper) {
     return QuantityField{.name = name + "/" + key,

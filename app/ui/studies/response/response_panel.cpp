@@ -1,7 +1,9 @@
 // The response curve's choices, design mode, and the plot.
 #include "app/session/resonance.hpp"
+#include "app/session/response_design.hpp"
 #include "app/session/response_pull.hpp"
 #include "app/session/units.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/response/resonance_plot.hpp"
 #include "app/ui/studies/response/response_plot.hpp"
@@ -27,24 +29,17 @@ constexpr float response_choices_width = 300; // points
 constexpr double curve_patience = 0.25;       // s: a shorter wait is not worth a bar
 
 void parameter_choice(Session& session, Ui& ui) {
-  std::vector<std::string> phrases;
-  phrases.reserve(session.parameters.size());
-  std::string chosen;
-  for (const ParameterControl& control : session.parameters) {
-    phrases.push_back(parameter_phrase(control.address));
-    if (control.address == session.study.response.choice.address) chosen = phrases.back();
-  }
-  const auto other = name_choice_row(ui, "response/parameter", "Vary", phrases, chosen,
-                                     "The number along the plot: one of the sliders, or pin another.");
-  if (!other) return;
-  const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin());
-  choose_response(session, session.parameters[i].address);
+  if (const auto other = number_choice_row(
+          ui, "response/parameter", "Vary", [&] { return variable_numbers(session, Dampers::with); },
+          parameter_phrase(session.study.response.choice.address),
+          "The number along the plot: of a slider, or any other."))
+    choose_response(session, *other);
 }
 
 // One end of the range.
 void range_field(Session& session, Ui& ui, const char* name, const char* help, double ResponseChoice::*end,
                  float width) {
-  const ParameterControl* control = response_control(session);
+  const std::optional<ParameterControl> control = response_control(session);
   ResponseState& state = session.study.response;
   const QuantityField field{
       .name = name,
@@ -226,41 +221,13 @@ void branch_note(const Session& session, Ui& ui) {
   help_on_hover("\"Restart from drawn pose\" leaves it, and so does undoing.");
 }
 
-// With the speeds of the steady state where there is one.
-const std::vector<CoordinateSolution>& known_coordinates(const Session& session) {
-  return converged(session) ? session.answer.solution.coordinates : session.answer.summary.coordinates;
-}
-
-// The coordinate, or the speed that is found, of this name.
-std::optional<FoundNumber> number_named(const std::vector<CoordinateSolution>& all, const std::string& name) {
-  for (const CoordinateSolution& c : all)
-    if (const auto found = found_number(c); found && !c.dependent && found->name == name) return found;
-  return std::nullopt;
-}
-
-// The unit of what design mode asks for: of a coordinate or speed, else of a measure.
-std::string design_unit(const Session& session) {
-  if (const auto found = number_named(known_coordinates(session), session.study.response.design.coordinate))
-    return std::string(found->unit);
-  const int i = measure_index(session.mechanism(), session.study.response.design.coordinate);
-  return i < 0 ? "m" : session.mechanism().measures[static_cast<std::size_t>(i)].unit;
-}
-
-double present_value(const Session& session, const std::string& name) {
-  if (const auto found = number_named(session.answer.solution.coordinates, name)) return found->value;
-  for (const MeasureSolution& m : session.answer.solution.measures)
-    if (m.name == name) return m.value.value_or(0);
-  return 0;
-}
-
-void choose_design(Session& session, const std::string& name) {
+void choose_design(Session& session, const DesignGoal& goal) {
   ResponseDesign& design = session.study.response.design;
-  design.coordinate = name;
+  design.coordinate = goal.key;
   design.answer.found.reset();
-  const ShownUnit unit = shown_unit(design_unit(session), session.units);
-  const double shown = unit.shown(present_value(session, name));
-  const auto found = number_named(known_coordinates(session), name);
-  if (!found || found->unit.ends_with("/s")) { // three digits
+  const ShownUnit unit = shown_unit(goal.unit, session.units);
+  const double shown = unit.shown(goal.value.value_or(0));
+  if (!goal.place) { // three digits
     design.value = unit.si(std::strtod(rounded_text(shown, 3).c_str(), nullptr));
     return;
   }
@@ -269,8 +236,8 @@ void choose_design(Session& session, const std::string& name) {
   design.value = unit.si(std::round(shown * digits) / digits);
 }
 
-void solution_row(Session& session, Ui& ui, const DesignAnswer& answer, const DesignSolution& s,
-                  std::size_t i, const std::string& si_unit) {
+void solution_row(Session& session, Ui& ui, const DesignRequest& of, const DesignSolution& s, std::size_t i,
+                  const std::string& si_unit) {
   const UiColors& colors = colors_of(ui);
   const NumberStyle& numbers = session.options.numbers;
   const ShownUnit parameter = shown_unit(si_unit, session.units);
@@ -301,8 +268,8 @@ void solution_row(Session& session, Ui& ui, const DesignAnswer& answer, const De
                      magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit + ", " +
                      std::to_string(s.iterations) + " iterations.";
   if (s.rate) {
-    const ShownUnit coordinate = shown_unit(answer.unit, session.units);
-    help += "\n" + answer.wanted + " changes by " +
+    const ShownUnit coordinate = shown_unit(of.goal.unit, session.units);
+    help += "\n" + of.goal.title + " changes by " +
             short_text(*s.rate * coordinate.factor / parameter.factor, 4) + " " + coordinate.text + " per " +
             (unit.empty() ? "unit." : unit + ".");
   }
@@ -331,47 +298,61 @@ void design_answer(Session& session, Ui& ui) {
   if (!design.answer.found) return;
   const DesignAnswer& answer = design.answer.found->result;
   if (answer.solutions.empty()) {
-    paragraph(answer.message, colors.warn);
+    paragraph(design_words(session), colors.warn);
     note_widget(ui.widgets, "response/never");
     return;
   }
-  const ParameterControl* control = response_control(session);
+  const std::optional<ParameterControl> control = response_control(session);
   for (std::size_t i = 0; i < answer.solutions.size(); ++i)
-    solution_row(session, ui, answer, answer.solutions[i], i, control ? control->unit : "");
+    solution_row(session, ui, design.answer.found->of, answer.solutions[i], i, control ? control->unit : "");
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "",
-        answer.message.c_str());
+        design_words(session).c_str());
+}
+
+// What is chosen as long as nobody has: what is shown, or else the last coordinate.
+const DesignGoal& first_goal(const Session& session, const std::vector<DesignGoal>& goals) {
+  const std::string& quantity = session.study.response.choice.quantity;
+  const auto shown = std::ranges::find_if(goals, [&](const DesignGoal& goal) {
+    return quantity == "value " + goal.key || quantity == "measure " + goal.key;
+  });
+  if (shown != goals.end()) return *shown;
+  const auto behind = std::ranges::find_if(goals, [](const DesignGoal& goal) {
+    return !goal.expression.empty() || (!goal.place && !goal.key.ends_with(".speed"));
+  });
+  return behind == goals.begin() ? goals.front() : *(behind - 1);
 }
 
 void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
-  const ParameterControl* control = response_control(session);
-  if (!control) return;
-  std::vector<std::string> names;
-  for (const CoordinateSolution& c : known_coordinates(session))
-    if (const auto found = found_number(c); found && !c.dependent) names.push_back(found->name);
-  const std::string first = names.empty() ? "" : names.back();
-  for (const NamedMeasure& measure : session.mechanism().measures)
-    names.push_back(measure.name);
-  if (names.empty()) return;
+  const std::optional<ParameterControl> control = response_control(session);
+  const std::vector<DesignGoal> goals = design_goals(session);
+  if (!control || goals.empty()) return;
   ResponseDesign& design = session.study.response.design;
-  if (std::ranges::find(names, design.coordinate) == names.end()) {
-    const std::string& quantity = session.study.response.choice.quantity;
-    const auto shown = std::ranges::find_if(
-        names, [&](const std::string& n) { return quantity == "value " + n || quantity == "measure " + n; });
-    choose_design(session, shown == names.end() ? (first.empty() ? names.front() : first) : *shown);
+  auto chosen = std::ranges::find(goals, design.coordinate, &DesignGoal::key);
+  if (chosen == goals.end() && converged(session)) {
+    choose_design(session, first_goal(session, goals));
+    chosen = std::ranges::find(goals, design.coordinate, &DesignGoal::key);
   }
   heading(ui, ("Find the " + parameter_phrase(control->address)).c_str());
-  help_on_hover("Solves for the number so that a coordinate, a speed that is found or a measure has the "
-                "value that is asked for.");
-  if (const auto chosen = name_choice_row(ui, "response/design", "so that", names, design.coordinate,
-                                          "The coordinate, speed or measure that is wanted somewhere."))
+  help_on_hover("Solves for the number so that a coordinate, a speed that is found, a measure, a force or a "
+                "torque has the value that is asked for.");
+  std::vector<std::string> titles;
+  titles.reserve(goals.size());
+  for (const DesignGoal& goal : goals)
+    titles.push_back(goal.title);
+  if (const auto other = name_choice_row(ui, "response/design", "so that", titles,
+                                         chosen == goals.end() ? design.coordinate : chosen->title,
+                                         "The coordinate, speed, measure, force or torque that is wanted "
+                                         "somewhere.")) {
+    chosen = std::ranges::find(goals, *other, &DesignGoal::title);
     choose_design(session, *chosen);
+  }
   const float width = row_label(ui, "is", "Where it is wanted.");
   const float button = 62 * ui.scale, gap = 6 * ui.scale;
   quantity_field(session, ui,
                  {.name = "response/value",
                   .value = design.value,
-                  .unit = design_unit(session),
+                  .unit = chosen == goals.end() ? "" : chosen->unit,
                   .help = "Where it is wanted.",
                   .set =
                       [&session](double typed) {
@@ -389,8 +370,8 @@ void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
 }
 
 void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
-  if (session.parameters.empty()) {
-    paragraph("There is nothing to vary: no drive, no spring, no pinned number.", colors_of(ui).dim);
+  if (session.mechanism().bodies.empty()) {
+    paragraph("There is nothing to vary.", colors_of(ui).dim);
     return;
   }
   parameter_choice(session, ui);

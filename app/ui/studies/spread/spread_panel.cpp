@@ -89,18 +89,10 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
 }
 
 void another_tolerance(Session& session, Ui& ui) {
-  std::vector<std::string> phrases, addresses = numbers_without_tolerance(session);
-  std::set<std::string> taken;
-  for (const std::string& address : addresses) {
-    // Numbers that would be called the same go by their address.
-    std::string phrase = parameter_phrase(address);
-    phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
-  }
-  if (const auto other = name_choice_row(ui, "spread/add", "Add", phrases, "another number…",
-                                         "A number that is to have a tolerance, too.")) {
-    const auto i = static_cast<std::size_t>(std::ranges::find(phrases, *other) - phrases.begin());
-    later(ui, [&session, address = addresses[i]] { add_tolerance(session, address); });
-  }
+  if (const auto other = number_choice_row(
+          ui, "spread/add", "Add", [&] { return numbers_without_tolerance(session); }, "another number…",
+          "A number that is to have a tolerance, too."))
+    later(ui, [&session, address = *other] { add_tolerance(session, address); });
 }
 
 void output_choice(Session& session, Ui& ui) {

@@ -1,0 +1,184 @@
+#include "app/session/response_design.hpp"
+
+#include "app/session/session.hpp"
+#include "app/session/units.hpp"
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/result_functions.hpp"
+#include "engine/mechanism/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace flyball {
+
+namespace {
+
+// How far a state is from the present one (rad and m, added up).
+double away(const Session& session, const ResponsePoint& point) {
+  const std::vector<CoordinateSolution>& now = session.answer.solution.coordinates;
+  double sum = 0;
+  for (std::size_t i = 0; i < now.size() && i < point.coordinates.size(); ++i) {
+    const double apart = point.coordinates[i].value - now[i].value;
+    if (!now[i].driven) sum += std::abs(now[i].angle ? std::remainder(apart, 2 * std::numbers::pi) : apart);
+  }
+  return sum;
+}
+
+// What the drive gives by a law, or else all that it gives.
+void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector<DesignGoal>& goals) {
+  const std::string name = coordinate_label(drive), unit = drive.angle ? "N m" : "N",
+                    kind = drive.angle ? "torque" : "force";
+  if (!drive.given) {
+    if (!drive.varying)
+      goals.push_back({.key = "torque(" + coordinate_argument(name) + ")",
+                       .title = "drive " + kind + " of " + name,
+                       .unit = unit,
+                       .value = drive.value,
+                       .expression = "torque(" + coordinate_argument(name) + ")"});
+    return;
+  }
+  const auto joint = std::ranges::find(mechanism.joints, drive.joint, &Joint::name);
+  if (joint == mechanism.joints.end()) return;
+  if (const Formula* law = drive_law(mechanism, *joint, drive.index, "torque"))
+    goals.push_back({.key = "given " + name,
+                     .title = "drive " + kind + " of " + name,
+                     .unit = unit,
+                     .value = drive.given->torque,
+                     .expression = law->text});
+  if (const Formula* law = drive_law(mechanism, *joint, drive.index, "load"))
+    goals.push_back({.key = "load " + name,
+                     .title = "load on " + name,
+                     .unit = unit,
+                     .value = drive.given->load,
+                     .expression = law->text});
+}
+
+// The mechanism with a measure of the goal, whose name it returns.
+std::string add_measure(Mechanism& mechanism, const DesignGoal& goal) {
+  NamedMeasure measure{.name = "wanted", .description = {}, .text = goal.expression, .unit = goal.unit};
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::find(mechanism.joints, name, &Joint::name) != mechanism.joints.end() ||
+           std::ranges::find(mechanism.measures, name, &NamedMeasure::name) != mechanism.measures.end() ||
+           std::ranges::find(mechanism.parameters, name, &NamedParameter::name) !=
+               mechanism.parameters.end() ||
+           std::ranges::find(mechanism.points, name, &NamedPoint::name) != mechanism.points.end();
+  };
+  while (taken(measure.name))
+    measure.name += "_";
+  mechanism.measures.push_back(measure);
+  return measure.name;
+}
+
+DesignAnswer find_solutions(const DesignRequest& request, const TaskContext<DesignAnswer>& context) {
+  DesignOptions options;
+  options.largest_step = response_step(request.of);
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  const auto ask = [&](const Mechanism& mechanism, const std::string& name) {
+    return design(mechanism, request.of.address, request.of.from, request.of.to, name, request.value,
+                  options);
+  };
+  if (request.goal.expression.empty()) return ask(*request.of.mechanism, request.goal.key);
+  Mechanism with = *request.of.mechanism;
+  const std::string name = add_measure(with, request.goal);
+  DesignAnswer answer = ask(with, name);
+  answer.wanted = request.goal.title;
+  for (DesignSolution& solution : answer.solutions)
+    std::erase_if(solution.at.measures, [&](const MeasureSolution& m) { return m.name == name; });
+  return answer;
+}
+
+} // namespace
+
+std::vector<DesignGoal> design_goals(const Session& session) {
+  const bool solved = converged(session);
+  const Solution& solution = session.answer.solution;
+  std::vector<DesignGoal> goals;
+  for (const CoordinateSolution& c : solved ? solution.coordinates : session.answer.summary.coordinates)
+    if (const auto found = found_number(c); found && !c.dependent)
+      goals.push_back({.key = found->name,
+                       .title = found->name,
+                       .unit = std::string(found->unit),
+                       .value = solved ? std::optional(found->value) : std::nullopt,
+                       .place = !c.speed});
+  for (const NamedMeasure& measure : session.mechanism().measures) {
+    DesignGoal& goal = goals.emplace_back(
+        DesignGoal{.key = measure.name, .title = measure.name, .unit = measure.unit, .value = {}});
+    if (!solved) continue;
+    for (const MeasureSolution& m : solution.measures)
+      if (m.name == measure.name) goal.value = m.value;
+  }
+  if (!solved) return goals;
+  for (const DriveTorque& drive : solution.drive_torques)
+    add_drive(session.mechanism(), drive, goals);
+  for (const Reaction& r : solution.reactions) {
+    if (r.varying || r.nonunique) continue;
+    const std::string of = "(" + argument_text(r.joint) + ")";
+    goals.push_back({.key = "reaction" + of,
+                     .title = "force through " + r.joint,
+                     .unit = "N",
+                     .value = r.force.norm(),
+                     .expression = "reaction" + of});
+    goals.push_back({.key = "moment" + of,
+                     .title = "torque through " + r.joint,
+                     .unit = "N m",
+                     .value = r.torque.norm(),
+                     .expression = "moment" + of});
+  }
+  return goals;
+}
+
+std::optional<DesignGoal> design_goal(const Session& session) {
+  for (DesignGoal& goal : design_goals(session))
+    if (goal.key == session.study.response.design.coordinate) return std::move(goal);
+  return std::nullopt;
+}
+
+void take_design(Session& session) {
+  auto& answer = session.study.response.design.answer;
+  if (!answer.take()) return;
+  if (!answer.problem.empty()) answer.found.reset();
+  if (!answer.found) return;
+  // Stable states first, then those that are like the present one.
+  std::ranges::stable_sort(answer.found->result.solutions, {}, [&](const DesignSolution& s) {
+    return std::pair(s.at.stable != true, away(session, s.at));
+  });
+}
+
+void find_design(Session& session) {
+  ResponseDesign& wanted = session.study.response.design;
+  const std::optional<ResponseRequest> of = response_wanted(session);
+  std::optional<DesignGoal> goal = design_goal(session);
+  if (!of || !goal) return;
+  // The same question about a mechanism that is being changed: every answer is worth seeing.
+  const auto& found = wanted.answer.found;
+  const bool same = found && found->of.goal.key == goal->key && found->of.value == wanted.value;
+  wanted.answer.ask(session.options, {*of, std::move(*goal), wanted.value}, find_solutions,
+                    same ? ResponseCurve::Running::finished : ResponseCurve::Running::cancelled);
+  take_design(session);
+}
+
+std::string design_words(const Session& session) {
+  const auto& found = session.study.response.design.answer.found;
+  if (!found) return {};
+  const ResponseRequest& of = found->of.of;
+  const ShownUnit wanted = shown_unit(found->of.goal.unit, session.units),
+                  varied = shown_unit(parameter_unit(*of.mechanism, of.address), session.units);
+  return with_phrase(design_message(found->result, of.from, of.to, true,
+                                    {.wanted = found->of.goal.title,
+                                     .wanted_unit = wanted.text,
+                                     .varied = parameter_phrase(of.address),
+                                     .varied_unit = varied.text,
+                                     .shown = [&](double si) { return wanted.shown(si); },
+                                     .shown_varied = [&](double si) { return varied.shown(si); }}),
+                     of.address);
+}
+
+void go_to_design(Session& session, const DesignSolution& solution) {
+  if (const auto& found = session.study.response.design.answer.found)
+    go_to_state(session, found->of.of.address, solution.parameter, start_values(solution.at.coordinates));
+}
+
+} // namespace flyball
