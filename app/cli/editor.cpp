@@ -5,7 +5,7 @@
 #include "app/cli/picture.hpp"
 #include "app/cli/report_error.hpp"
 #include "app/cli/state_folder.hpp"
-#include "app/cli/window_keys.hpp"
+#include "app/cli/window_input.hpp"
 #include "app/cli/window_state.hpp"
 #include "app/platform/data_folder.hpp"
 #include "app/platform/end_signals.hpp"
@@ -39,68 +39,16 @@ namespace {
 constexpr int settling_frames = 6;
 constexpr double idle = 3600; // s, to wait for something to happen
 
-// Input from GLFW for the stage's ImGui context.
-class Input {
- public:
-  explicit Input(const Window& window) { ImGui_ImplGlfw_InitForOpenGL(window.handle(), true); }
-  ~Input() { ImGui_ImplGlfw_Shutdown(); }
-  Input(const Input&) = delete;
-  Input& operator=(const Input&) = delete;
-
-  // The interface counts in pixels; on some desktops the mouse counts in points. `keys` went down since the
-  // last frame: Dear ImGui 1.86 would not see one that is up again by now.
-  void read(const Window& window, const std::vector<KeyPress>& keys) {
-    ImGui_ImplGlfw_NewFrame();
-    hold(window, keys);
-    look(keys);
-    ImGuiIO& io = ImGui::GetIO();
-    const auto points = window.size(), pixels = window.framebuffer_size();
-    if (points.width <= 0 || points.width == pixels.width || !ImGui::IsMousePosValid()) return;
-    const float ratio = static_cast<float>(pixels.width) / static_cast<float>(points.width);
-    io.MousePos = {io.MousePos.x * ratio, io.MousePos.y * ratio};
-  }
-  // Whether the last read() found anything new.
-  bool changed() const { return changed_; }
-
- private:
-  void look(const std::vector<KeyPress>& keys) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const std::array now{io.MousePos.x, io.MousePos.y, io.MouseDown[0] ? 1.f : 0.f,
-                         io.MouseDown[1] ? 1.f : 0.f, io.MouseDown[2] ? 1.f : 0.f};
-    changed_ = now != mouse_ || io.MouseWheel != 0 || io.InputQueueCharacters.Size > 0 || !keys.empty();
-    mouse_ = now;
-  }
-  void hold(const Window& window, const std::vector<KeyPress>& keys) {
-    if constexpr (imgui_compat::queues_events) return;
-    for (const int key : held_)
-      imgui_compat::set_key(key, glfwGetKey(window.handle(), key) == GLFW_PRESS);
-    held_.clear();
-    for (const KeyPress& press : keys) {
-      const bool known = press.key >= GLFW_KEY_SPACE && press.key <= GLFW_KEY_LAST;
-      if (!known || imgui_compat::key_is_down(press.key)) continue;
-      imgui_compat::set_key(press.key, true);
-      held_.push_back(press.key);
-    }
-  }
-
-  std::vector<int> held_; // shown as down for one frame
-  std::array<float, 5> mouse_{};
-  bool changed_ = false;
-};
-
 // What GLFW's callbacks find at the window.
 struct Desk {
   App* app;
+  WindowInput* input;
   std::atomic<bool>* stirred; // something has happened that may show: set from any thread
-  AltTap alt{};
   SystemColors* colors = nullptr;
 };
 
 Desk& desk_of(GLFWwindow* window) {
   return *static_cast<Desk*>(glfwGetWindowUserPointer(window));
-}
-App& app_of(GLFWwindow* window) {
-  return *desk_of(window).app;
 }
 
 // A callback that takes note of the event and nothing else.
@@ -111,42 +59,65 @@ void stir(GLFWwindow* window, Arguments...) {
 
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
   stir(window);
-  if (const auto press = pressed_key(key, scancode, action, modifiers))
-    app_of(window).ui.keys.push_back(*press);
-  if (const auto tap = desk_of(window).alt.see(key, action)) app_of(window).ui.keys.push_back(*tap);
+  desk_of(window).input->note({.kind = WindowEvent::Kind::key,
+                               .code = key,
+                               .scancode = scancode,
+                               .action = action,
+                               .modifiers = modifiers});
 }
 
 void type_character(GLFWwindow* window, unsigned character) {
   stir(window);
-  if (const auto press = typed_sign(character)) app_of(window).ui.keys.push_back(*press);
+  desk_of(window).input->note({.kind = WindowEvent::Kind::character, .character = character});
 }
 
-void press_button(GLFWwindow* window, int, int, int) {
+void press_button(GLFWwindow* window, int button, int action, int modifiers) {
   stir(window);
-  desk_of(window).alt.disturb();
+  WindowEvent event{
+      .kind = WindowEvent::Kind::button, .code = button, .action = action, .modifiers = modifiers};
+  glfwGetCursorPos(window, &event.x, &event.y);
+  desk_of(window).input->note(event);
+}
+
+void turn_wheel(GLFWwindow* window, double x, double y) {
+  stir(window);
+  ImGui_ImplGlfw_ScrollCallback(window, x, y);
+}
+
+void move_cursor(GLFWwindow* window, [[maybe_unused]] double x, [[maybe_unused]] double y) {
+  stir(window);
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui_ImplGlfw_CursorPosCallback(window, x, y);
+#endif
+}
+
+void enter_window(GLFWwindow* window, int entered) {
+  stir(window);
+  ImGui_ImplGlfw_CursorEnterCallback(window, entered);
 }
 
 // It may have been night, or the settings, that came meanwhile.
 void focus_window(GLFWwindow* window, int focused) {
   stir(window);
+  ImGui_ImplGlfw_WindowFocusCallback(window, focused);
   if (focused && desk_of(window).colors) desk_of(window).colors->ask();
 }
 
 void drop_file(GLFWwindow* window, int count, const char** paths) {
   stir(window);
-  if (count > 0) open_file(app_of(window), paths[0]);
+  if (count > 0) open_file(*desk_of(window).app, paths[0]);
 }
 
-// Before ImGui's, which call these in turn.
+// Those that Dear ImGui's backend would set, too, which are called from these.
 void set_callbacks(GLFWwindow* window, Desk& desk) {
   glfwSetWindowUserPointer(window, &desk);
   glfwSetDropCallback(window, drop_file);
   glfwSetKeyCallback(window, press_key);
   glfwSetCharCallback(window, type_character);
-  glfwSetCursorPosCallback(window, stir);
-  glfwSetCursorEnterCallback(window, stir);
+  glfwSetCursorPosCallback(window, move_cursor);
+  glfwSetCursorEnterCallback(window, enter_window);
   glfwSetMouseButtonCallback(window, press_button);
-  glfwSetScrollCallback(window, stir);
+  glfwSetScrollCallback(window, turn_wheel);
   glfwSetWindowFocusCallback(window, focus_window);
   glfwSetWindowCloseCallback(window, stir);
   glfwSetWindowSizeCallback(window, stir);
@@ -193,11 +164,28 @@ class ShownState {
   std::string told_;
 };
 
+// Frames until all that was done at the window has been seen, of which the last is to be drawn. Whether
+// anything was new.
+bool take_input(WindowInput& input, App& app, Stage& stage, PixelSize size, double seconds) {
+  input.read(app.ui.keys);
+  bool changed = input.changed();
+  stage.frame(app, size, seconds);
+  while (input.pending() && !app.quit && !app.export_request) {
+    for (int i = 1; i < WindowInput::frames_each; ++i) {
+      input.rest();
+      stage.frame(app, size, 0);
+    }
+    input.read(app.ui.keys);
+    changed = true;
+    stage.frame(app, size, 0);
+  }
+  return changed;
+}
+
 // Until the person quits or `ends` says so.
-void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& options, SystemColors& colors,
-              std::atomic<bool>& stirred, const std::function<bool()>& ends) {
+void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, const EditorOptions& options,
+              SystemColors& colors, std::atomic<bool>& stirred, const std::function<bool()>& ends) {
   const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
-  Input input(window);
   ShownState shown(options.state_file);
   using Clock = std::chrono::steady_clock;
   auto last = Clock::now();
@@ -243,10 +231,8 @@ void run_loop(Window& window, App& app, Stage& stage, const EditorOptions& optio
       continue;
     }
     if (app.ui.scale != scale()) stage.set_scale(app.ui, scale());
-    input.read(window, app.ui.keys);
     // What comes while the last thing settles has to settle, too.
-    if (input.changed()) settling = settling_frames;
-    stage.frame(app, size, seconds);
+    if (take_input(input, app, stage, size, seconds)) settling = settling_frames;
     if (!app.quit) note_unsaved_work(app.session);
     stage.render(app.ui, size);
     window.swap();
@@ -311,14 +297,15 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
     glfwPostEmptyEvent();
   });
   colors.ask();
-  Desk desk{.app = &app, .stirred = stirred.get(), .colors = &colors};
+  WindowInput input(window);
+  Desk desk{.app = &app, .input = &input, .stirred = stirred.get(), .colors = &colors};
   set_callbacks(window.handle(), desk);
   open_first(app, scene);
   const std::shared_ptr<AutosaveSlot> slot = app.session.files.autosave.slot();
   lost_display.emplace(slot);
   signals.emplace(glfwPostEmptyEvent, [slot] { tell_kept(slot->write(), *slot); });
   try {
-    run_loop(window, app, stage, options, colors, *stirred, [&] { return signals->came() != 0; });
+    run_loop(window, app, stage, input, options, colors, *stirred, [&] { return signals->came() != 0; });
   } catch (...) {
     tell_kept(keep_unsaved_work(app.session), *slot);
     throw;

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -85,6 +86,15 @@ class Window:
         self.do("mousedown", 1)
         self.do("mouseup", 1)
 
+    def hurry(self, *commands):
+        """xdotool's commands while the program stands still: it finds all of it in one go."""
+        os.kill(self.program.pid, signal.SIGSTOP)
+        try:
+            for words in commands:
+                subprocess.run(["xdotool", *words], env=self.environment, check=True)
+        finally:
+            os.kill(self.program.pid, signal.SIGCONT)
+
     def drag_speed(self):
         """Waits for the first answer, drags the slider and returns the states before and after."""
         first = self.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
@@ -142,6 +152,29 @@ def watch_motion(window):
     window.wait("it is scrubbed to the middle", lambda s: abs(s["motion"]["time"] - half) < 0.1 * half)
     window.click("study/close")
     window.wait("the motion is gone", lambda s: "motion" not in s)
+
+
+def type_ahead(window, scene):
+    """However much comes within a frame, each key sees what the one before has done."""
+    window.wait("the first answer", lambda s: s["answer"] > 0 and s["status"] == "converged")
+    window.do("mousemove", *window.place("view"))
+    window.hurry(["key", "ctrl+p"], ["type", "spin 15"], ["key", "Return"])
+    window.wait("the palette sets a speed", lambda s: s["parameters"][SPEED] == 15)
+    window.do("key", "Tab")
+    window.wait("building", lambda s: s["mode"] == "build")
+    window.click("outline/bodies/ball1")
+    window.click("inspector/position/x")
+    window.wait("a field", lambda s: s["typing"] == "inspector/position/x")
+    window.hurry(["key", "ctrl+a"], ["type", "0.31"], ["key", "Tab"], ["type", "0.12"], ["key", "Tab"],
+                 ["key", "ctrl+a"], ["type", "0.05"], ["key", "Return"])
+    window.wait("the fields are left", lambda s: s["unsaved"] and not s["typing"])
+    window.do("key", "ctrl+s")
+    window.wait("it is saved", lambda s: not s["unsaved"])
+    bodies = {body["name"]: body for body in json.loads(scene.read_text())["bodies"]}
+    if bodies["ball1"]["position"] != [0.31, 0.12, 0.05]:
+        raise SystemExit(f"typed ahead, the ball is at {bodies['ball1']['position']}")
+    window.do("key", "ctrl+q")
+    window.ends_well()
 
 
 def hidden_files(folder):
@@ -214,6 +247,8 @@ def main():
 
             open_bare(program, scene, folder)
             explore(start(pathlib.Path(shutil.copy(scene, folder))), folder)  # pictures go beside their scene
+            ahead = pathlib.Path(shutil.copy(scene, folder / "ahead.json"))
+            type_ahead(start(ahead), ahead)
             value = crash(start(copy))
             recover(start(copy), copy, value)
     finally:

@@ -1,0 +1,64 @@
+// What a hand does at the window, given to Dear ImGui in its order. However slow frames are, each key sees
+// what the one before has done: text, Tab and text again go into two fields.
+#pragma once
+
+#include "app/cli/window_keys.hpp"
+#include "app/render/window.hpp"
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace flyball::cli {
+
+// A key or a button that went down or up, or a character that was typed, in GLFW's terms.
+struct WindowEvent {
+  enum class Kind { key, character, button };
+  Kind kind = Kind::key;
+  int code = 0, scancode = 0, action = 0, modifiers = 0;
+  unsigned character = 0;
+  double x = 0, y = 0; // of the mouse, in the window's coordinates
+};
+
+class WindowInput {
+ public:
+  // For the present ImGui context, which it is a backend of.
+  explicit WindowInput(const Window& window);
+  ~WindowInput();
+  WindowInput(const WindowInput&) = delete;
+  WindowInput& operator=(const WindowInput&) = delete;
+
+  void note(const WindowEvent& event) { events_.push_back(event); }
+  // Whether there is more than one frame could take.
+  bool pending() const { return !events_.empty(); }
+  // Frames that what one read() gave needs until the next may be read: a field that Tab goes to takes the
+  // keyboard in the third.
+  static constexpr int frames_each = 3;
+
+  // Gives what one frame takes, as far as the next key that does something beside typing a character. Presses
+  // are added to `keys`.
+  void read(std::vector<KeyPress>& keys);
+  // A frame in which nothing new happens.
+  void rest();
+  // Whether the last read() found anything new.
+  bool changed() const { return changed_; }
+
+ private:
+  void give(const WindowEvent& event, std::vector<KeyPress>& keys);
+  void take_over(const std::vector<KeyPress>& keys);
+  void hold(const std::vector<KeyPress>& keys);
+  void look(const std::vector<KeyPress>& keys);
+
+  const Window& window_;
+  std::deque<WindowEvent> events_;
+  AltTap alt_;
+  std::vector<int> held_;         // shown as down for one frame
+  std::array<bool, 5> buttons_{}; // down, of what was given
+  std::optional<std::array<double, 2>>
+      button_; // where the last one was pressed or let go, as long as more waits
+  std::array<float, 5> mouse_{};
+  bool changed_ = false;
+};
+
+} // namespace flyball::cli
