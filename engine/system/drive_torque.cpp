@@ -98,10 +98,11 @@ struct LawState {
   // What the terms of a law may be in size: what it asks of points is a difference of places; and terms may
   // well cancel, and their sum vanish with what it asks for.
   double size(const DriveLaw& law, const DriveLawParameters& numbers) const {
-    const double torque = std::abs(value(law, numbers).value);
+    const Dual first = value(law, numbers, 0); // with the slope at the first input
+    const double torque = std::abs(first.value);
     double out = torque, terms = 0;
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
-      const double change = std::abs(slope(law, numbers, i));
+      const double change = std::abs(i == 0 && numbers.slopes.empty() ? first.rate : slope(law, numbers, i));
       if (law.inputs[i].coordinate < 0)
         out += change * law_input_size(system, p, law, numbers, i, q, k);
       else
@@ -109,7 +110,9 @@ struct LawState {
     }
     if (!(terms > torque)) return out;
     // A law that is steep here alone has no such terms.
-    return out + std::min(terms, std::max(elsewhere(law, numbers, false), elsewhere(law, numbers, true)));
+    double most = elsewhere(law, numbers, false);
+    if (most < terms) most = std::max(most, elsewhere(law, numbers, true));
+    return out + std::min(terms, most);
   }
 
   // Where the search for a speed begins that is found; else zero.
