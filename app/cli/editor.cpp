@@ -182,10 +182,15 @@ bool take_input(WindowInput& input, App& app, Stage& stage, PixelSize size, doub
   return changed;
 }
 
+// Pixels a point: as the display or the command line has it, times what the person has chosen.
+float window_scale(const Window& window, const App& app, const EditorOptions& options) {
+  return options.scale.value_or(std::max(window.content_scale(), 1.f)) * static_cast<float>(app.ui.zoom);
+}
+
 // Until the person quits or `ends` says so.
 void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, const EditorOptions& options,
               SystemColors& colors, std::atomic<bool>& stirred, const std::function<bool()>& ends) {
-  const auto scale = [&] { return options.scale.value_or(std::max(window.content_scale(), 1.f)); };
+  const auto scale = [&] { return window_scale(window, app, options); };
   ShownState shown(options.state_file);
   using Clock = std::chrono::steady_clock;
   auto last = Clock::now();
@@ -289,7 +294,7 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
            .state = state_folder(),
            .theme_choice = options.theme});
   app.session.files.changes = ChangeWatch(glfwPostEmptyEvent);
-  Stage stage(app.ui, options.scale.value_or(std::max(window.content_scale(), 1.f)));
+  Stage stage(app.ui, window_scale(window, app, options));
   stage.draft_while_moving(true);
   ImGui::GetIO().ConfigInputTextCursorBlink = false;
   SystemColors colors([stirred] {

@@ -14,6 +14,9 @@ bool is_letter(int key) {
 // The key as the layout labels it; on layouts of other scripts as it is on an English one.
 int labelled(int key, int scancode) {
   if (key == GLFW_KEY_KP_ENTER) return GLFW_KEY_ENTER;
+  if (key == GLFW_KEY_KP_ADD) return '+';
+  if (key == GLFW_KEY_KP_SUBTRACT) return '-';
+  if (key == GLFW_KEY_KP_0) return '0';
   if (key == GLFW_KEY_SPACE || key >= GLFW_KEY_ESCAPE) return key;
   const char* name = glfwGetKeyName(key, scancode);
   if (!name || name[0] <= ' ' || name[1] != 0) return key;

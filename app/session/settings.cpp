@@ -67,6 +67,8 @@ Settings read_settings(const fs::path& state_folder) {
     read(file, "theme", themes, settings.theme);
     if (const auto legend = file.find("legend"); legend != file.end() && legend->is_boolean())
       settings.legend = legend->get<bool>();
+    if (const auto zoom = file.find("zoom"); zoom != file.end() && zoom->is_number())
+      settings.zoom = std::clamp(zoom->get<double>(), least_zoom, most_zoom);
   } catch (const SceneError&) { // unreadable
   }
   return settings;
@@ -79,7 +81,8 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
                      {"speed", word_for(speeds, settings.units.speed)},
                      {"navigation", word_for(navigations, settings.navigation)},
                      {"legend", settings.legend},
-                     {"theme", word_for(themes, settings.theme)}};
+                     {"theme", word_for(themes, settings.theme)},
+                     {"zoom", settings.zoom}};
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);
   try {

@@ -15,11 +15,14 @@ enum class ThemeChoice { system, light, dark, high_contrast };
 // Of "system", "light", "dark" and "high-contrast".
 std::optional<ThemeChoice> theme_choice_of(std::string_view word);
 
+inline constexpr double least_zoom = 0.7, most_zoom = 3;
+
 struct Settings {
   DisplayUnits units;
   bool legend = true; // of the view is open
   Navigation navigation = Navigation::own;
   ThemeChoice theme = ThemeChoice::system;
+  double zoom = 1; // of the interface, times what the display has
   bool operator==(const Settings&) const = default;
 };
 

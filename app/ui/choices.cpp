@@ -5,13 +5,22 @@
 #include "app/ui/view_state.hpp"
 #include "app/ui/widgets/ui_style.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+
 namespace flyball {
 
 namespace {
 
 Settings settings_of(const Session& session, const Ui& ui, const ViewState& view) {
-  return {
-      .units = session.units, .legend = view.legend, .navigation = view.navigation, .theme = ui.theme_choice};
+  return {.units = session.units,
+          .legend = view.legend,
+          .navigation = view.navigation,
+          .theme = ui.theme_choice,
+          .zoom = ui.zoom};
 }
 
 void keep_choices(const Session& session, const Ui& ui, const ViewState& view) {
@@ -62,6 +71,15 @@ void choose_theme(const Session& session, Ui& ui, const ViewState& view, ThemeCh
 void take_system_theme(Ui& ui, Theme theme) {
   ui.system_theme = theme;
   if (ui.theme_choice == ThemeChoice::system) show_theme(ui, theme);
+}
+
+void zoom_interface(const Session& session, Ui& ui, const ViewState& view, int steps) {
+  constexpr std::array sizes{least_zoom, 0.8, 0.9, 1., 1.1, 1.25, 1.5, 1.75, 2., 2.5, most_zoom};
+  const auto nearest =
+      std::ranges::min_element(sizes, {}, [&](double size) { return std::abs(std::log(size / ui.zoom)); });
+  const auto at = steps == 0 ? std::ranges::find(sizes, 1.) - sizes.begin() : nearest - sizes.begin() + steps;
+  ui.zoom = sizes[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(at, 0, std::ssize(sizes) - 1))];
+  keep_choices(session, ui, view);
 }
 
 void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open) {

@@ -20,6 +20,8 @@ Theme theme_of(ThemeChoice choice, Theme system);
 void choose_theme(const Session& session, Ui& ui, const ViewState& view, ThemeChoice choice);
 // What the desktop has, in case it is followed.
 void take_system_theme(Ui& ui, Theme theme);
+// The interface so many sizes larger, or for 0 of its usual size; kept. Whoever draws the window scales it.
+void zoom_interface(const Session& session, Ui& ui, const ViewState& view, int steps);
 // Opens or folds the legend of the view; kept.
 void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open);
 // How the mouse moves the camera from now on; kept.

@@ -15,7 +15,7 @@ namespace {
 
 bool pressed(const Command& command, KeyPress key) {
   // Where a sign sits on the keyboard, and whether Shift is needed for it, is the layout's business.
-  if (key.key == '?') key.shift = false;
+  if (key.key == '?' || key.key == '+' || key.key == '=') key.shift = false;
   return key.key != 0 && (key == command.key || key == command.also);
 }
 

@@ -32,6 +32,7 @@ struct Ui {
   ThemeChoice theme_choice = ThemeChoice::system;
   Theme system_theme = Theme::light; // that the desktop has
   float scale = 1;                   // pixels a point has
+  double zoom = 1;                   // that a person has chosen, times what the display has
   UiFonts fonts;
   WidgetMap widgets;
   KeyboardState keyboard;

@@ -130,8 +130,8 @@ bool nudge(Ui& ui, const KeyStop& stop, const KeyPress& key) {
   case keys::home: wanted.end = plot ? 0 : -1, wanted.fit = plot; break;
   case keys::end: wanted.end = plot ? 0 : 1; break;
   case '+':
-  case '=': wanted.zoom = plot ? 1 : 0; break;
-  case '-': wanted.zoom = plot ? -1 : 0; break;
+  case '=': wanted.zoom = plot && !key.ctrl ? 1 : 0; break;
+  case '-': wanted.zoom = plot && !key.ctrl ? -1 : 0; break;
   case keys::enter: wanted.enter = plot; break;
   default: break;
   }

@@ -23,6 +23,11 @@ bool colours_chosen(const App& app) {
   return app.ui.theme_choice == choice;
 }
 
+template <int steps>
+void zoom(App& app) {
+  zoom_interface(app.session, app.ui, app.view, steps);
+}
+
 const std::array view_commands{
     Command{.id = "view.mode",
             .title = "Build",
@@ -189,6 +194,32 @@ const std::array view_commands{
             .key = shift(keys::f10),
             .also = plain(keys::menu),
             .run = [](App& app) { app.panels->viewport.open_menu(app.session); }},
+    Command{.id = "view.larger",
+            .title = "Larger interface",
+            .help = "Letters, panels and signs a size larger.",
+            .key = ctrl('+'),
+            .also = ctrl('='),
+            .run = zoom<1>,
+            .enabled = [](const App& app) { return app.ui.zoom < most_zoom; },
+            .separated = true,
+            .words = "scale zoom size font text bigger",
+            .lacks = "it is as large as it gets."},
+    Command{.id = "view.smaller",
+            .title = "Smaller interface",
+            .help = "Letters, panels and signs a size smaller.",
+            .key = ctrl('-'),
+            .run = zoom<-1>,
+            .enabled = [](const App& app) { return app.ui.zoom > least_zoom; },
+            .words = "scale zoom size font text",
+            .lacks = "it is as small as it gets."},
+    Command{.id = "view.usual_size",
+            .title = "Interface of the usual size",
+            .help = "As large as the display is said to need.",
+            .key = ctrl('0'),
+            .run = zoom<0>,
+            .enabled = [](const App& app) { return app.ui.zoom != 1; },
+            .words = "scale zoom reset font text",
+            .lacks = "it has its usual size."},
     Command{.id = "view.theme_system",
             .title = "Colours of the system",
             .help = "Light or dark as the desktop is, also when that changes.",
