@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -115,7 +116,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
     candidate.status = Status::converged;
     candidate.fallback = Fallback::slow_motion;
     candidate.iterations = found.iterations + candidate.newton.iterations;
-    if (!take_if_stable(problem, drawn, std::move(candidate))) unstable_ = false;
+    take_if_stable(problem, drawn, std::move(candidate));
     return;
   }
   if (options.warm) {
@@ -279,28 +280,39 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
   take(std::move(*other.answer));
 }
 
+SteadyState::Answer SteadyState::replace(const Problem& problem, Found candidate) {
+  Answer before{std::exchange(found, std::move(candidate)),
+                existence,
+                error,
+                std::exchange(stability, std::nullopt),
+                holds,
+                std::exchange(unstable_, false),
+                history.size()};
+  complete(problem);
+  return before;
+}
+
+void SteadyState::put_back(Answer answer) {
+  found = std::move(answer.found);
+  existence = std::move(answer.existence);
+  error = std::move(answer.error);
+  stability = std::move(answer.stability);
+  holds = answer.holds;
+  unstable_ = answer.unstable;
+  history.resize(answer.recorded);
+  factored_.reset();
+  refined_with_.reset();
+}
+
 // In the place of this state; false, and this one as it was, where that is unstable, too, or not known well.
 bool SteadyState::take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate) {
-  const std::size_t recorded = history.size();
-  Found first = std::exchange(found, std::move(candidate));
-  const Existence first_existence = existence;
-  const ErrorEstimate first_error = error;
-  const std::optional<Stability> first_stability = std::exchange(stability, std::nullopt);
-  unstable_ = false;
-  complete(problem);
+  Answer before = replace(problem, std::move(candidate));
   if (holds && is_known(problem, found.z.q, drawn, error.solution)) {
     found.minimum = found.minimum || (problem.symmetric_at_speeds() && balance_.speeds.keeps_minimum());
     if (!found.minimum || !phases.empty()) judge(problem);
     if (!unstable_ || (found.minimum && phases.empty())) return true;
   }
-  history.resize(recorded);
-  found = std::move(first);
-  existence = first_existence;
-  error = first_error;
-  stability = first_stability;
-  holds = unstable_ = true;
-  factored_.reset();
-  refined_with_.reset();
+  put_back(std::move(before));
   return false;
 }
 
@@ -313,18 +325,9 @@ void SteadyState::search_another(const Problem& problem, const Eigen::VectorXd& 
   AnswerSearch other = search_answer(dense, start, phases, seconds, balance_.elsewhere());
   others = other.others;
   if (!other.answer) return;
-  const std::size_t recorded = history.size();
-  const Existence first_existence = existence;
-  Found first = std::exchange(found, std::move(*other.answer));
-  complete(problem);
-  if (!is_known(problem, found.z.q, drawn, error.solution)) {
-    history.resize(recorded);
-    existence = first_existence;
-    holds = false;
-    found = std::move(first);
-    return;
-  }
-  found.iterations += first.iterations;
+  Answer first = replace(problem, std::move(*other.answer));
+  if (!is_known(problem, found.z.q, drawn, error.solution)) return put_back(std::move(first));
+  found.iterations += first.found.iterations;
   found.remark = holds_once ? Remark::first_does_not_hold : Remark::first_not_found;
   found.candidates = others->steady;
 }

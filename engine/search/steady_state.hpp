@@ -11,6 +11,7 @@
 #include "engine/solve/refine.hpp"
 #include "engine/stability/stability.hpp"
 
+#include <cstddef>
 #include <optional>
 
 namespace flyball {
@@ -77,6 +78,19 @@ class SteadyState {
   }
 
  private:
+  // An answer with what was computed of it.
+  struct Answer {
+    Found found;
+    Existence existence;
+    ErrorEstimate error;
+    std::optional<Stability> stability;
+    bool holds = false, unstable = false;
+    std::size_t recorded = 0; // entries of `history`
+  };
+  // Puts `candidate` in the place of this state, complete; returns what it takes the place of.
+  Answer replace(const Problem& problem, Found candidate);
+  void put_back(Answer answer);
+
   void keep_where_started(const Problem& problem);
   void refine_found(const Problem& problem);
   void check_phases(const Problem& problem);
