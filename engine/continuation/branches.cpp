@@ -128,9 +128,14 @@ class Diagram {
       const Stability none;
       out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string unit = parameter_unit(mechanism_, address_);
-      out_.message = "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) +
-                     ": " + failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
-                     (others ? " " + message(*others, found.status) : "");
+      const std::string why =
+          stands_turned(problem)
+              ? "The steady state stands turned against the drawn pose, and at other values otherwise: it is "
+                "not followed."
+              : failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
+                    (others ? " " + message(*others, found.status) : "");
+      out_.message =
+          "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) + ": " + why;
       return;
     }
     out_.status = Status::converged;
@@ -148,6 +153,16 @@ class Diagram {
     } else
       out_.message = "The start is a singular state; begin beside it.";
     if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
+  }
+
+  // Whether solving finds a state, but with what turns at other angles than drawn (Solution::turned).
+  bool stands_turned(const Problem& problem) {
+    if (problem.system.torques.empty() || problem.cancelled()) return false;
+    SolveOptions solve;
+    solve.details = solve.friction = solve.explain = false;
+    solve.search = 0; // done
+    solve.cancel = options_.cancel;
+    return Analysis(follower_.mechanism()).solve(solve).turned;
   }
 
   // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.

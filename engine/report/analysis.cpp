@@ -406,6 +406,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                           stability,    options.points, &s.measures};
   report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
   if (!without_modes.empty()) out.message += " " + without_modes;
+  out.turned = s.turned;
   if (s.turned) out.message += " " + s.turned_message();
   if (options.details && !s.system.torques.empty() && !s.turned)
     out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);

@@ -80,6 +80,31 @@ void drive_at_rest(Coordinate& c) {
   c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
 }
 
+// Calls act(numbers) for what gears move along with a drive.
+template <class Act>
+void for_geared(Compiled& held, int drive, const Act& act) {
+  for (std::size_t d = 0; d < held.system.drives.size(); ++d)
+    if (static_cast<int>(d) != drive && held.system.drives[d].motor == drive)
+      act(held.parameters.links[static_cast<std::size_t>(held.system.drives[d].link)]);
+}
+
+// A drive at rest to another place, rad or m from the drawn one, with what gears move along.
+void move_drive(Compiled& held, int drive, double to) {
+  LinkParameters& own =
+      held.parameters
+          .links[static_cast<std::size_t>(held.system.drives[static_cast<std::size_t>(drive)].link)];
+  for_geared(held, drive, [&](LinkParameters& x) { x.start += x.gear_ratio * (to - own.start); });
+  own.start = to;
+}
+
+// What springs and stops of these take of the drive: they are on driven coordinates, which no balance has.
+double geared_springs(Compiled& held, int drive) {
+  double sum = 0;
+  for_geared(held, drive,
+             [&](const LinkParameters& x) { sum += x.gear_ratio * x.force[0].gradient(x.drawn + x.start); });
+  return sum;
+}
+
 std::string label(const HeldJoint& joint) {
   return coordinate_label(joint);
 }
@@ -280,8 +305,8 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   }
   for (const std::size_t i : which.independent) {
     const int to = held.find(locked, frictions[i]), from = free.find(mechanism, frictions[i]);
-    LinkParameters& p = held.numbers(to);
-    p.start = free.q[free.link(from).q] - p.drawn;
+    const LinkParameters& p = held.numbers(to);
+    move_drive(held, held.link(to).drive, free.q[free.link(from).q] - p.drawn);
   }
   try {
     set_start(held.system, held.parameters, rest, held.q);
@@ -324,7 +349,8 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const int c = free.find(mechanism, frictions[i]);
     CoordinateForce spring = free.numbers(c).force[0];
     spring.friction = 0;
-    const double own = spring.gradient(free.q[free.link(c).q]);
+    const double own = spring.gradient(free.q[free.link(c).q]) +
+                       geared_springs(held, held.link(held.find(locked, frictions[i])).drive);
     if (torque->varying && !torque->range) {
       out.message = "What holding takes is not found: what " + out.joints[i].joint +
                     " takes changes with the phase of drives that are too many, or slide, to try all that "

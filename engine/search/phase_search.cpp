@@ -1,5 +1,6 @@
 #include "engine/search/phase_search.hpp"
 
+#include "engine/kkt/configuration_difference.hpp"
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
@@ -10,13 +11,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
+#include <utility>
 
 namespace flyball {
 namespace {
 
 constexpr int most_coordinates = 60;
-constexpr double counts = 1e-6; // of the largest effect of an angle
+constexpr double counts = 1e-6;     // of the largest effect of an angle
+constexpr double first_drift = 0.2; // of the angles, in the first of slow steps
 // Of a central difference of sixth order.
 constexpr double difference = 0x1p-7;
 constexpr std::array weights{3. / 4, -3. / 20, 1. / 60};
@@ -27,39 +31,87 @@ class PhaseSearch {
       : given_(problem),
         p_(problem.parameters), problem_{problem.system, p_, problem.scaling, problem.cancel}, q_(q), w_(w) {
     for (std::size_t l = 0; l < problem.system.links.size(); ++l)
-      if (const Link& link = problem.system.links[l]; finds_speed(link)) {
+      if (finds_speed(problem.system.links[l])) links_.push_back(l);
+    found_ = static_cast<Eigen::Index>(links_.size());
+    for (const DrivenCoordinate& d : problem.system.drives)
+      if (const auto l = static_cast<std::size_t>(d.link); !finds_speed(problem.system.links[l]))
         links_.push_back(l);
-        units_.push_back(link.type == LinkType::revolute ? 1 : p_.length);
-      }
+    for (const std::size_t l : links_)
+      units_.push_back(problem.system.links[l].type == LinkType::revolute ? 1 : p_.length);
   }
 
   std::vector<TurnedState> run() {
     std::vector<TurnedState> out;
     if (!find_directions()) return out;
-    std::vector<Eigen::VectorXd> known;
-    for (const double begin : {0., 0.15, -0.15, 0.5, -0.5, 1.2, -1.2, 2.1, -2.1, 3., 1.7}) {
+    const Eigen::Index count = directions_.cols();
+    const auto take = [&](Eigen::VectorXd along, Way way) {
       interruption_point();
-      Eigen::VectorXd along(directions_.cols());
-      for (Eigen::Index i = 0; i < along.size(); ++i)
-        along[i] = begin * (1 - 0.3 * static_cast<double>(i));
-      auto found = solve_from(along);
-      if (!found || rests(found->z.q)) continue;
-      const auto same = [&](const Eigen::VectorXd& other) { return (other - along).norm() < 1e-6; };
-      if (std::ranges::any_of(known, same)) continue;
-      known.push_back(along);
-      out.push_back(std::move(*found));
-    }
+      auto found = solve_from(along, way);
+      if (!found || rests(found->z.q)) return;
+      if (std::ranges::none_of(out, [&](const TurnedState& other) { return same(other, *found); }))
+        out.push_back(std::move(*found));
+    };
+    take(Eigen::VectorXd::Zero(count), Way::slowly);
+    take(Eigen::VectorXd::Zero(count), Way::together);
+    for (const double begin : {0., 0.15, -0.15, 0.5, -0.5, 1.2, -1.2, 2.1, -2.1, 3., 1.7})
+      take(begin * scattered(count, 7 * begin), Way::at_once);
+    // What is not stable is left, to either side.
+    constexpr double beside = 0.05;
+    for (std::size_t i = 0, first = out.size(); i < first; ++i)
+      for (const double side : {beside, -beside})
+        take(along_of(out[i]) + side * scattered(count, 1), Way::slowly);
     return out;
   }
 
+  std::optional<TurnedState> run_beside(const TurnedState& other) {
+    if (!find_directions()) return {};
+    Eigen::VectorXd along = along_of(other);
+    auto found = solve_from(along, Way::together);
+    if (!found || rests(found->z.q)) return {};
+    return found;
+  }
+
  private:
-  // Forces and open loops at time t with all angles `by` further on.
-  Eigen::VectorXd effect(const Eigen::VectorXd& by, double t) {
+  // How the angles are found: by Newton-Raphson, together with the balance first or not, or as they drift
+  // (pseudo-transient continuation: Kelley and Keyes 1998), which leads to stable ones.
+  enum class Way { together, at_once, slowly };
+
+  // Of no particular direction, the first entry 1.
+  static Eigen::VectorXd scattered(Eigen::Index count, double seed) {
+    Eigen::VectorXd out = Eigen::VectorXd::Ones(count);
+    for (Eigen::Index i = 1; i < count; ++i)
+      out[i] = 1.2 * std::sin(0.6 + 1.9 * static_cast<double>(i) + seed);
+    return out;
+  }
+
+  Eigen::VectorXd along_of(const TurnedState& state) const {
+    Eigen::VectorXd by(found_);
+    for (Eigen::Index i = 0; i < found_; ++i) {
+      const std::size_t l = links_[static_cast<std::size_t>(i)];
+      by[i] = (state.starts[static_cast<Eigen::Index>(l)] - given_.parameters.links[l].start) /
+              units_[static_cast<std::size_t>(i)];
+    }
+    return directions_.transpose() * by;
+  }
+
+  // But for whole turns of what turns.
+  bool same(const TurnedState& a, const TurnedState& b) const {
+    constexpr double near = 1e-6, turn = 2 * std::numbers::pi;
+    for (Eigen::Index i = 0; i < found_; ++i) {
+      const std::size_t l = links_[static_cast<std::size_t>(i)];
+      double by = (b.starts - a.starts)[static_cast<Eigen::Index>(l)] / units_[static_cast<std::size_t>(i)];
+      if (given_.system.links[l].type == LinkType::revolute) by -= turn * std::round(by / turn);
+      if (std::abs(by) > near) return false;
+    }
+    return scaled_difference(problem_, a.z.q, b.z.q).lpNorm<Eigen::Infinity>() < near;
+  }
+
+  // Forces and open loops with all that is driven `by` further on, with these multipliers.
+  Eigen::VectorXd effect(const Eigen::VectorXd& by, const Eigen::VectorXd& lambda) {
     turn(by);
     const System& system = given_.system;
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(system.rows);
-    forward<double>(system, p_, q_, t, w_.kinematics);
-    evaluate_residual<double>(system, p_, q_, none, w_.kinematics, w_.residual);
+    forward<double>(system, p_, q_, 0, w_.kinematics);
+    evaluate_residual<double>(system, p_, q_, lambda, w_.kinematics, w_.residual);
     Eigen::VectorXd out(system.nv + system.rows);
     out << w_.residual.f.cwiseProduct(given_.scaling.column),
         w_.residual.phi.cwiseProduct(given_.scaling.row);
@@ -69,19 +121,21 @@ class PhaseSearch {
     return out;
   }
 
+  // The first of links_ alone where `by` has no more.
   void turn(const Eigen::VectorXd& by) {
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      p_.links[links_[i]].start =
-          given_.parameters.links[links_[i]].start + by[static_cast<Eigen::Index>(i)] * units_[i];
+    for (Eigen::Index i = 0; i < by.size(); ++i) {
+      const std::size_t l = links_[static_cast<std::size_t>(i)];
+      p_.links[l].start = given_.parameters.links[l].start + by[i] * units_[static_cast<std::size_t>(i)];
+    }
   }
 
-  // d/dx effect(at + x along, t + x later) at 0.
-  Eigen::VectorXd slope(const Eigen::VectorXd& at, const Eigen::VectorXd& along, double later) {
+  // d/dx effect(at + x along) at 0.
+  Eigen::VectorXd slope(const Eigen::VectorXd& at, const Eigen::VectorXd& along,
+                        const Eigen::VectorXd& lambda) {
     Eigen::VectorXd out = Eigen::VectorXd::Zero(given_.system.nv + given_.system.rows);
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double x = difference * static_cast<double>(i + 1);
-      out +=
-          weights[i] / difference * (effect(at + x * along, x * later) - effect(at - x * along, -x * later));
+      out += weights[i] / difference * (effect(at + x * along, lambda) - effect(at - x * along, lambda));
     }
     return out;
   }
@@ -90,45 +144,123 @@ class PhaseSearch {
   bool find_directions() {
     const auto m = static_cast<Eigen::Index>(links_.size());
     const Eigen::Index n = given_.system.nv + given_.system.rows;
-    double fastest = 0;
-    for (const DrivenCoordinate& d : given_.system.drives) {
-      const auto l = static_cast<std::size_t>(d.link);
-      if (!finds_speed(given_.system.links[l])) fastest = std::max(fastest, std::abs(p_.links[l].speed));
-    }
     constexpr int places = 3; // of no particular angles
     Eigen::MatrixXd by_angles(places * n, m);
-    Eigen::VectorXd by_drives = Eigen::VectorXd::Zero(places * n);
-    const Eigen::VectorXd found = q_;
-    const double later = fastest > 0 ? 1 / fastest : 0;
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(given_.system.rows);
     for (int place = 0; place < places; ++place) {
-      Eigen::VectorXd at(m);
-      for (Eigen::Index i = 0; i < m; ++i)
+      Eigen::VectorXd at = Eigen::VectorXd::Zero(m);
+      for (Eigen::Index i = 0; i < found_; ++i)
         at[i] = 0.4 * place * std::sin(1.3 + 2.1 * static_cast<double>(i) + place);
       for (Eigen::Index i = 0; i < m; ++i)
-        by_angles.block(place * n, i, n, 1) = slope(at, Eigen::VectorXd::Unit(m, i), 0);
-      if (later > 0) { // with what is found at rest
-        for (const std::size_t l : links_)
-          q_[given_.system.links[l].q] = 0;
-        by_drives.segment(place * n, n) = slope(at, Eigen::VectorXd::Zero(m), later) * fastest;
-        q_ = found;
-      }
+        by_angles.block(place * n, i, n, 1) = slope(at, Eigen::VectorXd::Unit(m, i), none);
     }
     turn(Eigen::VectorXd::Zero(m));
-    if (!by_angles.allFinite() || !by_drives.allFinite()) return false;
-    const auto parts = singular_vectors(by_angles);
+    if (!by_angles.allFinite()) return false;
+    const Eigen::MatrixXd by_found = by_angles.leftCols(found_);
+    const auto parts = singular_vectors(by_found);
     if (!parts || parts->values.size() == 0 || !(parts->values[0] > 0)) return false;
     Eigen::Index rank = 0;
     while (rank < parts->values.size() && parts->values[rank] > counts * parts->values[0])
       ++rank;
     directions_ = parts->right.leftCols(rank);
-    const auto given = least_squares(by_angles * directions_, by_drives);
+    const auto given = least_squares_columns(by_found * directions_, by_angles.rightCols(m - found_));
     if (!given) return false;
-    drift_ = *given;
+    of_given_ = given->transpose();
+    drift_ = Eigen::VectorXd::Zero(rank);
+    for (Eigen::Index i = found_; i < m; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      drift_ += of_given_.row(i - found_).transpose() * p_.links[links_[k]].speed / units_[k];
+    }
     return true;
   }
 
-  // Newton-Raphson on forces and loops, from z. Unlike the balance elsewhere it knows what the multipliers of
-  // loops that these angles close do to what turns.
+  AngleTies ties() const {
+    AngleTies out;
+    for (std::size_t i = 0; i < links_.size(); ++i)
+      (static_cast<Eigen::Index>(i) < found_ ? out.found : out.given).push_back(static_cast<int>(links_[i]));
+    const Eigen::VectorXd per_unit =
+        Eigen::Map<const Eigen::VectorXd>(units_.data(), static_cast<Eigen::Index>(units_.size()))
+            .cwiseInverse();
+    out.of_found = per_unit.head(found_).asDiagonal() * directions_;
+    out.of_given = per_unit.tail(per_unit.size() - found_).asDiagonal() * of_given_;
+    return out;
+  }
+
+  // Of forces and loops by coordinates and multipliers, scaled, at what is evaluated. Unlike the balance
+  // elsewhere it knows what the multipliers of loops that these angles close do to what turns.
+  void assemble(const Unknowns& z) {
+    const System& system = given_.system;
+    const Eigen::Index n = system.nv, rows = system.rows;
+    const Eigen::VectorXd &column = given_.scaling.column, &row = given_.scaling.row;
+    linearize(system, p_, z.q, z.lambda, w_.kinematics, w_.residual, linearization_);
+    const Eigen::MatrixXd& of_balance = linearization_.constraint;
+    matrix_.setZero(n + rows, n + rows);
+    matrix_.topLeftCorner(n, n) = column.asDiagonal() * linearization_.stiffness * column.asDiagonal();
+    if (rows == 0) return;
+    const Eigen::MatrixXd all = constraints_of_motion(system, p_, w_.kinematics, of_balance);
+    matrix_.topRightCorner(n, rows) = column.asDiagonal() * all.transpose() * row.asDiagonal();
+    matrix_.bottomLeftCorner(rows, n) = row.asDiagonal() * of_balance * column.asDiagonal();
+  }
+
+  Eigen::VectorXd left_of_balance() const {
+    Eigen::VectorXd left(given_.system.nv + given_.system.rows);
+    left << w_.residual.f.cwiseProduct(given_.scaling.column),
+        w_.residual.phi.cwiseProduct(given_.scaling.row);
+    return left;
+  }
+
+  // Newton-Raphson on angles and balance at once, with speeds that are tied from the beginning on: untied
+  // ones may be of no balance. Whether it comes near a solution.
+  bool approach(Eigen::VectorXd& along, Unknowns& z) {
+    const Eigen::Index n = given_.system.nv, rows = given_.system.rows, count = along.size();
+    Eigen::MatrixXd by_speeds = Eigen::MatrixXd::Zero(count, n + rows);
+    double fastest = 0;
+    for (Eigen::Index i = 0; i < found_; ++i) {
+      const int v = given_.system.links[links_[static_cast<std::size_t>(i)]].v;
+      by_speeds.col(v) =
+          directions_.row(i).transpose() * given_.scaling.column[v] / units_[static_cast<std::size_t>(i)];
+      fastest = std::max(fastest, std::abs(speed(i, z.q)));
+    }
+    if (!(fastest > 0)) return false;
+    const Eigen::VectorXd apart = directions_ * (directions_.transpose() * speeds_of(z.q) + drift_);
+    for (Eigen::Index i = 0; i < found_; ++i)
+      z.q[given_.system.links[links_[static_cast<std::size_t>(i)]].q] -=
+          apart[i] * units_[static_cast<std::size_t>(i)];
+    constexpr int most_steps = 60;
+    constexpr double longest = 1, longest_turn = 0.5, near = 1e-8; // scaled; rad
+    for (int i = 0; i < most_steps && spent_ < most_iterations(); ++i) {
+      turn(directions_ * along);
+      evaluate(problem_, z, 0, w_);
+      history_.push_back(scaled_residual(problem_, w_));
+      ++spent_;
+      assemble(z);
+      const Eigen::VectorXd left = left_of_balance();
+      Eigen::MatrixXd all(n + rows + count, n + rows + count);
+      all.setZero();
+      all.topLeftCorner(n + rows, n + rows) = matrix_;
+      all.bottomLeftCorner(count, n + rows) = by_speeds / fastest;
+      const Eigen::VectorXd q = std::exchange(q_, z.q);
+      for (Eigen::Index k = 0; k < count; ++k)
+        all.col(n + rows + k).head(n + rows) = slope(directions_ * along, directions_.col(k), z.lambda);
+      q_ = q;
+      Eigen::VectorXd rhs(n + rows + count);
+      rhs << -left, -(directions_.transpose() * speeds_of(z.q) + drift_) / fastest;
+      if (!all.allFinite() || !rhs.allFinite()) return false;
+      const auto step = least_squares(all, rhs);
+      if (!step || !step->allFinite()) return false;
+      const double size = largest_size(step->head(n)), turned = largest_size(step->tail(count));
+      const double part =
+          std::min({1., longest / std::max(size, 1e-300), longest_turn / std::max(turned, 1e-300)});
+      const Eigen::VectorXd moved = part * step->head(n).cwiseProduct(given_.scaling.column);
+      retract<double>(given_.system, moved, z.q);
+      z.lambda += part * step->segment(n, rows).cwiseProduct(given_.scaling.row);
+      along += part * step->tail(count);
+      if (std::max(size, turned) < near) return true;
+    }
+    return false;
+  }
+
+  // Newton-Raphson on forces and loops, from z.
   bool balance(Unknowns& z) {
     const System& system = given_.system;
     const Eigen::Index n = system.nv, rows = system.rows;
@@ -137,17 +269,9 @@ class PhaseSearch {
     for (int i = 0; i < 60; ++i) {
       evaluate(problem_, z, 0, w_);
       history_.push_back(scaled_residual(problem_, w_));
-      linearize(system, p_, z.q, z.lambda, w_.kinematics, w_.residual, linearization_);
-      const Eigen::MatrixXd& of_balance = linearization_.constraint;
-      matrix_.setZero(n + rows, n + rows);
-      matrix_.topLeftCorner(n, n) = column.asDiagonal() * linearization_.stiffness * column.asDiagonal();
-      if (rows > 0) {
-        const Eigen::MatrixXd all = constraints_of_motion(system, p_, w_.kinematics, of_balance);
-        matrix_.topRightCorner(n, rows) = column.asDiagonal() * all.transpose() * row.asDiagonal();
-        matrix_.bottomLeftCorner(rows, n) = row.asDiagonal() * of_balance * column.asDiagonal();
-      }
-      Eigen::VectorXd left(n + rows);
-      left << w_.residual.f.cwiseProduct(column), w_.residual.phi.cwiseProduct(row);
+      ++spent_;
+      assemble(z);
+      const Eigen::VectorXd left = left_of_balance();
       if (!left.allFinite()) return false;
       const auto step = least_squares(matrix_, -left);
       if (!step || !step->allFinite()) return false;
@@ -169,10 +293,20 @@ class PhaseSearch {
   std::optional<Eigen::VectorXd> drift_at(const Eigen::VectorXd& along, Unknowns& z) {
     turn(directions_ * along);
     if (!balance(z)) return {};
-    Eigen::VectorXd speeds(directions_.rows());
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      speeds[static_cast<Eigen::Index>(i)] = z.q[given_.system.links[links_[i]].q] / units_[i];
-    return directions_.transpose() * speeds + drift_;
+    return directions_.transpose() * speeds_of(z.q) + drift_;
+  }
+
+  // That are found, over their units.
+  Eigen::VectorXd speeds_of(const Eigen::VectorXd& q) const {
+    Eigen::VectorXd out(found_);
+    for (Eigen::Index i = 0; i < found_; ++i)
+      out[i] = speed(i, q) / units_[static_cast<std::size_t>(i)];
+    return out;
+  }
+
+  // That is found, rad/s or m/s.
+  double speed(Eigen::Index i, const Eigen::VectorXd& q) const {
+    return q[given_.system.links[links_[static_cast<std::size_t>(i)]].q];
   }
 
   // What the same balance is with the first of what turns where it was drawn: all may turn on together. Loops
@@ -199,21 +333,25 @@ class PhaseSearch {
     return out.cwiseProduct(given_.scaling.column);
   }
 
-  std::optional<TurnedState> solve_from(Eigen::VectorXd& along) {
+  std::optional<TurnedState> solve_from(Eigen::VectorXd& along, Way way) {
     history_.clear();
     Unknowns z{q_, Eigen::VectorXd::Zero(given_.system.rows)};
+    if (way == Way::together && !approach(along, z)) return {};
     auto drift = drift_at(along, z);
     const Eigen::Index count = along.size();
     double last = 1;
-    for (int i = 0; i < 60 && drift; ++i) {
+    double time = drift ? first_drift / drift->norm() : 0; // s, of a step
+    const int most_steps = way == Way::slowly ? 120 : 60;
+    for (int i = 0; i < most_steps && drift && spent_ < most_iterations(); ++i) {
       double size = 0;
-      for (const std::size_t l : links_)
-        size = std::max(size, std::abs(z.q[given_.system.links[l].q]));
+      for (Eigen::Index k = 0; k < found_; ++k)
+        size = std::max(size, std::abs(speed(k, z.q)));
       if (drift->norm() <= 1e-14 * size || (last < 1e-12 && drift->norm() <= 1e-10 * size)) {
         leave_first_as_drawn(along);
         if (!balance(z)) return {};
         TurnedState out;
         out.z = z;
+        out.ties = ties();
         out.error = rounding();
         out.iterations = static_cast<int>(history_.size());
         out.history = history_;
@@ -230,6 +368,7 @@ class PhaseSearch {
         if (!moved) return {};
         jacobian.col(k) = (*moved - *drift) / beside;
       }
+      if (way == Way::slowly) jacobian.diagonal().array() -= 1 / time;
       Lu lu;
       if (!lu.compute(jacobian)) return {};
       Eigen::VectorXd step = -lu.solve(*drift);
@@ -238,23 +377,27 @@ class PhaseSearch {
       last = step.norm();
       if (!std::isfinite(last)) return {};
       along += step;
+      const double before = drift->norm();
       drift = drift_at(along, z);
+      if (drift) time *= std::clamp(before / drift->norm(), 0.5, 10.);
     }
     return {};
+  }
+
+  // Of Newton-Raphson on the balance, in all: so many that a refusal takes a second or two.
+  int most_iterations() const {
+    const double n = given_.system.nv + given_.system.rows;
+    return static_cast<int>(std::clamp(2.5e8 / (n * n * n), 300., 20000.));
   }
 
   // Whether something of which the angle counts stands still.
   bool rests(const Eigen::VectorXd& q) const {
     double fastest = 0;
-    for (const DrivenCoordinate& d : given_.system.drives) {
-      const auto l = static_cast<std::size_t>(d.link);
+    for (const std::size_t l : links_)
       fastest = std::max(fastest, std::abs(finds_speed(given_.system.links[l]) ? q[given_.system.links[l].q]
                                                                                : p_.links[l].speed));
-    }
-    for (std::size_t i = 0; i < links_.size(); ++i)
-      if (directions_.row(static_cast<Eigen::Index>(i)).norm() > counts &&
-          !(std::abs(q[given_.system.links[links_[i]].q]) > 1e-6 * fastest))
-        return true;
+    for (Eigen::Index i = 0; i < found_; ++i)
+      if (directions_.row(i).norm() > counts && !(std::abs(speed(i, q)) > 1e-6 * fastest)) return true;
     return false;
   }
 
@@ -263,23 +406,36 @@ class PhaseSearch {
   const Problem problem_;
   Eigen::VectorXd q_;
   Workspace& w_;
-  std::vector<std::size_t> links_; // whose speeds are found
-  std::vector<double> units_;      // of these: 1 rad, or the reach
+  std::vector<std::size_t> links_; // that are driven: first those whose speeds are found
+  Eigen::Index found_ = 0;         // how many these are
+  std::vector<double> units_;      // of links_: 1 rad, or the reach
   Eigen::MatrixXd directions_;     // V
+  Eigen::MatrixXd of_given_;       // h by the speeds of the others, over their units
   Eigen::VectorXd drift_;          // h, 1/s
   Linearization linearization_;
   Eigen::MatrixXd matrix_;      // of balance()
   std::vector<double> history_; // of solve_from()
+  int spent_ = 0;               // iterations, see most_iterations()
 };
+
+bool may_stand_turned(const Problem& problem) {
+  const System& system = problem.system;
+  const bool momenta = std::ranges::any_of(system.torques, &DriveTorqueElement::keeps_momentum);
+  return !system.torques.empty() && !momenta && system.nv <= most_coordinates &&
+         !problem.parameters.phase_free;
+}
 
 } // namespace
 
 std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
-  const System& system = problem.system;
-  const bool momenta = std::ranges::any_of(system.torques, &DriveTorqueElement::keeps_momentum);
-  if (system.torques.empty() || momenta || system.nv > most_coordinates || problem.parameters.phase_free)
-    return {};
+  if (!may_stand_turned(problem)) return {};
   return PhaseSearch(problem, q, w).run();
+}
+
+std::optional<TurnedState> find_turned_state_beside(const Problem& problem, const TurnedState& other,
+                                                    Workspace& w) {
+  if (!may_stand_turned(problem)) return {};
+  return PhaseSearch(problem, other.z.q, w).run_beside(other);
 }
 
 } // namespace flyball

@@ -8,12 +8,21 @@
 
 #include "engine/solve/newton.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace flyball {
 
+// V and h: of what turns at speeds that are found, and h by the speeds of other drives.
+struct AngleTies {
+  std::vector<int> found, given; // links
+  Eigen::MatrixXd of_found;      // V (found, ties)
+  Eigen::MatrixXd of_given;      // (given, ties); both in 1/rad, or 1/m
+};
+
 struct TurnedState {
   Eigen::VectorXd starts; // by link: rad or m, Parameters::links[].start
+  AngleTies ties;
   Unknowns z;
   Eigen::VectorXd error;       // of q, as steps: estimated
   int iterations = 0;          // of Newton-Raphson, at all the angles on the way
@@ -23,5 +32,8 @@ struct TurnedState {
 // From q, found from several angles, each once; those that come to rest are left out. Whether they hold and
 // are stable is not looked at. Of small problems with speeds that are found.
 std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+// The one beside another, that of numbers beside these. Nothing where Newton-Raphson from there finds none.
+std::optional<TurnedState> find_turned_state_beside(const Problem& problem, const TurnedState& other,
+                                                    Workspace& w);
 
 } // namespace flyball

@@ -236,6 +236,9 @@ struct Solution {
   std::vector<DriveTorque> drive_torques;
   // Where without dry friction there is no steady state: what this one rests on.
   std::vector<FrictionForce> frictions;
+  // What turns at speeds that are found stands at other angles than drawn (phase_search.hpp), as a flexible
+  // coupling between two shafts asks for: at other numbers it stands at others.
+  bool turned = false;
   std::vector<Reaction> reactions;
   std::vector<GearReaction> gears;
   std::vector<BearingForce> bearings;

@@ -312,15 +312,17 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   out.message = steady.message;
   if (time.watch.over()) broken_off();
   if (out.status != Status::converged || !out.complete) return;
+  if (steady.turned) {
+    out.complete = false;
+    out.message = "The steady state stands turned against the drawn pose: the direct solution from there is "
+                  "not compared with motions.";
+    return;
+  }
 
   Direct direct(mechanism, options.cancel);
   Unknowns answer;
   if (!direct.answer(answer)) { // found above, unless it is all too long
     broken_off();
-    if (!time.watch.over())
-      out.message =
-          "The steady state stands turned against the drawn pose: the direct solution from there is "
-          "not compared with motions.";
     return;
   }
   direct.settle_reference(answer, out);

@@ -82,31 +82,43 @@ Mechanism with_momenta_free(Mechanism mechanism) {
   return mechanism;
 }
 
-// Independent coordinates: phases first, then by pivots of the rest (Golub and Van Loan, Matrix Computations,
-// section 5.4).
-Chosen choose_coordinates(const System& steady, const Eigen::MatrixXd& basis, bool phases) {
+// Independent coordinates: those that turn at speeds that are found first, or last where their angles matter,
+// so that what others hold against them is told by these; the others by pivots (Golub and Van Loan, Matrix
+// Computations, section 5.4). Which of them are phases is left open.
+Chosen choose_coordinates(const System& steady, const Eigen::MatrixXd& basis, bool turning_last) {
   Chosen out;
   const std::vector<bool> driven = turning(steady);
   const Eigen::Index k = basis.cols();
   Eigen::MatrixXd rest = basis.transpose();
-  for (int v = 0; v < steady.nv; ++v) {
-    if (!driven[static_cast<std::size_t>(v)]) continue;
-    Eigen::VectorXd along = rest.col(v);
-    const double size = along.norm();
-    if (!(size > 1e-9 * basis.row(v).norm())) continue; // geared to those before
-    along /= size;
-    out.coordinates.push_back(v);
-    rest -= along * (along.transpose() * rest);
-  }
-  if (const auto left = k - static_cast<Eigen::Index>(out.coordinates.size()); left > 0) {
+  const auto take_turning = [&] {
+    for (int v = 0; v < steady.nv; ++v) {
+      if (!driven[static_cast<std::size_t>(v)]) continue;
+      Eigen::VectorXd along = rest.col(v);
+      const double size = along.norm();
+      if (!(size > 1e-9 * basis.row(v).norm())) continue; // geared to those before
+      along /= size;
+      out.coordinates.push_back(v);
+      rest -= along * (along.transpose() * rest);
+    }
+  };
+  const auto take_others = [&] {
+    Eigen::MatrixXd others = rest;
+    for (int v = 0; v < steady.nv && turning_last; ++v)
+      if (driven[static_cast<std::size_t>(v)]) others.col(v).setZero();
     PivotedQr qr;
-    if (!qr.compute(rest)) throw Refusal{"The loops' equations overflow."};
+    if (!qr.compute(others)) throw Refusal{"The loops' equations overflow."};
+    const Eigen::Index left =
+        turning_last ? qr.rank(1e-6) : k - static_cast<Eigen::Index>(out.coordinates.size());
     for (Eigen::Index i = 0; i < left; ++i)
       out.coordinates.push_back(static_cast<int>(qr.permutation()[i]));
-  }
+    const Eigen::MatrixXd taken = qr.q().leftCols(left);
+    rest -= taken * (taken.transpose() * rest);
+  };
+  if (turning_last) take_others();
+  take_turning();
+  if (!turning_last && k > static_cast<Eigen::Index>(out.coordinates.size())) take_others();
   std::ranges::sort(out.coordinates);
-  for (const int v : out.coordinates)
-    out.phase.push_back(!phases && driven[static_cast<std::size_t>(v)]);
+  out.phase.assign(out.coordinates.size(), false);
   return out;
 }
 
@@ -161,8 +173,8 @@ class Builder {
     place(out.steady);
     const MotionAt drawn(model_, at_phase(0));
     angles_ = angles_matter();
-    phases_ = options_.phases || angles_;
-    chosen_ = choose_coordinates(steady_system_, drawn.basis(), phases_);
+    chosen_ = choose_coordinates(steady_system_, drawn.basis(), angles_ && !options_.phases);
+    find_phases(drawn);
     Matrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
@@ -235,6 +247,58 @@ class Builder {
       if (loops_tie_angles(problem, w.kinematics)) return true;
     }
     return !phase_stiffness(problem, z, w).entries.empty();
+  }
+
+  // Which of the chosen coordinates are phases: with the others as they are nothing changes along them.
+  void find_phases(const MotionAt& drawn) {
+    const std::vector<bool> driven = turning(steady_system_);
+    const Eigen::MatrixXd from = from_chosen(drawn);
+    Scaling scaling;
+    set_scaling(steady_system_, steady_parameters_, scaling);
+    const Problem problem{steady_system_, steady_parameters_, scaling};
+    Workspace w;
+    const Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
+    for (std::size_t i = 0; i < chosen_.coordinates.size() && !options_.phases; ++i) {
+      if (!driven[static_cast<std::size_t>(chosen_.coordinates[i])]) continue;
+      Eigen::VectorXd turned =
+          (drawn.basis() * from.col(static_cast<Eigen::Index>(i))).cwiseProduct(drawn.column());
+      turned /= turned.lpNorm<Eigen::Infinity>();
+      chosen_.phase[i] = !angles_ || (stands_alike(turned) && balanced_along(problem, z, turned, w));
+    }
+    for (std::size_t i = 0; i < chosen_.coordinates.size(); ++i)
+      if (driven[static_cast<std::size_t>(chosen_.coordinates[i])] && !chosen_.phase[i]) phases_ = true;
+  }
+
+  // Whether nothing moves along it but what turns at speeds that are found.
+  bool stands_alike(const Eigen::VectorXd& turned) const {
+    const std::vector<bool> driven = turning(steady_system_);
+    for (Eigen::Index v = 0; v < turned.size(); ++v)
+      if (!driven[static_cast<std::size_t>(v)] && std::abs(turned[v]) > nothing) return false;
+    return true;
+  }
+
+  // Coordinates on the basis from those of the model.
+  Eigen::MatrixXd from_chosen(const MotionAt& motion) const {
+    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    if (motion.basis().cols() != k)
+      throw Refusal{
+          "The loops hold other directions at another phase of the drives: no constant matrices tell of it."};
+    const Eigen::MatrixXd to = to_chosen(motion);
+    Lu lu;
+    Eigen::MatrixXd from = Eigen::MatrixXd::Identity(k, k);
+    if (k > 0 && !lu.compute(to)) throw Refusal{"The loops' equations overflow."};
+    for (Eigen::Index i = 0; i < k; ++i)
+      from.col(i) = lu.solve(Eigen::VectorXd::Unit(k, i));
+    return from;
+  }
+  Eigen::MatrixXd to_chosen(const MotionAt& motion) const {
+    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    Eigen::MatrixXd to(k, k);
+    for (Eigen::Index i = 0; i < k; ++i) {
+      const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
+      to.row(i) = motion.column()[v] * motion.basis().row(v);
+    }
+    return to;
   }
 
   // All at time t (s) after the drawn phase.
@@ -347,23 +411,9 @@ class Builder {
     const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
     const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size()),
                outputs = static_cast<Eigen::Index>(signals_.outputs.size());
-    if (basis.cols() != k)
-      throw Refusal{
-          "The loops hold other directions at another phase of the drives: no constant matrices tell of it."};
+    const Eigen::MatrixXd from = from_chosen(motion), to = to_chosen(motion);
     const int n = model_.system.nv;
     const auto all = static_cast<Eigen::Index>(model_.released.nv);
-    // Coordinates of the model from those on the basis, and back.
-    Eigen::MatrixXd to(k, k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-      const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
-      to.row(i) = motion.column()[v] * basis.row(v);
-    }
-    Lu lu;
-    Eigen::MatrixXd from = Eigen::MatrixXd::Identity(k, k);
-    if (k > 0 && !lu.compute(to)) throw Refusal{"The loops' equations overflow."};
-    for (Eigen::Index i = 0; i < k; ++i)
-      from.col(i) = lu.solve(Eigen::VectorXd::Unit(k, i));
-
     Matrices out;
     out.mass = from.transpose() * motion.mass * from;
     out.velocity = from.transpose() * motion.velocity * from;

@@ -105,6 +105,12 @@ std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std
     first.status = Status::no_steady_state;
     return std::nullopt;
   }
+  if (first.turned) {
+    first.status = Status::no_steady_state;
+    first.message = "The steady state stands turned against the drawn pose, and at other numbers otherwise: "
+                    "its rates are not told, and it is not followed.";
+    return std::nullopt;
+  }
   State state{p_, {configuration_of(problem(), first.coordinates), {}}, {}};
   if (!correct(state.z)) { // neutral, say: the state itself is known
     state.z.q = configuration_of(problem(), first.coordinates);

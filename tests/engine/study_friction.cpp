@@ -443,6 +443,24 @@ TEST_CASE("what holding takes where a torque asks for the coordinate that fricti
   CHECK_THAT(holding.message, ContainsSubstring("does not hold it there, with spin at 36 rad/s: b slips"));
 }
 
+TEST_CASE("what holding takes of a spring behind a gear") {
+  const double stiffness = 100, free = 0.2, ratio = -0.5; // b = ratio a
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Geared", "gravity": [0, 0, 0],
+    "bodies": [{"name": "A", "mass": 1, "position": [0, 0, 0]}, {"name": "B", "mass": 1, "position": [1, 0, 0]}],
+    "joints": [{"name": "b", "type": "revolute", "bodies": ["ground", "B"], "at": [1, 0, 0], "axis": [0, 0, 1],
+        "friction": {"limit": 1}},
+      {"name": "g", "type": "gear", "joints": ["a", "b"], "ratio": -0.5},
+      {"name": "a", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 0, 0], "axis": [0, 0, 1],
+        "spring": {"stiffness": 100, "free": 0.2}, "friction": {"limit": 2}}]})json");
+  const double limit = 2 + 1 * std::abs(ratio);
+  for (const double a : {0., 0.19, 0.25}) {
+    CAPTURE(a);
+    const Holding holding = find_holding(m, {{"a", a}, {"b", ratio * a}});
+    INFO(holding.message);
+    CHECK_THAT(holding.takes.value(), WithinRel(stiffness * std::abs(a - free) / limit, 1e-12));
+  }
+}
+
 TEST_CASE("friction that cannot be is refused") {
   const auto mistake = [](const std::string& friction, const std::string& extra = "") {
     try {

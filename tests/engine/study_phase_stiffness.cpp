@@ -1,10 +1,13 @@
 // Steady states in which the angle of a shaft whose speed is found matters: it stands, or turns as fast as
 // another that it is tied to by a force.
 #include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/compare.hpp"
+#include "engine/study/design.hpp"
 #include "engine/study/linear_model.hpp"
+#include "engine/study/spread.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
@@ -275,6 +278,8 @@ TEST_CASE("a motor drives a load through a flexible coupling, each in bearings o
       nearest = std::min(nearest, std::abs(x - y));
     CHECK(nearest < 1e-9 * std::abs(x));
   }
+  // The turn of both together is no state.
+  CHECK(model.poles.size() == s.eigenvalues->size());
   const auto slow = transfer(best_form(model), Complex(0, 1e-6)); // both go faster, by 1 / 1.2
   REQUIRE(slow);
   CHECK(std::abs((*slow)(0, 0) - 1 / 1.2) < 1e-5);
@@ -313,4 +318,95 @@ TEST_CASE("a flexible shaft with a gear at its far end", "[phase][coupling]") {
       0.1 * difference + Eigen::Matrix2d(Eigen::Vector2d(0.2, 4 * 0.05).asDiagonal());
   for (const Complex x : *s.eigenvalues)
     CHECK(left_of(mass, damping, 20 * difference, x) < 1e-12);
+}
+
+TEST_CASE("a damped spring holds a shaft behind one at a given speed", "[phase]") {
+  Mechanism m = shafts(false);
+  m.joints[0] = driven(hinge("p", "ground", "a"), 6);
+  m.joints[1].formulas[0].text = "0.5 N m - 0.2 N m s * rate(q)";
+  m.joints[1].coordinates[0].drive->speed = 2.6;
+  m.forces[0].free_length = 0;
+  m.forces[0].damping = 5;
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.turned);
+  CHECK_THAT(speed(s, "q"), WithinRel(6, 1e-12));
+  CHECK_THAT(coordinate(s, "q").value, WithinRel(-std::asin(0.7 / (50 * 0.09)), 1e-9));
+  CHECK(s.stable == true);
+}
+
+TEST_CASE("two shafts whose speeds by themselves are of no balance turn together", "[phase][coupling]") {
+  const double mass = 0.5, place = 0.3, spring = 700, stiffness = 50;
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 0, 0.5}, {0.1, 0.1, 0.1}),
+              body("r", mass, {place, 0, 0}, {0.001, 0.001, 0.001})};
+  m.joints = {torque_driven(hinge("p", "ground", "a"), 5, "5.5 N m - 0.12 N m s * rate(p)"), // 46 rad/s
+              torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 4,
+                            "-1.3 N m - 0.12 N m s * rate(q)"),
+              dampened(sprung(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), stiffness), 0.1),
+              dampened(sprung(prismatic("r", "a", "r", {place, 0, 0}, {1, 0, 0}), spring), 10)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double w = 4.2 / 0.24;
+  CHECK_THAT(speed(s, "p"), WithinRel(w, 1e-11));
+  CHECK_THAT(speed(s, "q"), WithinRel(w, 1e-11));
+  CHECK_THAT(value(s, "c"), WithinRel((-1.3 - 0.12 * w) / stiffness, 1e-9));
+  CHECK_THAT(value(s, "r"), WithinRel(mass * w * w * place / (spring - mass * w * w), 1e-9));
+  CHECK(s.stable == true);
+}
+
+TEST_CASE("of states that stand turned a stable one is the answer, wherever it lies", "[phase]") {
+  const Mechanism m =
+      read_scene(R"json({"flyball": 2, "name": "Three shafts", "gravity": [0, 0, 0], "bodies": [
+    {"name": "s0", "mass": 2.254, "position": [0, 0, 0], "inertia": [0.1, 0.1025, 0.1]},
+    {"name": "s1", "mass": 0.75, "position": [0, 0.1, 0], "inertia": [0.1, 0.3985, 0.1]},
+    {"name": "s2", "mass": 2.415, "position": [0, 0.2, 0], "inertia": [0.1, 0.3515, 0.1]}],
+    "joints": [{"name": "c0", "type": "revolute", "bodies": ["s0", "s1"], "at": [0, 0.05, 0], "axis": [0, 1, 0],
+      "spring": {"stiffness": 19.29}, "damping": 0.07},
+    {"name": "p1", "type": "revolute", "bodies": ["ground", "s1"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
+      "drive": {"torque": "=3.5106 N m - 0.3727 N m s*rate(p1)", "speed": 5.438}},
+    {"name": "p2", "type": "revolute", "bodies": ["ground", "s2"], "at": [0, 0.2, 0], "axis": [0, 1, 0],
+      "drive": {"torque": "=0.8663 N m - 0.4049 N m s*rate(p2)", "speed": 2.979}},
+    {"name": "p0", "type": "revolute", "bodies": ["ground", "s0"], "at": [0, 0, 0], "axis": [0, 1, 0],
+      "drive": {"torque": "=1.0366 N m - 0.3606 N m s*rate(p0)", "speed": 2.573}}],
+    "forces": [{"name": "f1", "type": "spring", "bodies": ["s0", "s2"], "stiffness": 994.7, "free_length": 0,
+      "points": [[0.13798537, 0, -0.20573214], [0.17859106, 0.2, -0.15874255]], "damping": 3.1},
+    {"name": "f2", "type": "spring", "bodies": ["s0", "s1"], "stiffness": 1949.4, "free_length": 0.234,
+      "points": [[-0.1845518, 0, -0.1646514], [-0.29733512, 0.1, -0.03154722]]}]})json");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK_THAT(speed(s, "p1"), WithinRel((3.5106 + 0.8663 + 1.0366) / (0.3727 + 0.4049 + 0.3606), 1e-11));
+  SimulationOptions run;
+  run.duration = 100;
+  const Run motion = simulate(m, run);
+  REQUIRE(motion.status == RunStatus::completed);
+  const auto at = [&](std::string_view name) {
+    return std::ranges::find(motion.coordinates, name, &CoordinateTrack::joint)->value.back();
+  };
+  CHECK_THAT(at("p1") - at("p0"), WithinAbs(coordinate(s, "p1").value - coordinate(s, "p0").value, 1e-6));
+  CHECK_THAT(at("p2") - at("p0"), WithinAbs(coordinate(s, "p2").value - coordinate(s, "p0").value, 1e-6));
+}
+
+TEST_CASE("what follows a steady state says that one that stands turned is not followed",
+          "[phase][coupling]") {
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.3}), body("b", 1, {0, 0, 0.5}, {0.1, 0.1, 0.2})};
+  m.joints = {torque_driven(hinge("p", "ground", "a"), 5, "5 N m - 1 N m s * rate(p)"),
+              torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 3, "-0.2 N m s * rate(q)"),
+              dampened(sprung(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), 10), 0.1)};
+  validate(m);
+  const std::string number = "joints.c.spring.stiffness", turned = "stands turned against the drawn pose";
+  const std::vector<Tolerance> tolerances{{number, Distribution::normal, 0.5}};
+  const SpreadAnswer scatter = spread_by_rates(m, tolerances, {});
+  CHECK(scatter.status == Status::no_steady_state);
+  CHECK_THAT(scatter.message, ContainsSubstring(turned));
+  const DesignAnswer wanted = design(m, number, 5, 20, "c", -0.06, {});
+  CHECK(wanted.status != Status::converged);
+  CHECK_THAT(wanted.message, ContainsSubstring(turned));
 }
