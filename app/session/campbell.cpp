@@ -3,7 +3,7 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,18 +91,10 @@ CampbellRequest wanted_now(Session& session) {
 
 std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   std::vector<std::string> speeds;
-  for (const Joint& joint : mechanism.joints)
-    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      if (const auto& drive = joint.coordinates[i].drive; !drive || finds_speed(*drive)) continue;
-      std::string address = drive_speed_address(joint, i);
-      // A speed that a named parameter is, is varied by this.
-      if (const std::optional<std::string> formula = formula_at(mechanism, address)) {
-        if (parameter_index(mechanism, *formula) < 0) continue;
-        address = "parameters." + *formula;
-        if (formula_at(mechanism, address)) continue;
-      }
-      if (std::ranges::find(speeds, address) == speeds.end()) speeds.push_back(address);
-    }
+  for (const PrescribedSpeed& speed : prescribed_speeds(mechanism))
+    if (std::string address = number_alone(mechanism, speed.address);
+        !address.empty() && std::ranges::find(speeds, address) == speeds.end())
+      speeds.push_back(std::move(address));
   return speeds;
 }
 

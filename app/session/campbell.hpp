@@ -39,7 +39,7 @@ struct CampbellState {
   std::uint64_t judged_ticket = 0;
 };
 
-// Addresses of the drives' speeds.
+// Addresses of the numbers that are the speed of a drive, each once.
 std::vector<std::string> drive_speeds(const Mechanism& mechanism);
 // Drive and range as they were chosen, or as they are at first; no drive: "".
 std::string campbell_drive(const Session& session);

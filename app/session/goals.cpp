@@ -58,7 +58,7 @@ void ask(Session& session, const std::string& step, std::vector<Goal> goals, con
                       .set = std::move(set),
                       .step = step};
   if (refusal.empty() && request.free.empty())
-    refusal = "No other number may move: pin one as a slider first.";
+    refusal = "No other pinned slider may move: pin one by its gear or with Ctrl+L.";
   if (!refusal.empty()) return show_error(session, refusal);
   Study<GoalRequest, GoalAnswer>& seeking = session.goals.seeking;
   const auto& asked = seeking.asked;
@@ -86,7 +86,8 @@ std::string goal_refusal(const Session& session) {
   if (!converged(session)) return "There is no steady state to set out from.";
   const auto pinned =
       std::ranges::count(session.parameters, ParameterGroup::pinned, &ParameterControl::group);
-  if (pinned == 0) return "No number may move: pin one as a slider first.";
+  if (pinned == 0)
+    return "Only pinned sliders follow, and none is pinned: pin one by its gear or with Ctrl+L.";
   if (free_numbers(session, {}).empty()) return "No number may move: all pinned sliders are held.";
   return {};
 }

@@ -3,6 +3,7 @@
 #include "app/session/session.hpp"
 #include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/sweep.hpp"
 
@@ -120,7 +121,7 @@ std::string first_address(const Session& session, std::size_t axis) {
   std::string found;
   for (const ParameterControl& control : session.parameters) {
     if (control.group == ParameterGroup::dampers || control.address == other) continue;
-    if (axis == 0 && control.address.ends_with("speed")) return control.address;
+    if (axis == 0 && sets_speed(session.mechanism(), control.address)) return control.address;
     if (found.empty()) found = control.address;
   }
   if (!found.empty()) return found;

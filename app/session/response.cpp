@@ -5,6 +5,7 @@
 #include "app/session/session.hpp"
 #include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/study/friction_branches.hpp"
 
 #include <algorithm>
@@ -108,8 +109,8 @@ void choose_first(Session& session) {
       choose_response(session, all.front());
     return;
   }
-  const auto drive = std::ranges::find_if(session.parameters, [](const ParameterControl& control) {
-    return control.address.find(".drive") != std::string::npos;
+  const auto drive = std::ranges::find_if(session.parameters, [&](const ParameterControl& control) {
+    return sets_speed(session.mechanism(), control.address);
   });
   choose_response(session, (drive == session.parameters.end() ? session.parameters.front() : *drive).address);
 }
@@ -194,7 +195,7 @@ ResponsePoint rounded_point(const ResponseLine& line, double at, double step) {
     if (from == to || (wanted - from) * (wanted - to) > 0) return std::nullopt;
     return between(line.points[k], line.points[k + 1], (wanted - from) / (to - from));
   };
-  for (const std::size_t k : {i, i + 1, i - 1}) // i - 1 may wrap around, and is then refused
+  for (const std::size_t k : {i, i + 1, std::max<std::size_t>(i, 1) - 1})
     if (auto found = in(k)) {
       found->parameter = wanted;
       return *found;

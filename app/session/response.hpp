@@ -46,7 +46,8 @@ using ResonanceStudy = Study<ResponseRequest, ResonanceCurve>;
 // bears.
 struct DesignGoal {
   std::string key;             // of the goal: "slide", "spin.speed", a measure's name, or "torque(spin)"
-  std::string title;           // as Show lists it
+  std::string title;           // as Show lists it, under the key
+  std::string quantity;        // of it
   std::string unit;            // SI
   std::optional<double> value; // now
   bool place = false;          // an angle or a length, of a coordinate

@@ -34,6 +34,7 @@ void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector
     if (!drive.varying)
       goals.push_back({.key = "torque(" + coordinate_argument(name) + ")",
                        .title = "drive " + kind + " of " + name,
+                       .quantity = "drive " + name,
                        .unit = unit,
                        .value = drive.value,
                        .expression = "torque(" + coordinate_argument(name) + ")"});
@@ -44,12 +45,14 @@ void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector
   if (const Formula* law = drive_law(mechanism, *joint, drive.index, "torque"))
     goals.push_back({.key = "given " + name,
                      .title = "drive " + kind + " of " + name,
+                     .quantity = "given " + name,
                      .unit = unit,
                      .value = drive.given->torque,
                      .expression = law->text});
   if (const Formula* law = drive_law(mechanism, *joint, drive.index, "load"))
     goals.push_back({.key = "load " + name,
                      .title = "load on " + name,
+                     .quantity = "load " + name,
                      .unit = unit,
                      .value = drive.given->load,
                      .expression = law->text});
@@ -100,12 +103,16 @@ std::vector<DesignGoal> design_goals(const Session& session) {
     if (const auto found = found_number(c); found && !c.dependent)
       goals.push_back({.key = found->name,
                        .title = found->name,
+                       .quantity = "value " + found->name,
                        .unit = std::string(found->unit),
                        .value = solved ? std::optional(found->value) : std::nullopt,
                        .place = !c.speed});
   for (const NamedMeasure& measure : session.mechanism().measures) {
-    DesignGoal& goal = goals.emplace_back(
-        DesignGoal{.key = measure.name, .title = measure.name, .unit = measure.unit, .value = {}});
+    DesignGoal& goal = goals.emplace_back(DesignGoal{.key = measure.name,
+                                                     .title = measure.name,
+                                                     .quantity = "measure " + measure.name,
+                                                     .unit = measure.unit,
+                                                     .value = {}});
     if (!solved) continue;
     for (const MeasureSolution& m : solution.measures)
       if (m.name == measure.name) goal.value = m.value;
@@ -118,11 +125,13 @@ std::vector<DesignGoal> design_goals(const Session& session) {
     const std::string of = "(" + argument_text(r.joint) + ")";
     goals.push_back({.key = "reaction" + of,
                      .title = "force through " + r.joint,
+                     .quantity = "force " + r.joint,
                      .unit = "N",
                      .value = r.force.norm(),
                      .expression = "reaction" + of});
     goals.push_back({.key = "moment" + of,
                      .title = "torque through " + r.joint,
+                     .quantity = "torque " + r.joint,
                      .unit = "N m",
                      .value = r.torque.norm(),
                      .expression = "moment" + of});

@@ -17,12 +17,12 @@ std::string pulled_goal(const Session& session) {
 
 std::string pull_words(const Session& session) {
   if (const std::string refusal = goal_refusal(session); !refusal.empty())
-    return "Could be pulled to where the curve should go. " + refusal;
+    return "Pulled up or down, the curve would go along. " + refusal;
   const std::string goal = pulled_goal(session), &address = session.study.response.choice.address,
                     phrase = parameter_phrase(address);
   if (!another_may_move(session, address))
     return "Pull up or down to where " + goal + " should be: " + phrase +
-           " follows. No other number may move: pin one as a slider.";
+           " follows. No other pinned slider may move.";
   return "Pull up or down to where " + goal +
          " should be: the other pinned sliders that are not held follow." +
          (is_held(session, address) ? "" : " Sideways sets " + phrase + ".");

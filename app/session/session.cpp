@@ -2,10 +2,13 @@
 
 #include "app/session/settings.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/validate.hpp"
 
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace flyball {
 
@@ -47,6 +50,24 @@ void validate_number(Session& session, const std::string& address) {
   if (!session.mistakes.empty()) session.warnings.clear();
 }
 
+// The drives keep their phase, so that nothing jumps when all their speeds change alike, as a lone drive's
+// does: the time becomes the one at which they stand as they did.
+void keep_phase(Session& session) {
+  std::vector<double> speeds;
+  for (const PrescribedSpeed& speed : prescribed_speeds(session.mechanism()))
+    speeds.push_back(speed.value);
+  const std::vector<double> before = std::exchange(session.speeds, speeds);
+  if (session.motion.on || session.playback.time == 0 || before.size() != speeds.size()) return;
+  std::optional<double> factor;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    if (speeds[i] == 0 && before[i] == 0) continue;
+    const double now = before[i] / speeds[i];
+    if (!std::isfinite(now) || (factor && std::abs(now - *factor) > 1e-12 * std::abs(*factor))) return;
+    factor = now;
+  }
+  if (factor) session.playback.time *= *factor;
+}
+
 // After the document's mechanism has changed; `address` where that is only the number there.
 void take_document(Session& session, bool another, bool warm, StartValues start = {},
                    const std::string& address = {}) {
@@ -58,17 +79,10 @@ void take_document(Session& session, bool another, bool warm, StartValues start 
       !take_value(session.parameters, session.mechanism(), session.document.stored(), address))
     session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
   session.drawn = drawn_poses(session.mechanism());
+  keep_phase(session);
   session.moved_time = true;
   ask(session, another, warm, std::move(start));
   follow_motion(session, another);
-}
-
-int drive_count(const Mechanism& mechanism) {
-  int count = 0;
-  for (const Joint& joint : mechanism.joints)
-    for (const Coordinate& coordinate : joint.coordinates)
-      if (coordinate.drive) ++count;
-  return count;
 }
 
 void take_answer(Session& session) {
@@ -184,21 +198,13 @@ void select(Session& session, Selection selection) {
 
 namespace {
 
-// A lone drive keeps its phase, so that nothing jumps when its speed changes.
-void keep_phase(Session& session, const std::string& address, double before, double value) {
-  if (address.ends_with(".speed") && !session.motion.on && session.playback.time != 0 &&
-      drive_count(session.mechanism()) == 1 && value != 0)
-    session.playback.time *= before / value;
-}
-
 // Sets the number as a step of the history.
 void set_parameter_from(Session& session, const std::string& address, double value, StartValues start) {
   if (!std::isfinite(value)) return;
   const std::uint64_t revision = session.document.revision();
   const std::string step = "Set " + parameter_phrase(address);
   try {
-    const double before = get_parameter(session.mechanism(), address);
-    keep_phase(session, address, before, value);
+    get_parameter(session.mechanism(), address); // which there must be
     if (session.mode == Mode::explore)
       session.document.explore(step, {{address, value}}, session.gesture);
     else
@@ -230,9 +236,7 @@ void explore_numbers(Session& session, const std::string& step, const Explored& 
 void edit_parameter(Session& session, const std::string& address, double value) {
   const std::uint64_t revision = session.document.revision();
   try {
-    const double before = get_parameter(session.mechanism(), address);
     session.document.edit_number("Set " + parameter_phrase(address), address, value, session.gesture);
-    keep_phase(session, address, before, value);
   } catch (const SceneError& error) {
     return show_error(session, error.what());
   }

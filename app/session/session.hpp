@@ -65,6 +65,7 @@ struct Session {
 
   Mode mode = Mode::explore;
   Playback playback;
+  std::vector<double> speeds; // that the drives prescribe, by which playback.time is their phase
   ToldPoints points;
   StudyState study;
   MotionState motion;

@@ -11,8 +11,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "swing_pendulum" as a person would write it.
+// "swing_pendulum.flyball" as a person would write it.
 std::string words_of(std::string stem) {
+  if (stem.ends_with(".flyball")) stem.resize(stem.rfind('.'));
   for (char& c : stem)
     if (c == '_') c = ' ';
   if (!stem.empty() && stem[0] >= 'a' && stem[0] <= 'z') stem[0] = static_cast<char>(stem[0] - 'a' + 'A');
@@ -42,7 +43,8 @@ void SaveDialog::open(const Session& session, DialogState& dialog, std::string w
   query_.message = std::move(why);
   query_.replacing.clear();
   dialog.wanted = Dialog::save;
-  query_.path = file.empty() ? file_stem(session.mechanism().name) + ".json" : file.filename().string();
+  query_.path =
+      file.empty() ? file_stem(session.mechanism().name) + ".flyball.json" : file.filename().string();
 }
 
 SaveDialog::Answer SaveDialog::draw(Session& session, Ui& ui, DialogState& dialog) {

@@ -30,7 +30,7 @@ Verdict verdict_of(const PeriodicState& motion, const UiColors& colors) {
 
 Verdict verdict_of(const Solution& solution, const UiColors& colors) {
   switch (solution.status) {
-  case Status::not_converged: return {icon::warning, "Not converged", colors.bad};
+  case Status::not_converged: return {icon::warning, "No steady state found", colors.bad};
   case Status::no_steady_state: return {icon::close, "No steady state", colors.bad};
   case Status::infeasible: return {icon::close, "The loops cannot be closed", colors.bad};
   case Status::converged: break;

@@ -31,8 +31,10 @@ void solver_results(const Session& session, Ui& ui) {
       "From the start to the accepted answer, its stability included.");
   note_widget(ui.widgets, "results/time");
   row(ui, "Iterations", std::to_string(solution.iterations), "");
-  row(ui, "Scaled residual", magnitude_text(solution.residual, numbers), "",
-      "The largest equation of the balance, in units in which its terms are of the order of one.");
+  // Where none was found one that is at rounding would read as if there were one.
+  if (constexpr double rounding = 1e-9; solution.status == Status::converged || solution.residual > rounding)
+    row(ui, "Scaled residual", magnitude_text(solution.residual, numbers), "",
+        "The largest equation of the balance, in units in which its terms are of the order of one.");
   if (solution.condition)
     row(ui, "Condition", short_text(*solution.condition, 2), "",
         "Condition number (2-norm) of the scaled equations.");

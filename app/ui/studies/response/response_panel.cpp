@@ -93,12 +93,15 @@ void found_motions(Session& session, Ui& ui) {
   const auto& found = session.study.response.resonance.found;
   if (!found) return;
   const NumberStyle& numbers = session.options.numbers;
-  row(ui, resonance_words(session), numbers.run_times ? duration_text(found->run_time, numbers) : "", "",
+  paragraph(resonance_words(session) +
+                (numbers.run_times ? ", " + duration_text(found->run_time, numbers) : std::string()),
+            colors_of(ui).dim);
+  note_widget(ui.widgets, "response/found");
+  help_on_hover(
       "The balance turns with the drives: of the motion that comes back after each period the line is the "
       "mean, the band reaches from least to most. Dashed where Floquet's multipliers say that it is left.\n"
       "Points lie closer where the curve bends; a peak narrower than the first of them are apart, a 32nd of "
       "the range, may lie between two: a shorter range shows it.");
-  note_widget(ui.widgets, "response/found");
   const ShownUnit unit = shown_unit(parameter_unit(*found->of.mechanism, found->of.address), session.units);
   const std::string after = unit.text.empty() ? "" : " " + unit.text;
   const std::vector<ResonanceGap> gaps = resonance_gaps(found->result);
@@ -140,8 +143,10 @@ void found(Session& session, Ui& ui) {
     help += "\nBranch " + std::to_string(i + 1) + " ends: " + b.end + ".";
   }
   const NumberStyle& numbers = session.options.numbers;
-  row(ui, text, numbers.run_times ? duration_text(result.diagram.run_time_s, numbers) : "", "", help.c_str());
+  if (numbers.run_times) text += ", " + duration_text(result.diagram.run_time_s, numbers);
+  paragraph(text, colors.dim);
   note_widget(ui.widgets, "response/found");
+  help_on_hover(help.c_str());
 }
 
 void band_choice(Session& session, Ui& ui) {
@@ -214,6 +219,18 @@ void search_line(Session& session, Ui& ui, ResponseView& drawn) {
   if (ImGui::GetCursorPosY() < below) ImGui::SetCursorPosY(below);
 }
 
+// Where the present state is not in the plot.
+void range_note(const Session& session, Ui& ui) {
+  const std::optional<ParameterControl> control = response_control(session);
+  const ResponseChoice& choice = session.study.response.choice;
+  if (!control || (control->value - choice.from) * (control->value - choice.to) <= 0) return;
+  const ShownUnit unit = shown_unit(control->unit, session.units);
+  paragraph("It is " + short_text(unit.shown(control->value)) + (unit.text.empty() ? "" : " " + unit.text) +
+                " now, outside this range.",
+            colors_of(ui).warn);
+  note_widget(ui.widgets, "response/outside");
+}
+
 void branch_note(const Session& session, Ui& ui) {
   if (!session.on_branch) return;
   paragraph("Sliders follow the branch you chose.", colors_of(ui).dim);
@@ -236,8 +253,32 @@ void choose_design(Session& session, const DesignGoal& goal) {
   design.value = unit.si(std::round(shown * digits) / digits);
 }
 
-void solution_row(Session& session, Ui& ui, const DesignRequest& of, const DesignSolution& s, std::size_t i,
-                  const std::string& si_unit) {
+// One number with all poses that have it, as mirrored ones do: the first is what the present one is like.
+struct SharedNumber {
+  const DesignSolution* first = nullptr;
+  int poses = 1;
+};
+
+std::vector<SharedNumber> shared_numbers(const DesignAnswer& answer) {
+  constexpr double same = 1e-9; // of the number
+  std::vector<SharedNumber> numbers;
+  for (const DesignSolution& s : answer.solutions) {
+    const auto known = std::ranges::find_if(numbers, [&](const SharedNumber& each) {
+      return each.first->at.stable == s.at.stable &&
+             std::abs(each.first->parameter - s.parameter) <=
+                 same * std::abs(s.parameter) + each.first->parameter_error + s.parameter_error;
+    });
+    if (known != numbers.end())
+      ++known->poses;
+    else
+      numbers.push_back({&s});
+  }
+  return numbers;
+}
+
+void solution_row(Session& session, Ui& ui, const DesignRequest& of, const SharedNumber& shared,
+                  std::size_t i, const std::string& si_unit) {
+  const DesignSolution& s = *shared.first;
   const UiColors& colors = colors_of(ui);
   const NumberStyle& numbers = session.options.numbers;
   const ShownUnit parameter = shown_unit(si_unit, session.units);
@@ -262,11 +303,17 @@ void solution_row(Session& session, Ui& ui, const DesignRequest& of, const Desig
   list.AddText({x, y}, packed(colors.dim), unit.c_str());
   const char* kind = !s.at.stable ? "undecided" : *s.at.stable ? "stable" : "unstable";
   const ImVec4& color = !s.at.stable ? colors.dim : *s.at.stable ? colors.good : colors.warn;
-  list.AddText({from.x + width - 8 * s1 - ImGui::CalcTextSize(kind).x, y}, packed(color), kind);
+  const std::string words =
+      shared.poses == 1 ? kind : std::to_string(shared.poses) + " poses, " + std::string(kind);
+  list.AddText({from.x + width - 8 * s1 - ImGui::CalcTextSize(words.c_str()).x, y}, packed(color),
+               words.c_str());
   list.PopClipRect();
-  std::string help = "Click to go there.\nError estimate " +
-                     magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit + ", " +
-                     std::to_string(s.iterations) + " iterations.";
+  std::string help = shared.poses == 1
+                         ? "Click to go there."
+                         : "Several poses, mirrored ones for instance, have it: a click goes to the one that "
+                           "is nearest to the present one.";
+  help += "\nError estimate " + magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit +
+          ", " + std::to_string(s.iterations) + " iterations.";
   if (s.rate) {
     const ShownUnit coordinate = shown_unit(of.goal.unit, session.units);
     help += "\n" + of.goal.title + " changes by " +
@@ -303,8 +350,9 @@ void design_answer(Session& session, Ui& ui) {
     return;
   }
   const std::optional<ParameterControl> control = response_control(session);
-  for (std::size_t i = 0; i < answer.solutions.size(); ++i)
-    solution_row(session, ui, design.answer.found->of, answer.solutions[i], i, control ? control->unit : "");
+  const std::vector<SharedNumber> numbers = shared_numbers(answer);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    solution_row(session, ui, design.answer.found->of, numbers[i], i, control ? control->unit : "");
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "",
         design_words(session).c_str());
@@ -312,15 +360,11 @@ void design_answer(Session& session, Ui& ui) {
 
 // What is chosen as long as nobody has: what is shown, or else the last coordinate.
 const DesignGoal& first_goal(const Session& session, const std::vector<DesignGoal>& goals) {
-  const std::string& quantity = session.study.response.choice.quantity;
-  const auto shown = std::ranges::find_if(goals, [&](const DesignGoal& goal) {
-    return quantity == "value " + goal.key || quantity == "measure " + goal.key;
-  });
+  const auto shown = std::ranges::find(goals, session.study.response.choice.quantity, &DesignGoal::quantity);
   if (shown != goals.end()) return *shown;
-  const auto behind = std::ranges::find_if(goals, [](const DesignGoal& goal) {
-    return !goal.expression.empty() || (!goal.place && !goal.key.ends_with(".speed"));
-  });
-  return behind == goals.begin() ? goals.front() : *(behind - 1);
+  const auto last = std::find_if(goals.rbegin(), goals.rend(),
+                                 [](const DesignGoal& goal) { return goal.quantity.starts_with("value "); });
+  return last == goals.rend() ? goals.front() : *last;
 }
 
 void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
@@ -376,6 +420,7 @@ void response_choices(Session& session, Ui& ui, ResponseView& drawn) {
   }
   parameter_choice(session, ui);
   range_row(session, ui);
+  range_note(session, ui);
   shown_quantity_choice(session, ui);
   if (is_resonance(session)) {
     progress(session, ui, drawn);

@@ -237,7 +237,7 @@ void draw_response(const Session& session, ResponseView& drawn) {
     const bool same =
         drawn.plot.y.label == quantity.title && drawn.plot.x.label == parameter_phrase(curve->of.address);
     Plot plot = response_plot(*curve, quantity, session.units, drawn.pieces);
-    if (design && "value " + design->of.coordinate == state.choice.quantity &&
+    if (design && design->of.goal.quantity == state.choice.quantity &&
         design->of.of.address == curve->of.address) {
       const double wanted = design->of.value * quantity.factor;
       plot.references.push_back({.axis = 1, .at = wanted, .label = "wanted", .color = plot_color::green});
