@@ -201,8 +201,9 @@ class Attempt {
       if (force.slips) {
         slipping = true;
         force.value = slipping_force(i);
-        if (!c->speed || (implied_[i] && std::abs(*c->speed) < slowest())) return false;
+        if (!c->speed) return false;
         out.margins[i] = parts_[i] == Part::slips_forwards ? *c->speed : -*c->speed;
+        if (implied_[i] && std::abs(*c->speed) < slowest()) out.margins[i] = -slowest(); // not told from rest
         out.goes = out.goes && out.margins[i] > c->speed_error;
       } else {
         c->driven = false;
@@ -291,13 +292,14 @@ std::string slipping_text(const std::vector<FrictionForce>& forces) {
 }
 
 // With rates that are found by the torques or, where that leads to no state, of some that the drives give:
-// at first by Newton-Raphson alone, as one of the two has none.
+// at first by Newton-Raphson alone, as one of the two has none. One that goes before others.
 std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
                                         const FrictionParts& parts, const SolveOptions& options) {
   std::vector<std::size_t> may_close;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
+  std::optional<StateOnFriction> first;
   for (const bool newton_only : {true, false}) {
     if (newton_only && may_close.empty()) continue;
     if (!newton_only && options.newton_only && !may_close.empty()) break; // that has been
@@ -307,9 +309,11 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
       std::vector<bool> implied(parts.size(), false);
       for (std::size_t k = 0; k < may_close.size(); ++k)
         implied[may_close[k]] = (set >> k & 1) != 0;
-      if (auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(now))
-        return state;
+      auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(now);
+      if (state && (state->goes || !first)) first = std::move(state);
+      if (first && first->goes) return first;
     }
+    if (first) return first;
   }
   return std::nullopt;
 }
@@ -354,7 +358,7 @@ bool holds_more(const FrictionParts& here, const FrictionParts& there) {
 }
 
 std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
-                                                const SolveOptions& options) {
+                                                const SolveOptions& options, double slip_search) {
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   SolveOptions inner = options;
   std::erase_if(inner.start, [&](const auto& named) { // these stand as drawn
@@ -366,7 +370,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
            parts[place(static_cast<int>(found - frictions.begin()))] == Part::holds;
   });
   if (any_slips(parts)) {
-    inner.search = 0;
+    inner.search = slip_search;
     auto state = let_slip(mechanism, frictions, parts, inner);
     if (state) add_message(*state, slipping_text(state->solution.frictions));
     return state;
@@ -391,12 +395,18 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     if (c.friction && c.drawn != value) return std::nullopt;
   }
   std::optional<StateOnFriction> unstable;
-  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel)) {
-    auto state = solve_with_parts(mechanism, parts, options);
-    if (!state || !state->goes) continue;
-    state->solution.message.insert(0, without_friction);
-    if (!any_slips(parts) || state->solution.stable != false) return state;
-    if (!unstable) unstable = std::move(state);
+  const std::vector<FrictionParts> all = friction_parts(mechanism, options.cancel);
+  for (const double slip_search : {0., balance_search}) { // the second where nothing else is found
+    if (slip_search > options.search) break;
+    for (const FrictionParts& parts : all) {
+      if (slip_search > 0 && !any_slips(parts)) continue;
+      auto state = solve_with_parts(mechanism, parts, options, slip_search);
+      if (!state || !state->goes) continue;
+      state->solution.message.insert(0, without_friction);
+      if (!any_slips(parts) || state->solution.stable != false) return state;
+      if (!unstable) unstable = std::move(state);
+    }
+    if (unstable) break;
   }
   return unstable;
 }

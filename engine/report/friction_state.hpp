@@ -44,8 +44,10 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
 bool holds_more(const FrictionParts& here, const FrictionParts& there);
 
 // The steady state with these parts, whether or not it goes with them. Nothing where there is none.
+// `slip_search`: how long, as SolveOptions::search, one with something that slips is searched for where
+// Newton-Raphson finds none.
 std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
-                                                const SolveOptions& options);
+                                                const SolveOptions& options, double slip_search = 0);
 
 // Where a solve without this found no steady state. Nothing where there is none, or where more than three
 // joints would have to be tried for slipping. Throws SceneError for starts that name nothing.

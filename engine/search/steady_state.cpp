@@ -101,7 +101,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
     search_another(problem, drawn, options.seconds);
     return;
   }
-  if (problem.system.torques.empty() || (found.minimum && phases.empty())) return;
+  if (options.newton_only || problem.system.torques.empty() || (found.minimum && phases.empty())) return;
   judge(problem);
   if (!unstable_) {
     if (options.warm || problem.system.nv > largest_for_answer_search || !went_far(problem, start, found.z.q))

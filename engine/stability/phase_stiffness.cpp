@@ -1,6 +1,7 @@
 #include "engine/stability/phase_stiffness.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/stability/linear_motion.hpp"
 
 #include <array>
 
@@ -13,7 +14,7 @@ constexpr double slope_rounding = 1e-9; // the same, of slopes as loops let the 
 
 // Whether the slopes matter as the loops let the angles turn: one that they hold by others moves nothing
 // alone.
-bool matter_with_loops(const Problem& problem, const Unknowns& z, const PhaseStiffness& angles,
+bool matter_with_loops(const Problem& problem, const Unknowns& z, const PhaseStiffness& angles, double size,
                        Workspace& w) {
   if (problem.system.rows == 0) return true;
   evaluate(problem, z, 0, w);
@@ -21,16 +22,18 @@ bool matter_with_loops(const Problem& problem, const Unknowns& z, const PhaseSti
   const Eigen::MatrixXd basis = problem.scaling.column.asDiagonal() * w.dense.constraints().basis();
   if (basis.cols() == 0) return false;
   const Eigen::MatrixXd stiffness = basis.transpose() * angles.columns * basis(angles.entries, Eigen::all);
-  return stiffness.cwiseAbs().maxCoeff() >
-         slope_rounding * largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
+  return stiffness.cwiseAbs().maxCoeff() > slope_rounding * size;
 }
 
 } // namespace
 
-PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Workspace& w) {
-  const System& system = problem.system;
+PhaseStiffness phase_stiffness(const Problem& of, const Unknowns& z, Workspace& w) {
+  const System& system = of.system;
   PhaseStiffness out;
-  if (system.torques.empty() || problem.parameters.phase_free) return out;
+  if (system.torques.empty() || of.parameters.phase_free) return out;
+  // Angles are compared, so that forces count by these, whatever the unit of time.
+  const Scaling scaling = motion_scaling(of);
+  const Problem problem{system, of.parameters, scaling, of.cancel};
   Parameters moved = problem.parameters;
   const Eigen::VectorXd& scale = problem.scaling.column;
   const auto force_at = [&](std::size_t link, double by) {
@@ -47,7 +50,11 @@ PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Worksp
   };
   const Eigen::VectorXd drawn = force_at(0, 0);
   evaluate_magnitudes(system, problem.parameters, z.q, z.lambda, w.kinematics, w.magnitudes);
-  const double size = largest(w.magnitudes.force.cwiseProduct(scale));
+  Eigen::VectorXd terms = w.magnitudes.force;
+  for (Eigen::Index i = 0; i < w.magnitudes.taken.size(); ++i)
+    if (const DriveTorqueElement& torque = system.torques[static_cast<std::size_t>(i)]; torque.keeps_momentum)
+      terms[system.links[static_cast<std::size_t>(torque.link)].v] = w.magnitudes.taken[i];
+  const double size = largest(terms.cwiseProduct(scale));
   for (const DriveTorqueElement& torque : system.torques) {
     const auto l = static_cast<std::size_t>(torque.link);
     const Link& link = system.links[l];
@@ -68,7 +75,7 @@ PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Worksp
     out.columns.conservativeResize(system.nv, out.columns.cols() + 1);
     out.columns.rightCols<1>() = slope;
   }
-  if (!out.entries.empty() && !matter_with_loops(problem, z, out, w)) return {};
+  if (!out.entries.empty() && !matter_with_loops(problem, z, out, size, w)) return {};
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/system/kinematics.hpp"
 
 #include "engine/system/extended.hpp"
+#include "engine/system/law_phase.hpp"
 #include "engine/system/rotation_vector.hpp"
 
 namespace flyball {
@@ -141,15 +142,13 @@ S coordinate_value(const System& system, const ParametersOf<S>& parameters, cons
 
 bool turns_matter(const System& system, const Parameters& p, int l) {
   if (p.links[static_cast<std::size_t>(l)].elastic) return true;
-  const auto asks = [&](const DriveLaw& law) {
-    return std::ranges::any_of(law.inputs, [&](const DriveLaw::Input& input) {
-      return input.quantity.result == Result::coordinate &&
-             system.coordinates[static_cast<std::size_t>(input.coordinate)].link == l;
-    });
-  };
-  return std::ranges::any_of(system.torques, [&](const DriveTorqueElement& drive) {
-    return asks(drive.torque) || asks(drive.load);
-  });
+  const auto own = [l](const CoordinateInfo& c) { return c.link == l; };
+  const auto coordinate = std::ranges::find_if(system.coordinates, own) - system.coordinates.begin();
+  for (std::size_t i = 0; i < system.torques.size(); ++i)
+    for (const auto& [law, numbers] : {std::pair{&system.torques[i].torque, &p.torques[i].torque},
+                                       std::pair{&system.torques[i].load, &p.torques[i].load}})
+      if (tells_turns_apart(*law, *numbers, static_cast<int>(coordinate))) return true;
+  return false;
 }
 
 bool turns_freely(const System& system, const Parameters& p, int l) {

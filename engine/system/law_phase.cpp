@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace flyball {
 namespace {
@@ -115,6 +118,33 @@ void refuse_turning_laws(const System& system, const Mechanism& mechanism, const
     check(e.torque, p.torques[t].torque, link, "torque");
     check(e.load, p.torques[t].load, link, "load");
   }
+}
+
+bool tells_turns_apart(const DriveLaw& law, const DriveLawParameters& numbers, int coordinate) {
+  const auto asked = [&](const DriveLaw::Input& input) {
+    return input.coordinate == coordinate && input.quantity.result == Result::coordinate;
+  };
+  if (!law.expression || std::ranges::none_of(law.inputs, asked)) return false;
+  std::vector<std::size_t> as_they_come(law.inputs.size());
+  std::iota(as_they_come.begin(), as_they_come.end(), std::size_t{0});
+  const auto value = [&](double place, double turns) {
+    std::vector<Dual> inputs;
+    for (std::size_t i = 0; i < law.inputs.size(); ++i)
+      inputs.emplace_back(asked(law.inputs[i]) ? place + turns * 2 * std::numbers::pi
+                                               : 1.5 + std::sin(0.7 + 2.3 * static_cast<double>(i)));
+    return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come).value;
+  };
+  double differs = 0, size = 0;
+  for (const double place : {0.3, 1.4, -0.8, 2.9, -2.2}) {
+    const double here = value(place, 0);
+    size = std::max(size, std::abs(here));
+    for (const double turns : {1., -3.}) {
+      const double there = value(place, turns);
+      if (!std::isfinite(here) || !std::isfinite(there)) return true;
+      differs = std::max(differs, std::abs(there - here));
+    }
+  }
+  return differs > rounding * size;
 }
 
 } // namespace flyball

@@ -16,4 +16,8 @@ bool asks_for_points(const System& system);
 // changes with the phase of the drives, and for an angle without an arm. Drives that stand still change none.
 void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& parameters);
 
+// Whether a law tells whole turns of a coordinate (in System::coordinates) that it asks for apart, as 2 N
+// m*(1 - coordinate(a)) does and sin(coordinate(a)) does not: in some states of no particular place.
+bool tells_turns_apart(const DriveLaw& law, const DriveLawParameters& numbers, int coordinate);
+
 } // namespace flyball
