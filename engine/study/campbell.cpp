@@ -4,7 +4,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/mode_tracks.hpp"
@@ -425,15 +425,9 @@ void add_critical(Describer& describer, const ResponseBranch& followed, const Ca
 } // namespace
 
 std::string driven_joint(const Mechanism& mechanism, const std::string& address) {
-  for (const Joint& joint : mechanism.joints)
-    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      if (!joint.coordinates[i].drive || finds_speed(*joint.coordinates[i].drive)) continue;
-      const std::string speed = drive_speed_address(joint, i);
-      if (parameter_unit(mechanism, speed) != "rad/s") continue;
-      std::string formula = formula_at(mechanism, speed).value_or("");
-      std::erase(formula, ' ');
-      if (speed == address || "parameters." + formula == address) return joint.name;
-    }
+  for (const PrescribedSpeed& speed : prescribed_speeds(mechanism))
+    if (speed.angle && (speed.address == address || number_alone(mechanism, speed.address) == address))
+      return speed.joint;
   return {};
 }
 

@@ -2,11 +2,13 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
 
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <cmath>
 #include <complex>
@@ -323,4 +325,35 @@ TEST_CASE("Names change in expressions, and in nothing that looks like them") {
   CHECK(renamed_in("m*2 m + m.x + sin(m)", "m", "mass") == "mass*2 m + mass.x + sin(mass)");
   CHECK(renamed_in("m1 + m", "m", "q") == "m1 + q");
   CHECK(renamed_in("no (expression", "no", "q") == "no (expression");
+}
+
+TEST_CASE("Speeds that drives prescribe are told by the drives, and by what their expressions rest on") {
+  Mechanism m = test::shipped("horizontal_rotor");
+  REQUIRE(prescribed_speeds(m).size() == 1);
+  const PrescribedSpeed speed = prescribed_speeds(m)[0];
+  CHECK(speed.joint == "spin");
+  CHECK(speed.address == "joints.spin.drive.speed");
+  CHECK(speed.value == 30);
+  CHECK(speed.angle);
+  CHECK(number_alone(m, speed.address) == "parameters.n");
+  CHECK(number_alone(m, "parameters.n") == "parameters.n");
+  CHECK(sets_speed(m, "parameters.n"));
+  CHECK_FALSE(sets_speed(m, "parameters.e"));
+  // By way of another parameter, and as a part of an expression.
+  NamedParameter turns;
+  turns.name = "turns";
+  turns.unit = "rad/s";
+  turns.value = 5;
+  m.parameters.push_back(turns);
+  m.parameters[0].formulas = {{"value", " turns "}};
+  CHECK(number_alone(m, speed.address) == "parameters.turns");
+  CHECK(sets_speed(m, "parameters.turns"));
+  m.parameters[0].formulas = {{"value", "6*turns"}};
+  CHECK(number_alone(m, speed.address).empty());
+  CHECK(sets_speed(m, "parameters.turns"));
+  m.parameters.back().formulas = {{"value", "n"}}; // in a circle
+  m.parameters[0].formulas = {{"value", "turns"}};
+  CHECK(number_alone(m, speed.address).empty());
+  // A drive by torque finds its speed.
+  CHECK(prescribed_speeds(test::shipped("governor_engine")).empty());
 }
