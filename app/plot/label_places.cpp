@@ -126,7 +126,10 @@ std::optional<PlotText> best_place(const PlotLayout& layout, const std::vector<P
     best = &places[i];
     least = cost;
   }
-  return best ? std::optional(*best) : std::nullopt;
+  if (!best) return std::nullopt;
+  PlotText placed = *best;
+  placed.backed = ink_under(layout.ink, layout.area, placed.box) > 0;
+  return placed;
 }
 
 PlotBox around(double x, double y, double radius) {

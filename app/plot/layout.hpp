@@ -27,6 +27,7 @@ struct PlotText {
   double anchor = 0; // which end of the box holds where widths are only estimated: -1 left, 0 middle, 1 right
   PlotFont font = PlotFont::words;
   bool upright = false; // read from below to above
+  bool backed = false;  // crossed by curves: a ground of its own keeps it readable
 };
 
 struct PlotTick {

@@ -22,8 +22,9 @@ bool is_shown(const PlotBand& band, const PlotLook& look) {
   return !look.hidden.contains(band.name);
 }
 
-bool has_rim(const Plot& plot, const PlotCurve& curve) {
-  return plot.heat && !curve.hatching;
+double rim_of(const Plot& plot, const PlotCurve& curve) {
+  constexpr double line = 1, hatched = 0.7; // points
+  return !plot.heat ? 0 : curve.hatching ? hatched : line;
 }
 
 } // namespace flyball

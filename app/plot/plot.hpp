@@ -127,8 +127,11 @@ std::string axis_text(const std::string& label, const std::string& unit);
 bool is_logarithmic(const Plot& plot, const PlotLook& look, int axis);
 bool is_shown(const PlotCurve& curve, const PlotLook& look);
 bool is_shown(const PlotBand& band, const PlotLook& look);
-// Whether the line has a rim of the ground, `rim_width` points at either side: over a map's colours.
-bool has_rim(const Plot& plot, const PlotCurve& curve);
-inline constexpr double rim_width = 1;
+// The rim of the ground that the line has at either side, in points: over a map's colours, of which some are
+// near its own. 0: none.
+double rim_of(const Plot& plot, const PlotCurve& curve);
+// Behind a label that curves cross: how much of the ground covers them, and how far beyond the letters
+// (points).
+inline constexpr double label_ground = 0.8, label_ground_room = 2;
 
 } // namespace flyball

@@ -151,10 +151,10 @@ struct Drawing {
     for (const PixelLine& line : lines.lines)
       for (std::size_t i = 0; i < line.size(); ++i)
         path += fmt::format("{}{} {}", i == 0 ? 'M' : 'L', px(line[i][0]), px(line[i][1]));
-    if (!path.empty() && has_rim(plot, c))
+    if (const double rim = rim_of(plot, c); !path.empty() && rim > 0)
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
                          "stroke-linejoin=\"round\"/>\n",
-                         path, hex(colors.area), px(c.width + 2 * rim_width));
+                         path, hex(colors.area), px(c.width + 2 * rim));
     if (!path.empty())
       out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
                          "stroke-linejoin=\"round\"{}/>\n",
@@ -247,9 +247,14 @@ struct Drawing {
       if (*t) text(**t, colors.text);
   }
 
-  // A label stands on the curves' colours: a rim of the ground keeps it readable.
+  // A label stands on the curves' colours: a rim of the ground keeps it readable, and where they cross it
+  // more of it.
   void label(const PlotPlaced& placed) {
     if (!placed.label) return;
+    if (const PlotBox box = placed.label->box.grown(label_ground_room); placed.label->backed)
+      out += fmt::format(
+          "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
+          px(box.left), px(box.top), px(box.width()), px(box.height()), hex(colors.area), label_ground);
     out +=
         fmt::format("<g paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\" stroke-linejoin=\"round\">",
                     hex(colors.area));

@@ -115,7 +115,8 @@ std::string what_of(const std::vector<std::string>& parts) {
   if (matrix) return parts[2] + " " + shift_or_turn(parts[3]) + " by " + shift_or_turn(parts[4]);
   if (parts.size() > 3 && is_index(parts.back())) return parts[2] + " " + parts.back();
   std::string words = parts.back();
-  const bool plain = parts.back() == "speed" || parts.back() == "stiffness";
+  constexpr std::array known{"speed", "torque", "load", "stiffness"}; // without a word of whose they are
+  const bool plain = std::ranges::find(known, parts.back()) != known.end();
   for (std::size_t i = 2; i + 1 < parts.size(); ++i) {
     if (is_index(parts[i]))
       words += " " + parts[i];
@@ -328,7 +329,10 @@ std::string parameter_phrase(std::string_view address) {
   std::string what = what_of(parts);
   std::ranges::replace(what, '_', ' ');
   const std::string owner = owner_of(parts);
-  return what.empty() ? owner : what + " of " + owner;
+  if (what.empty()) return owner;
+  const bool drive = address.find(".drive") != std::string_view::npos;
+  if (drive && what.starts_with("load")) return what + " on " + owner; // as plots call them
+  return (drive && what.starts_with("torque") ? "drive " : "") + what + " of " + owner;
 }
 
 std::string with_phrase(std::string sentence, const std::string& address) {

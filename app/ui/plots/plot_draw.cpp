@@ -96,11 +96,11 @@ void draw_frame(const PlotPen& pen, const PlotLayout& layout, const PlotColors& 
 }
 
 // `rim`: of the ground, which keeps a line in sight on any colour.
-void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines& lines, bool rim) {
+void draw_curve(const PlotPen& pen, const PlotCurve& curve, const PlotCurveLines& lines, double rim) {
   const ImU32 color = packed_color(curve_color(curve.color, pen.ground)),
               ground = packed_color(plot_colors(pen.ground).area);
   for (const PixelLine& line : lines.lines)
-    if (rim) draw_line(pen, line, PlotLine::solid, curve.width + 2 * rim_width, ground);
+    if (rim > 0) draw_line(pen, line, PlotLine::solid, curve.width + 2 * rim, ground);
   for (const PixelLine& line : lines.lines)
     draw_line(pen, line, curve.line, curve.width, color);
   for (const PixelPoint& p : lines.shapes)
@@ -140,8 +140,11 @@ void draw_references(const PlotPen& pen, const Plot& plot, const PlotLayout& lay
   }
 }
 
-// A rim of the ground keeps it readable on curves and colours.
+// A rim of the ground keeps it readable on curves and colours, and where these cross it more of it.
 void draw_label(const PlotPen& pen, const PlotText& text, const PlotColors& colors) {
+  if (const PlotBox box = text.box.grown(label_ground_room * static_cast<double>(pen.scale)); text.backed)
+    pen.list.AddRectFilled(pen.at(box.left, box.top), pen.at(box.right, box.bottom),
+                           packed_color(colors.area, static_cast<float>(label_ground)));
   const float rim = std::max(1.f, 1.5f * pen.scale);
   for (int i = 0; i < 8; ++i) {
     const float angle = static_cast<float>(i) * 0.785398163f;
@@ -313,7 +316,7 @@ void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const
     draw_band(pen, plot.bands[lines.band], lines);
   draw_references(pen, plot, layout);
   for (const PlotCurveLines& lines : layout.curves)
-    draw_curve(pen, plot.curves[lines.curve], lines, has_rim(plot, plot.curves[lines.curve]));
+    draw_curve(pen, plot.curves[lines.curve], lines, rim_of(plot, plot.curves[lines.curve]));
   pen.list.PopClipRect();
   draw_frame(pen, layout, colors);
   if (layout.bar) draw_bar(pen, *layout.bar, colors);

@@ -179,7 +179,10 @@ void MovieDialog::choices(Session& session, Ui& ui, MovieState& movie) {
     movie.problem.clear();
   }
   ImGui::SameLine();
-  if (text_button(ui, "movie/cancel", "Cancel") || escape_pressed()) close_dialog();
+  if (text_button(ui, "movie/cancel", "Cancel") || escape_pressed()) {
+    movie = before_;
+    close_dialog();
+  }
 }
 
 void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& movie, Filmed of) {
@@ -191,6 +194,7 @@ void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& 
   query_.replacing.clear();
   movie.problem.clear();
   movie.done = false;
+  before_ = movie;
   const std::filesystem::path& file = session.document.file();
   const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";

@@ -20,6 +20,7 @@ class MovieDialog {
   void choices(Session& session, Ui& ui, MovieState& movie);
 
   FileQuery query_;
+  MovieState before_; // as chosen before it was opened
 };
 
 } // namespace flyball
