@@ -537,3 +537,35 @@ TEST_CASE("momentum that a planetary set passes on is not kept") {
     CHECK_THAT(error.expected(), ContainsSubstring("its momentum passes to them"));
   }
 }
+
+TEST_CASE("whether what is left to itself is stable does not depend on the unit of time",
+          "[momentum][scale]") {
+  const double unit = GENERATE(1., 1e-3, 1e-6, 1e-9); // s
+  CAPTURE(unit);
+  const double fast = 1 / unit, stiff = fast * fast;
+  Mechanism m;
+  m.gravity = {0, -9.81 * stiff, 0};
+  m.bodies = {body("h0", 1.5, {0, 0, 0}, {0.37, 0.33, 0.37}), body("h1", 1.8, {0, 0, 0}, {0.36, 0.44, 0.36}),
+              body("a", 1.2, {-0.22, 0.34, 0.16}, {0.005, 0.006, 0.004}),
+              body("b", 0.7, {-0.1, 0.29, 0.08}, {0.005, 0.006, 0.004}),
+              body("c", 1.1, {0.27, 0.12, 0.07}, {0.005, 0.006, 0.004})};
+  m.joints = {
+      left_to_itself(revolute("p0", "ground", "h0", {0, 0, 0}, {0, 1, 0}), -6.6 * fast),
+      driven(revolute("p1", "ground", "h1", {0, 0, 0}, {0, 1, 0}), -7.2 * fast),
+      dampened(sprung(prismatic("s0", "h0", "a", {-0.22, 0.34, 0.16}, {-0.82, 0.41, 0.58}), 2400 * stiff),
+               14 * fast),
+      dampened(sprung(prismatic("s1", "h0", "b", {-0.1, 0.29, 0.08}, {-0.75, 0.4, 0.66}), 1900 * stiff),
+               5.7 * fast),
+      dampened(sprung(revolute("s2", "h1", "c", {0.08, 0.34, 0.02}, {-0.23, -0.04, 0.97}), 10.5 * stiff),
+               0.4 * fast)};
+  Force spring = point_spring("sp", "a", "b", {-0.22, 0.34, 0.16}, {-0.1, 0.29, 0.08}, 235 * stiff, 0.25);
+  spring.damping = 0.2 * fast;
+  m.forces = {spring};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  REQUIRE(s.eigenvalues);
+  REQUIRE(!s.eigenvalues->empty());
+}

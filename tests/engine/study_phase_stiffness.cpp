@@ -359,6 +359,27 @@ TEST_CASE("two shafts whose speeds by themselves are of no balance turn together
   CHECK(s.stable == true);
 }
 
+TEST_CASE("two shafts with play between them turn together against its flank", "[phase][coupling]") {
+  const double play = 0.1, stiffness = 1000;
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.3}), body("b", 1, {0, 0, 0.5}, {0.1, 0.1, 0.2})};
+  Joint teeth = dampened(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), 0.1);
+  Stop& stop = teeth.coordinates[0].stop.emplace();
+  stop.lower = -play;
+  stop.upper = play;
+  stop.stiffness = stiffness;
+  m.joints = {torque_driven(hinge("p", "ground", "a"), 5, "5 N m - 1 N m s * rate(p)"),
+              torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 3, "-0.2 N m s * rate(q)"),
+              teeth};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "p"), WithinRel(5 / 1.2, 1e-11));
+  CHECK_THAT(value(s, "c"), WithinRel(-play - 0.2 * 5 / 1.2 / stiffness, 1e-9));
+  CHECK(s.stable == true);
+}
+
 TEST_CASE("of states that stand turned a stable one is the answer, wherever it lies", "[phase]") {
   const Mechanism m =
       read_scene(R"json({"flyball": 2, "name": "Three shafts", "gravity": [0, 0, 0], "bodies": [

@@ -66,6 +66,39 @@ TEST_CASE("a clutch slips whose disc rests against a stop or a spring: it turns 
   CHECK_THAT(track(motion, "brake").rate.back(), WithinAbs(0, 1e-6));
 }
 
+TEST_CASE("a clutch slips whose disc rests against a spring that is flat as drawn") {
+  const Mechanism m = clutch_and_brake(half, R"("spring": {"force": "=20 N m*deflection^3"})");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "brake"), WithinRel(std::cbrt(0.5 / 20), 1e-9));
+  CHECK_THAT(rate(s, "clutch"), WithinRel(-clutch_shaft_speed, 1e-12));
+}
+
+TEST_CASE("the branch of a block on a conveyor ends where that stands, in a slip") {
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Conveyor", "gravity": [0, -9.81, 0],
+    "bodies": [{"name": "belt", "mass": 1, "position": [0, 0, 0]}, {"name": "block", "mass": 2, "position": [0, 0.1, 0]}],
+    "joints": [{"name": "belt", "type": "prismatic", "bodies": ["ground", "belt"], "at": [0, 0, 0], "axis": [1, 0, 0],
+        "drive": {"speed": 0.5}},
+      {"name": "rub", "type": "prismatic", "bodies": ["belt", "block"], "at": [0, 0.1, 0], "axis": [1, 0, 0],
+        "friction": {"limit": 4}},
+      {"name": "hold", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0.1, 0], "axis": [1, 0, 0],
+        "spring": {"stiffness": 50}}]})json");
+  // In sixty steps: 0 is one of them.
+  const ResponseDiagram d = follow_response(m, "joints.belt.drive.speed", -1, 1);
+  INFO(d.message);
+  REQUIRE(d.branches.size() >= 2);
+  for (const ResponseBranch& branch : d.branches) {
+    INFO(branch.begin << "; " << branch.end);
+    CHECK_THAT(branch.begin + branch.end, !ContainsSubstring("fold"));
+    for (const ResponsePoint& p : branch.points) {
+      const auto hold = std::ranges::find(p.coordinates, "hold", &CoordinateSolution::joint);
+      CHECK_THAT(std::abs(hold->value), WithinAbs(0.08, 1e-9));
+    }
+  }
+  CHECK(std::ranges::count(d.special, SpecialPointType::slip, &SpecialPoint::type) >= 1);
+}
+
 TEST_CASE("a damper that closes a loop balances a spring: the sizes of what it gives count") {
   const Mechanism m = clutch_and_brake(R"("damping": 0.01)", R"("spring": {"stiffness": 97})");
   SolveOptions nearest;

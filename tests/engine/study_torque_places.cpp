@@ -25,6 +25,7 @@
 
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -510,6 +511,20 @@ TEST_CASE("whole turns of an angle count that a law asks for", "[torque][places]
   const Solution labelled = Analysis(m).solve();
   CHECK(std::abs(5 - speed(labelled, "spin") - 0.1 * value(labelled, "a")) < 1e-12);
   CHECK(std::abs(value(labelled, "a") - 10) < 3);
+}
+
+TEST_CASE("whole turns of an angle do not count where a law goes on alike", "[torque][places][turns]") {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("h", 1, {0, 0, 0}, {0.3, 0.4, 0.3}), body("b", 1, {0.1, -0.3, 0}, {0.001, 0.001, 0.001})};
+  m.joints = {driven(revolute("spin", "ground", "h", {0, 0, 0}, {0, 1, 0}), 5),
+              dampened(revolute("a", "h", "b", {0.05, 0, 0}, {0, 0, 1}), 0.2)};
+  m = with_torque(m, "5 N m - 1 N m s*rate(spin) - 0.5 N m*sin(coordinate(a))");
+  validate(m);
+  const double drawn = value(Analysis(m).solve(), "a");
+  SolveOptions options;
+  options.start = {{"a", drawn + 2 * std::numbers::pi}};
+  CHECK_THAT(value(Analysis(m).solve(options), "a"), WithinRel(drawn, 1e-9));
 }
 
 TEST_CASE("forces and accelerations are refused in laws", "[torque][places]") {
