@@ -40,7 +40,9 @@ class BodyGroups {
     parent_[std::max(a, b)] = std::min(a, b);
     return a != b;
   }
-  bool on_ground(std::string_view body) { return root(numbers_[body]) == 0; }
+  bool on_ground(std::string_view body) { return first_of(body) == 0; }
+  // The number of the first that it hangs together with; 0 where that is the ground.
+  std::size_t first_of(std::string_view body) { return root(numbers_[body]); }
 
  private:
   std::size_t root(std::size_t i) {

@@ -305,7 +305,15 @@ TEST_CASE("What holds a body") {
   }
   SECTION("only another body that hangs on nothing") {
     m.joints[1].bodies = {"b", "c"};
-    CHECK(mistakes_of(m) == "bodies.b: b is not connected\nbodies.c: c is not connected\n");
+    CHECK(mistakes_of(m) == "bodies.b: b is not connected to the ground, nor is c\n");
+    Body more;
+    more.mass = 1;
+    for (const char* name : {"d", "e", "f", "g"}) {
+      more.name = name;
+      m.bodies.push_back(more);
+      m.joints.push_back(revolute(std::string("to_") + name, "c", name, {0, 0, 0}));
+    }
+    CHECK(mistakes_of(m) == "bodies.b: b is not connected to the ground, nor are c, d, e, f and 1 more\n");
   }
 }
 

@@ -46,8 +46,11 @@ std::string words_for(const SceneError& mistake) {
 }
 
 std::string advice_for(const SceneError& mistake) {
-  return mistake.expected().ends_with("is not connected")
-             ? "Join it to another body or to the ground, by a joint or a spring."
+  const std::string& expected = mistake.expected();
+  if (expected.ends_with(" is not connected"))
+    return "Join it to another body or to the ground, by a joint or a spring.";
+  return expected.find(" is not connected to the ground, nor ") != std::string::npos
+             ? "Join one of them to the ground, or to a body that is, by a joint or a spring."
              : "";
 }
 
