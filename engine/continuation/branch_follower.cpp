@@ -226,18 +226,9 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
          size_of(there, difference(there, state)) < 1e-2 * least;
 }
 
-bool BranchFollower::out_of_reach(const BranchState& s) const {
-  const Problem problem = family_.problem();
-  return std::ranges::any_of(system_.links, [&](const Link& link) {
-    if (finds_speed(link)) return std::abs(s.z.q[link.q]) > 1e4 * problem.scaling.column[link.v];
-    return link.type == LinkType::prismatic && link.q >= 0 &&
-           std::abs(s.z.q[link.q]) > 100 * problem.parameters.length;
-  });
-}
-
 bool BranchFollower::holds_at_every_phase(const BranchState& s) {
   const Problem problem = problem_at(s.parameter);
-  return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters), w_).holds;
+  return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters, s.z.q), w_).holds;
 }
 
 void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
@@ -347,7 +338,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       out.closed = true;
       break;
     }
-    if (out_of_reach(next)) {
+    if (out_of_reach(family_.problem(), next.z.q)) {
       out.end = "a coordinate or a speed leaves all bounds";
       break;
     }

@@ -107,8 +107,6 @@ class BranchFollower {
   void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
                                 FollowedBranch& out);
   void land_on_border(const BranchState& state, double border, FollowedBranch& out);
-  // Farther than any mechanism goes: a hundred times its reach, ten thousand times the speeds it begins with.
-  bool out_of_reach(const BranchState& state) const;
   bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
   // Scaled step of q_R from a to b and of the parameter.

@@ -112,7 +112,8 @@ class Diagram {
     find_equilibrium(problem, start, true, false, w, history, found);
     Existence existence;
     if (found.status == Status::converged)
-      existence = check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w);
+      existence = check_existence(problem, found.z.q,
+                                  sample_phases(problem.system, problem.parameters, found.z.q), w);
     std::optional<OtherStates> others;
     if ((found.status != Status::converged || !existence.holds) && !problem.cancelled()) {
       SteadyState other;
@@ -173,7 +174,8 @@ class Diagram {
     std::vector<double> history;
     find_equilibrium(problem, start, false, false, w, history, found);
     if (found.status != Status::converged ||
-        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w).holds)
+        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q), w)
+             .holds)
       return;
     const auto first = follower_.begin(found.z, from_, true);
     if (!first || known(*first)) return;
@@ -188,7 +190,7 @@ class Diagram {
     Workspace& w = follower_.workspace();
     Unknowns z{configuration_of(problem, state.coordinates), Eigen::VectorXd::Zero(problem.system.rows)};
     if (!newton(problem, z, w, {}, nullptr).converged) return false;
-    if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters), w).holds)
+    if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters, z.q), w).holds)
       return false;
     if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) follower_.expect_families();
     const auto forth = follower_.begin(z, state.parameter, true),
@@ -295,11 +297,11 @@ class Diagram {
     const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
     out_.searched.push_back(value);
     out_.starts += list.report.starts;
-    const std::vector<double> phases = sample_phases(problem.system, problem.parameters);
     for (const Unknowns& z : list.states) {
       if (!going()) return;
       follower_.problem_at(value);
-      if (!check_existence(problem, z.q, phases, w).holds) continue;
+      if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters, z.q), w).holds)
+        continue;
       // A family along a direction that nothing resists is no branch.
       if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);

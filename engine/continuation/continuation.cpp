@@ -2,7 +2,17 @@
 
 #include "engine/solve/newton.hpp"
 
+#include <algorithm>
+
 namespace flyball {
+
+bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q) {
+  return std::ranges::any_of(problem.system.links, [&](const Link& link) {
+    if (finds_speed(link)) return std::abs(q[link.q]) > 1e4 * problem.scaling.column[link.v];
+    return link.type == LinkType::prismatic && link.q >= 0 &&
+           std::abs(q[link.q]) > 100 * problem.parameters.length;
+  });
+}
 
 Continuation::Continuation(Family& family) : family_(family), balance_(BorderedBalance::make(family, w_)) {}
 

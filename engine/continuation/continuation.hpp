@@ -18,6 +18,9 @@ struct BranchState {
   double determinant = 0;  // of the bordered balance, scaled: changes sign at a branch point
 };
 
+// Farther than any mechanism goes: a hundred times its reach, ten thousand times the speeds it begins with.
+bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q);
+
 class Continuation {
  public:
   explicit Continuation(Family& family);

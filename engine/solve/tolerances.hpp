@@ -84,7 +84,8 @@ constexpr double on_axis = 1e-8;             // of |s|: a real part as small is 
 constexpr double on_axis_of_largest = 1e-12; // of the largest |s|: rounding that all eigenvalues share
 // Of the largest |s|: a null direction has a double zero, of which rounding leaves its root.
 constexpr double null_eigenvalue = 1e-5;
-constexpr double massless = 1e-13; // of M: an inertia as small is rounding
+constexpr double null_damping = 1e-11; // of C + G: so little of it along a null direction is none
+constexpr double massless = 1e-13;     // of M: an inertia as small is rounding
 constexpr double without_force =
     1e-10;                       // of K or of C + G: so little of it along a massless direction is none
 constexpr double coupled = 1e-8; // of K: between massless directions and others

@@ -43,7 +43,7 @@ std::vector<double> turning_speeds(const Problem& problem, const Eigen::VectorXd
 bool repeats(const Problem& problem, const Eigen::VectorXd& q, double period, Workspace& w) {
   return std::ranges::all_of(std::array{0.0, 0.3183, 0.7071}, [&](double part) {
     return same_motion(problem, linear_motion(problem, q, part * period, w),
-                       linear_motion(problem, q, (1 + part) * period, w));
+                       linear_motion(problem, q, (1 + part) * period, w), (1 + part) * period);
   });
 }
 

@@ -4,18 +4,20 @@
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/stability/phase_stiffness.hpp"
+#include "engine/system/drive_rates.hpp"
 
 #include <algorithm>
 
 namespace flyball {
 namespace {
 
-constexpr double alike = 1e-9;           // relative difference of entries that counts as none
+constexpr double same = 1e-9;            // relative difference of entries that counts as none
 constexpr double entry_rounding = 1e-13; // of the terms that an entry is made of
 
 // |a - b| entry by entry, against the sizes of both rows and columns and the rounding of what they are made
 // of.
-bool same_entries(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eigen::VectorXd& terms) {
+bool same_entries(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eigen::VectorXd& terms,
+                  double alike) {
   if (a.rows() == 0) return true;
   const Eigen::VectorXd rows = a.cwiseAbs().rowwise().maxCoeff().cwiseMax(b.cwiseAbs().rowwise().maxCoeff());
   const Eigen::VectorXd columns =
@@ -26,13 +28,6 @@ bool same_entries(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const Eige
             alike * std::sqrt(rows[i] * columns[j]) + entry_rounding * std::sqrt(terms[i] * terms[j])))
         return false;
   return true;
-}
-
-double fastest_drive(const Problem& problem) {
-  double fastest = 0;
-  for (const DrivenCoordinate& d : problem.system.drives)
-    fastest = std::max(fastest, std::abs(problem.parameters.links[static_cast<std::size_t>(d.link)].speed));
-  return fastest;
 }
 
 // From the balance's Jacobian, whose columns are for the speeds that are found and whose rows for the momenta
@@ -146,7 +141,9 @@ std::optional<Eigen::MatrixXd> basis_beside(const LinearMotion& motion, const Ei
   return Eigen::MatrixXd(motion.basis * *mixing);
 }
 
-bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMotion& b) {
+bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMotion& b, double time) {
+  const std::vector<DriveRate> rates = drive_rates(problem.system, problem.parameters);
+  const double alike = same + 4 * angle_rounding(rates, time);
   const auto turned = basis_beside(b, a.basis);
   if (!turned) return false;
   const Eigen::MatrixXd& n = a.basis;
@@ -156,14 +153,14 @@ bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMoti
   const Eigen::VectorXd mass = share.transpose() * a.mass.diagonal().cwiseMax(b.mass.diagonal()).cwiseMax(0);
   const Eigen::VectorXd force = share.transpose() * a.force.cwiseMax(b.force);
   const bool whole = n.rows() == n.cols(); // no constraints: the basis is the identity
-  const auto same = [&](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Eigen::VectorXd& terms) {
-    if (whole) return same_entries(x, y, terms);
-    return same_entries(n.transpose() * x * n, n.transpose() * y * n, terms);
+  const auto agree = [&](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, const Eigen::VectorXd& terms) {
+    if (whole) return same_entries(x, y, terms, alike);
+    return same_entries(n.transpose() * x * n, n.transpose() * y * n, terms, alike);
   };
   // What gyroscopic terms are made of, and a stiffness that no motion of this speed would feel.
-  const double speed = fastest_drive(problem);
-  return same(a.mass, b.mass, mass) && same(a.velocity, b.velocity, speed * mass) &&
-         same(a.stiffness, b.stiffness, force + speed * speed * mass);
+  const double speed = fastest_rate(rates);
+  return agree(a.mass, b.mass, mass) && agree(a.velocity, b.velocity, speed * mass) &&
+         agree(a.stiffness, b.stiffness, force + speed * speed * mass);
 }
 
 bool motion_varies(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
@@ -171,7 +168,7 @@ bool motion_varies(const Problem& problem, const Eigen::VectorXd& q, const std::
   if (phases.empty() || problem.system.nv == 0) return false;
   const LinearMotion drawn = linear_motion(problem, q, 0, w);
   return std::ranges::any_of(
-      phases, [&](double t) { return !same_motion(problem, drawn, linear_motion(problem, q, t, w)); });
+      phases, [&](double t) { return !same_motion(problem, drawn, linear_motion(problem, q, t, w), t); });
 }
 
 } // namespace flyball

@@ -46,8 +46,8 @@ Eigen::MatrixXd cyclic_directions(const System& system, const Eigen::MatrixXd& b
 std::optional<Eigen::MatrixXd> basis_beside(const LinearMotion& motion, const Eigen::MatrixXd& reference);
 
 // Whether two phases have the same M, C + G and K on the same null space, to 1e-9 of the sizes in each
-// direction.
-bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMotion& b);
+// direction and what rounding makes of the angles of drives at `time` (s), the later of them.
+bool same_motion(const Problem& problem, const LinearMotion& a, const LinearMotion& b, double time);
 
 // Whether any of the times `phases` (s) differs from the drawn phase.
 bool motion_varies(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,

@@ -241,8 +241,8 @@ StabilityEvidence stability_evidence(const FactoredState& at) {
   std::ranges::sort(eigenvalues, {}, [](Complex s) { return std::abs(s); });
   for (std::size_t i = 0; i < eigenvalues.size(); ++i) {
     const Complex s = eigenvalues[i];
-    const bool of_null =
-        i < 2 * static_cast<std::size_t>(out.null) && std::abs(s) < tolerance::null_eigenvalue * largest;
+    const bool of_null = i < static_cast<std::size_t>(verdict.null_eigenvalues) &&
+                         std::abs(s) < tolerance::null_eigenvalue * largest;
     if (of_null || std::abs(s.real()) <= real_part_rounding(s, largest))
       ++out.standing;
     else

@@ -103,7 +103,7 @@ Stability find_pivot_stability(const FactoredState& at) {
   const Problem& problem = at.problem;
   KktSystem& kkt = at.kkt();
   Stability out;
-  const auto phases = sample_phases(problem.system, problem.parameters);
+  const auto phases = sample_phases(problem.system, problem.parameters, at.z.q);
   if (may_vary(problem, at.z, phases, at.w.elsewhere())) {
     out.reason = StabilityReason::varying;
     out.floquet_failure = FloquetFailure::unresolved;

@@ -252,6 +252,24 @@ std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const
   return out;
 }
 
+// How many eigenvalues of s^2 M + s D + K are zero by its null directions, K n = 0, given in `right` and
+// those of K^T in `left`: each has one, and a second where K x = -D n has a solution, so that x + n t goes on
+// by itself (a Jordan chain; Gohberg, Lancaster and Rodman, Matrix Polynomials, 1982, section 1.4).
+int count_null_eigenvalues(const Eigen::MatrixXd& velocity, const Eigen::MatrixXd& left,
+                           const Eigen::MatrixXd& right) {
+  const int count = static_cast<int>(right.cols());
+  const double size = velocity.norm();
+  PivotedQr damping;
+  if (count == 0 || !(size > 0) || left.cols() == 0 ||
+      !damping.compute(left.colwise().normalized().transpose() * velocity * right.colwise().normalized()))
+    return 2 * count;
+  int damped = 0;
+  while (damped < std::min(count, static_cast<int>(left.cols())) &&
+         damping.pivot(damped) > tolerance::null_damping * size)
+    ++damped;
+  return 2 * count - damped;
+}
+
 } // namespace
 
 std::optional<std::vector<Complex>> motion_eigenvalues(const Problem& problem, const Unknowns& z,
@@ -306,7 +324,7 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   Stability out;
   Workspace& w = at.w;
   const bool varies =
-      motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters), w.elsewhere());
+      motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters, at.z.q), w.elsewhere());
   const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty() ||
                          loops_tie_angles(problem, w.kinematics);
   // The potential at given speeds tells nothing of their angles.
@@ -386,11 +404,19 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   const Eigen::MatrixXd &mass = motion->mass, &velocity = motion->velocity, &stiffness = motion->stiffness;
   if (minimum || kept || !out.eigenvalues) return out;
 
-  // Eigenvalues that belong to null directions are zero but for rounding: leave the smallest out.
+  // What belongs to null directions is zero but for rounding: the smallest are left out.
+  out.null_eigenvalues = 2 * static_cast<int>(null_space.cols());
+  if (out.null_eigenvalues > 0 && problem.system.torques.empty()) {
+    const Eigen::MatrixXd null_basis = energy.null_basis();
+    ReducedHessian transposed;
+    if (!potential) transposed.factor(reduced.transpose(), w.dense.noise(), false);
+    out.null_eigenvalues =
+        count_null_eigenvalues(velocity, potential ? null_basis : transposed.null_basis(), null_basis);
+  }
   std::vector<Complex> moving = *out.eigenvalues;
   std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
   const double largest = moving.empty() ? 0 : std::abs(moving.back());
-  for (int i = 0; i < 2 * static_cast<int>(null_space.cols()) && !moving.empty() &&
+  for (int i = 0; i < out.null_eigenvalues && !moving.empty() &&
                   std::abs(moving.front()) < tolerance::null_eigenvalue * largest;
        ++i)
     moving.erase(moving.begin());

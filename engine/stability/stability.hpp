@@ -20,6 +20,7 @@ struct Stability {
   std::optional<StabilityReason> reason;
   // 1/s, by size of the imaginary part: of the linearised motion, or Floquet's exponents.
   std::optional<std::vector<std::complex<double>>> eigenvalues;
+  int null_eigenvalues = 0; // at most as many of these, the smallest, belong to null directions
   std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
   std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
   std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists

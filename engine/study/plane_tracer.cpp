@@ -1,5 +1,6 @@
 #include "engine/study/plane_tracer.hpp"
 
+#include "engine/continuation/continuation.hpp"
 #include "engine/continuation/crossing_pair.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/solve/existence.hpp"
@@ -162,8 +163,8 @@ TracedCurve PlaneTracer::follow(ExtendedState state, Eigen::VectorXd tangent) {
       out.closed = true;
       break;
     }
-    if (far(next)) {
-      out.end = "a coordinate leaves all bounds";
+    if (out_of_reach(balance_.problem(), next.z.q)) {
+      out.end = "a coordinate or a speed leaves all bounds";
       break;
     }
     state = std::move(next);
@@ -179,17 +180,9 @@ bool PlaneTracer::one_motion(const ExtendedState& s) {
   if (type_ != PlaneCurveType::hopf) return true;
   balance_.set(s.parameters);
   const Problem p = balance_.problem();
-  const std::vector<double> phases = sample_phases(p.system, p.parameters);
+  const std::vector<double> phases = sample_phases(p.system, p.parameters, s.z.q);
   return check_existence(p, s.z.q, phases, balance_.workspace()).holds &&
          !motion_varies(p, s.z.q, phases, balance_.workspace());
-}
-
-bool PlaneTracer::far(const ExtendedState& s) const {
-  const Problem p = balance_.problem();
-  return std::ranges::any_of(p.system.links, [&](const Link& link) {
-    return link.type == LinkType::prismatic && link.q >= 0 &&
-           std::abs(s.z.q[link.q]) > 100 * p.parameters.length;
-  });
 }
 
 // Where the curve turns round in the plane: its direction there changes sign.

@@ -45,7 +45,6 @@ class PlaneTracer {
   Eigen::Vector2d position(const ExtendedState& s) const;
   bool inside(const ExtendedState& s) const;
   TracedCurve follow(ExtendedState state, Eigen::VectorXd tangent);
-  bool far(const ExtendedState& s) const;
   bool one_motion(const ExtendedState& s);
   ExtendedState cusp(const ExtendedState& state, const Eigen::VectorXd& tangent, double length);
   bool double_zero(const ExtendedState& state, const Eigen::VectorXd& tangent, double length,

@@ -493,3 +493,26 @@ TEST_CASE("what feels neither mass nor spring nor damper has no eigenvalue") {
     if (damped) CHECK(std::abs(settles + 3) < 1e-9);
   }
 }
+
+// The null direction of a damped slide has one eigenvalue zero; what comes next in size is a motion's own,
+// however stiff something else is.
+TEST_CASE("a free slide with a damper hides no slow motion that grows") {
+  constexpr double height = 0.4; // m
+  for (const double damping : {0., 8.})
+    for (const double stiffness : {1e2, 1e12}) {
+      Mechanism m;
+      m.gravity = {0, -standard_gravity, 0};
+      m.bodies = {body("carriage", 1, {1, 0, 0}), body("bob", 1, {0, height, 0}),
+                  body("block", 1, {2, 0, 0})};
+      m.joints = {prismatic("slide", "ground", "carriage", {1, 0, 0}, {0, 0, 1}),
+                  revolute("hinge", "ground", "bob", {0, 0, 0}, {0, 0, 1}),
+                  sprung(prismatic("stiff", "ground", "block", {2, 0, 0}, {1, 0, 0}), stiffness)};
+      m.joints[0].coordinates[0].damping = damping;
+      const Solution s = solve(m, nearest());
+      CAPTURE(damping, stiffness, s.message);
+      REQUIRE(s.status == Status::converged);
+      CHECK(s.stable == false);
+      const double rate = std::sqrt(standard_gravity / height), omega = std::sqrt(stiffness);
+      check_eigenvalues(s, {rate, -rate, 0, -damping, {0, omega}, {0, -omega}}, 1e-6);
+    }
+}
