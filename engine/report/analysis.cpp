@@ -16,6 +16,7 @@
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/search/phase_search.hpp"
 #include "engine/search/steady_state.hpp"
+#include "engine/search/turned_rates.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/sensitivity.hpp"
 #include "engine/stability/linear_motion.hpp"
@@ -26,6 +27,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -137,12 +139,14 @@ struct Analysis::State {
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
   bool turned = false;  // what turns at found speeds stands otherwise than drawn in `parameters`
+  AngleTies ties;       // of such
   // Of the last solve's answer where that rests on dry friction: it is not among the states of this system.
   std::optional<Analysis> on_friction;
 
   // How the steady state moves with the sliders' numbers.
   void add_rates(const Problem& problem, Solution& out) {
     if (mechanism->sliders.empty() || system.nv == 0) return;
+    if (turned) return add_turned_rates(problem, out);
     std::vector<std::string> addresses;
     for (const Slider& slider : mechanism->sliders)
       addresses.push_back(slider.parameter);
@@ -159,6 +163,46 @@ struct Analysis::State {
       const auto rate = along.col(static_cast<Eigen::Index>(i));
       out.sensitivities.back().measures.assign(rate.begin(), rate.end());
     }
+  }
+
+  // The same where it stands turned; of measures by central differences along it.
+  void add_turned_rates(const Problem& problem, Solution& out) {
+    for (const Slider& slider : mechanism->sliders) {
+      Mechanism varied = *mechanism;
+      VariedNumbers number(varied, {&slider.parameter, 1});
+      const std::vector<TurnedRate> rates =
+          turned_rates(problem, steady.found.z, ties, varied, number, steady.elsewhere());
+      if (rates.empty() || rates[0].q.size() == 0) continue; // none that is finite
+      out.sensitivities.push_back(name_rates(system, slider.parameter, rates[0].q));
+      if (measures.empty()) continue;
+      const double value = number.values()[0], step = 1e-5 * (value != 0 ? std::abs(value) : 1);
+      Eigen::VectorXd along = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(measures.size()));
+      try {
+        for (const double by : {step, -step}) {
+          const double there = value + by;
+          number.set({&there, 1});
+          along += measures_beside(varied, by, rates[0]) / (2 * by);
+        }
+      } catch (const SceneError&) { // expressions make no mechanism of it
+        along.setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
+      measures.bind(*mechanism, system, parameters);
+      out.sensitivities.back().measures.assign(along.begin(), along.end());
+    }
+  }
+
+  // Of a mechanism of which a number is `by` further, at the steady state by its rates.
+  Eigen::VectorXd measures_beside(const Mechanism& varied, double by, const TurnedRate& rate) {
+    Parameters beside;
+    bind(system, varied, beside);
+    for (std::size_t l = 0; l < system.links.size(); ++l)
+      if (finds_speed(system.links[l]))
+        beside.links[l].start = parameters.links[l].start + by * rate.starts[static_cast<Eigen::Index>(l)];
+    Eigen::VectorXd q = steady.found.z.q;
+    const Eigen::VectorXd moved = by * rate.q;
+    retract<double>(system, moved, q);
+    measures.bind(varied, system, beside);
+    return measures.evaluate_at({system, beside, scaling}, q, steady.elsewhere());
   }
 
   // Looks for a steady state at other angles of what turns at found speeds, a stable one before others, which
@@ -181,7 +225,7 @@ struct Analysis::State {
       there.start = start;
       there.stability.reset();
       there.others.reset();
-      there.phases = sample_phases(system, parameters);
+      there.phases = sample_phases(system, parameters, state.z.q);
       there.error = {};
       there.error.solution = state.error;
       there.error.data = there.error.undetermined = Eigen::VectorXd::Zero(state.error.size());
@@ -201,9 +245,10 @@ struct Analysis::State {
       if (stable) break;
     }
     turned = taken != nullptr;
-    if (turned)
+    if (turned) {
       stand(*taken, steady);
-    else
+      ties = taken->ties;
+    } else
       turn(as_drawn);
   }
 
@@ -398,7 +443,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   if (open && stability.reason != StabilityReason::neutral) leave_verdict_open(steady, stability);
   if (options.details) {
     add_condition(problem, steady, out);
-    if (!s.turned) s.add_rates(problem, out); // those angles move, too
+    s.add_rates(problem, out);
   }
   leave_out_modes(steady.error, stability, out);
   report_progress(options.progress, "reactions");

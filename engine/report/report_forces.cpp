@@ -146,7 +146,7 @@ class ForceReport {
       : mechanism_(mechanism), problem_(problem), q_(z.q), system_(problem.system), p_(problem.parameters),
         drawn_(snapshot(problem, z.lambda, w)), touched_(find_touched(problem, drawn_.forces, z, w)),
         size_(size_of(drawn_.forces, p_.length)), loads_(loads_on(problem, w.kinematics)) {
-    for (double t : sample_phases(system_, p_))
+    for (double t : sample_phases(system_, p_, z.q))
       others_.push_back(snapshot(problem, with_reported_multipliers(problem, z.q, t, w).lambda, w));
   }
 

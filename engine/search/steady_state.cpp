@@ -49,9 +49,9 @@ struct AnswerSearch {
 };
 
 // Of the equilibria that a bounded search of `seconds` (see SearchOptions) finds, the one that holds at all
-// `phases`, is stable if any is, and lies nearest to `start`. `problem` must be dense.
-AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
-                           const std::vector<double>& phases, double seconds, Workspace& w) {
+// phases, is stable if any is, and lies nearest to `start`. `problem` must be dense.
+AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start, double seconds,
+                           Workspace& w) {
   SearchOptions options;
   options.seconds = seconds;
   EquilibriumList list = find_all_equilibria(problem, start, options, w);
@@ -67,9 +67,11 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
     double distance;
   };
   std::vector<Steady> steady;
-  for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i)
-    if (check_existence(problem, list.states[i].q, phases, w).holds)
-      steady.push_back({i, squared_distance(problem, list.states[i].q, start)});
+  for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
+    const Eigen::VectorXd& q = list.states[i].q;
+    if (check_existence(problem, q, sample_phases(problem.system, problem.parameters, q), w).holds)
+      steady.push_back({i, squared_distance(problem, q, start)});
+  }
   out.others.steady = static_cast<int>(steady.size());
   std::ranges::stable_sort(steady, {}, &Steady::distance);
   constexpr std::size_t classified = 16; // the nearest
@@ -147,7 +149,7 @@ void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from,
     start = drawn;
     find_equilibrium(problem, start, options.nearest, false, balance_, history, found, options.newton_only);
   }
-  phases = sample_phases(problem.system, problem.parameters);
+  phases = sample_phases(problem.system, problem.parameters, found.z.q);
   if (found.status == Status::converged) {
     keep_where_started(problem);
     refine_found(problem);
@@ -188,7 +190,7 @@ void SteadyState::keep_where_started(const Problem& problem) {
 
 void SteadyState::complete(const Problem& problem) {
   still_.clear();
-  phases = sample_phases(problem.system, problem.parameters);
+  phases = sample_phases(problem.system, problem.parameters, found.z.q);
   factor_at(problem, found.z, balance_);
   history.push_back(scaled_residual(problem, balance_));
   refine_found(problem);
@@ -274,7 +276,7 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
   if (!(options.seconds > 0) || problem.system.nv > largest_for_answer_search) return;
   constexpr double at_most = 0.3; // of what a search costs: an unstable state is an answer, too
   const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  AnswerSearch other = search_answer(dense, start, phases, std::min(options.seconds, at_most), w);
+  AnswerSearch other = search_answer(dense, start, std::min(options.seconds, at_most), w);
   if (!other.answer || problem.cancelled()) return;
   other.answer->candidates = other.others.steady;
   take(std::move(*other.answer));
@@ -322,7 +324,7 @@ void SteadyState::search_another(const Problem& problem, const Eigen::VectorXd& 
   others.emplace();
   if (!(seconds > 0) || problem.system.nv > largest_for_answer_search) return;
   const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  AnswerSearch other = search_answer(dense, start, phases, seconds, balance_.elsewhere());
+  AnswerSearch other = search_answer(dense, start, seconds, balance_.elsewhere());
   others = other.others;
   if (!other.answer) return;
   Answer first = replace(problem, std::move(*other.answer));

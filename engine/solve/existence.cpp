@@ -1,10 +1,10 @@
 #include "engine/solve/existence.hpp"
 
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/implied_rates.hpp"
 #include "engine/system/kept_momentum.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace flyball {
 namespace {
@@ -35,31 +35,21 @@ void judge_momenta(const Problem& problem, const Eigen::VectorXd& q, double t, W
 
 } // namespace
 
-std::vector<double> sample_phases(const System& system, const Parameters& p) {
-  std::vector<double> phases;
-  if (p.phase_free) return phases;
-  std::vector<double> rates; // phases advance by about a radian, or a third of the reach
-  for (const DrivenCoordinate& d : system.drives) {
-    double speed = std::abs(p.links[static_cast<std::size_t>(d.link)].speed);
-    if (speed == 0 && !finds_speed(system.links[static_cast<std::size_t>(d.link)])) continue;
-    if (speed == 0) speed = 1; // found from rest: any will do
-    const bool turns = system.links[static_cast<std::size_t>(d.link)].type == LinkType::revolute;
-    const double rate = turns ? speed : 3 * speed / p.length;
-    if (std::ranges::none_of(rates, [&](double r) { return std::abs(r - rate) < 1e-6 * rate; }))
-      rates.push_back(rate);
-  }
-  if (rates.size() > 4) rates.resize(4);
-  for (double rate : rates)
-    for (double angle : std::array{1.0, 2.3, 3.9, 5.2})
-      phases.push_back(angle / rate);
-  return phases;
+std::vector<double> sample_phases(const System& system, const Parameters& p, const Eigen::VectorXd& q) {
+  if (p.phase_free) return {};
+  return phase_times(drive_rates(system, p, q));
 }
 
 Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
                           Workspace& w) {
   Existence result;
   if (keeps_momentum(problem.system)) judge_momenta(problem, q, 0, w, result);
+  if (phases.empty()) return result;
+  const std::vector<DriveRate> rates = drive_rates(problem.system, problem.parameters, q);
   for (double t : phases) {
+    // What rounding makes of angles after many turns.
+    const double rounding = std::max(0., 4 * angle_rounding(rates, t) - tolerance::phase_rounding);
+    const double least = tolerance::phase_balance + rounding;
     evaluate_phase(problem, q, t, w);
     set_closures(problem.system, problem.parameters, q, w.kinematics, w.residual.phi);
     for (std::size_t c = 0; c < problem.system.cuts.size(); ++c) {
@@ -67,16 +57,16 @@ Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, cons
       for (std::size_t r = 0; r < cut.rows.size(); ++r) {
         const auto row = static_cast<Eigen::Index>(cut.first_row) + static_cast<Eigen::Index>(r);
         const double open = std::abs(w.residual.phi[row]) * problem.scaling.row[row];
-        result.left = std::max(result.left, open);
-        if (open <= tolerance::phase_balance || (result.loops_open && open <= result.violation)) continue;
+        result.left = std::max(result.left, open - rounding);
+        if (open <= least || (result.loops_open && open <= result.violation)) continue;
         result = {false, true, t, open, static_cast<int>(c), result.left};
       }
     }
     if (result.loops_open) continue;
     w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
     const auto judge = [&](double left, double size) {
-      if (left > 0) result.left = std::max(result.left, left / size);
-      if (left > tolerance::phase_balance * size && left / size > result.violation)
+      if (left > 0) result.left = std::max(result.left, left / size - rounding);
+      if (left > least * size && left / size > result.violation)
         result = {false, false, t, left / size, -1, result.left};
     };
     if (problem.system.rows > 0) { // with the multipliers that do best

@@ -15,9 +15,10 @@ struct Existence {
   int pushed = -1;         // in System::torques: a drive left to itself on which something acts
 };
 
-// Times (s) along q_D(t) at which to look: for each drive several turns at angles where no low harmonic
-// vanishes together. Empty where the mechanism's shape alone makes every phase alike.
-std::vector<double> sample_phases(const System& system, const Parameters& parameters);
+// Times (s) along q_D(t) at which to look at the state q: phase_times(). Empty where the mechanism's shape
+// alone makes every phase alike.
+std::vector<double> sample_phases(const System& system, const Parameters& parameters,
+                                  const Eigen::VectorXd& q);
 
 // At each phase Phi must vanish and the force balance must lie in the range of Phi_q^T, and nothing may act
 // along the coordinates of drives left to themselves.

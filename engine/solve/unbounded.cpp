@@ -101,7 +101,7 @@ class Search {
 
   // Whether what pushes at the start does not, or the other way, at another phase of the drives.
   bool turns_with_drives() {
-    const std::vector<double> phases = sample_phases(p_.system, p_.parameters);
+    const std::vector<double> phases = sample_phases(p_.system, p_.parameters, start_);
     return std::ranges::any_of(pushed_, [&](const Pushed& pushed) {
       const double first = slope(pushed.v, 0);
       return std::ranges::any_of(phases, [&](double t) { return !(slope(pushed.v, 0, t) * first > 0); });

@@ -229,7 +229,8 @@ Followed follow_random(const ref::RandomOptions& options, std::uint32_t seeds, K
     drawn_configuration(problem.system, problem.parameters, start);
     find_equilibrium(problem, start, false, false, w, history, found);
     if (found.status != Status::converged ||
-        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters), w).holds)
+        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q), w)
+             .holds)
       continue;
     evaluate(problem, found.z, 0, w);
     factor(problem, found.z, w);
