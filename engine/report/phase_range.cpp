@@ -113,7 +113,8 @@ std::size_t best_point(const Grid& grid, Eigen::Index motor, double sign) {
 
 } // namespace
 
-std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& p) {
+std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& p,
+                                                    const Eigen::VectorXd& q) {
   struct Group {
     std::vector<int> drives;
     std::vector<double> speeds; // rad/s
@@ -122,9 +123,10 @@ std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const 
   std::vector<Group> groups;
   for (int d = 0; d < static_cast<int>(system.drives.size()); ++d) {
     const auto l = static_cast<std::size_t>(system.drives[static_cast<std::size_t>(d)].link);
-    const double speed = p.links[l].speed;
+    const Link& link = system.links[l];
+    const double speed = finds_speed(link) ? q[link.q] : p.links[l].speed;
     if (speed == 0) continue;
-    if (system.links[l].type != LinkType::revolute) return std::nullopt;
+    if (link.type != LinkType::revolute) return std::nullopt;
     bool found = false;
     for (Group& g : groups) {
       std::vector<double> speeds = g.speeds;
@@ -151,7 +153,7 @@ std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const 
 std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,
                                                     std::span<const int> motors, Workspace& w) {
   std::vector<std::optional<PhaseRange>> out(motors.size());
-  const auto groups = phase_groups(problem.system, problem.parameters);
+  const auto groups = phase_groups(problem.system, problem.parameters, q);
   if (!groups || groups->empty() || groups->size() > 3) return out;
   Torques torques(problem, q, motors, *groups, w);
   Grid grid;

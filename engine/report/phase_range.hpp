@@ -13,12 +13,13 @@
 
 namespace flyball {
 
-// Drives (entries of System::drives) that return together, each with the whole turns it makes in a period;
-// still ones are left out. Nothing where a drive slides: it never returns.
+// Drives (entries of System::drives) that return together in a state q, each with the whole turns it makes in
+// a period; still ones are left out. Nothing where a drive slides: it never returns.
 struct PhaseGroup {
   std::vector<int> drives, turns;
 };
-std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& parameters);
+std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& parameters,
+                                                    const Eigen::VectorXd& q);
 
 // Of the torques of some motors in a steady state. Nothing where the drives never return, or have more than
 // three groups.

@@ -1,6 +1,5 @@
 // Curves in the plane of two parameters against closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
-#include "tests/engine/torque_parts.hpp"
 
 #include "engine/mechanism/error.hpp"
 #include "engine/study/fold_curve.hpp"
@@ -123,26 +122,6 @@ TEST_CASE("the governor's collar at 0.12 m over speed and stiffness agrees with 
       CHECK(std::abs(value(s, "slide") - 0.12) < 1e-12);
       CHECK(s.stable == p.stable);
     }
-}
-
-// A carriage 0.04 m from a sprung lift: its found speed of 5 m/s is no place 125 reaches away.
-TEST_CASE("a slide by a force does not end curves by its speed", "[plane]") {
-  Mechanism m;
-  m.gravity = {0, -10, 0};
-  m.bodies = {body("carriage", 1, {0, 0, 0}), body("lift", 1, {0, 0.04, 0})};
-  m.joints = {
-      torque_driven(prismatic("stage", "ground", "carriage", {0, 0, 0}, {1, 0, 0}), 4, "10 - 2 * rate"),
-      sprung(prismatic("lift", "ground", "lift", {0, 0.04, 0}, {0, 1, 0}), 1000)};
-  const PlaneCurves plane =
-      value_curves(m, {"gravity.1", -12, -8}, {"joints.lift.spring.stiffness", 500, 2000}, "lift", -0.01);
-  INFO(plane.message);
-  REQUIRE(plane.curves.size() == 1);
-  const PlaneCurve& curve = plane.curves[0];
-  CHECK(std::abs(curve.points.front().x - curve.points.back().x) == Approx(4));
-  for (const PlanePoint& p : curve.points) {
-    CHECK(p.y == Approx(-p.x / 0.01).epsilon(1e-11));
-    CHECK(p.coordinates[0].speed.value() == Approx(5).epsilon(1e-11));
-  }
 }
 
 TEST_CASE("no folds is an answer, mistakes are refused and cancelling ends", "[plane]") {

@@ -1,6 +1,7 @@
 // Steady states in which the angle of a shaft whose speed is found matters: it stands, or turns as fast as
 // another that it is tied to by a force.
 #include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
@@ -412,6 +413,58 @@ TEST_CASE("of states that stand turned a stable one is the answer, wherever it l
   };
   CHECK_THAT(at("p1") - at("p0"), WithinAbs(coordinate(s, "p1").value - coordinate(s, "p0").value, 1e-6));
   CHECK_THAT(at("p2") - at("p0"), WithinAbs(coordinate(s, "p2").value - coordinate(s, "p0").value, 1e-6));
+}
+
+TEST_CASE("rates of a state that stands turned: against differences of solves", "[phase][coupling]") {
+  enum class Tie { coupling, spring_and_given_speed };
+  const Tie tie = GENERATE(Tie::coupling, Tie::spring_and_given_speed);
+  Mechanism m = shafts(false);
+  m.parameters.push_back({"T", "", 2, "N m", {}});
+  m.joints[0].formulas[0].text = "T - 0.2 N m s * rate(p)";
+  m.joints[1].formulas[0].text = "-0.05 N m s * rate(q)";
+  std::vector<std::string> numbers{"parameters.T"};
+  if (tie == Tie::coupling) {
+    m.forces.clear();
+    m.joints.push_back(dampened(sprung(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), 10), 0.1));
+    numbers.emplace_back("joints.c.spring.stiffness");
+    numbers.emplace_back("joints.c.spring.free");
+  } else {
+    m.joints[1] = driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 6);
+    m.forces[0].damping = 3;
+    numbers.emplace_back("joints.q.drive.speed");
+    numbers.emplace_back("forces.k.stiffness");
+  }
+  m.points = {{"A", "", {0.3, 0, 0}, {}}, {"B", "", {0, 0.4, 0.5}, {}}};
+  m.measures.push_back({"apart", "", "distance(a@A, b@B)", "m"});
+  for (const std::string& number : numbers) {
+    m.sliders.emplace_back().parameter = number;
+    m.sliders.back().to = 100;
+  }
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.turned);
+  REQUIRE(s.sensitivities.size() == numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    CAPTURE(numbers[i]);
+    const double at = get_parameter(m, numbers[i]), h = 1e-4 * (at != 0 ? at : 1);
+    Solution side[2];
+    for (const int k : {0, 1}) {
+      Mechanism there = m;
+      set_parameter(there, numbers[i], at + (k == 0 ? h : -h));
+      side[k] = Analysis(there).solve();
+      REQUIRE(side[k].status == Status::converged);
+    }
+    CHECK_THAT(
+        s.sensitivities[i].measures.at(0),
+        WithinAbs((side[0].measures[0].value.value() - side[1].measures[0].value.value()) / (2 * h), 1e-7));
+    for (const auto& rate : s.sensitivities[i].rates) {
+      CAPTURE(rate.joint);
+      const CoordinateSolution &a = coordinate(side[0], rate.joint), &b = coordinate(side[1], rate.joint);
+      const double difference = a.speed ? *a.speed - *b.speed : a.value - b.value;
+      CHECK_THAT(rate.value, WithinAbs(difference / (2 * h), 1e-6));
+    }
+  }
 }
 
 TEST_CASE("what follows a steady state says that one that stands turned is not followed",

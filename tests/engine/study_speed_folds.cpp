@@ -1,7 +1,9 @@
 // Branches along which a speed that is found grows far beyond where its search begins.
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/study/fold_curve.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
 
 #include <cmath>
@@ -42,4 +44,24 @@ TEST_CASE("a torque against a load that falls and rises with speed has two folds
   CHECK(d.branches[0].points.size() < 1000);
   CHECK(d.branches[0].points.front().parameter == 0.1);
   CHECK(d.branches[0].points.back().parameter == 3); // though a step is long there
+}
+
+// A carriage 0.04 m from a sprung lift: its found speed of 5 m/s is no place 125 reaches away.
+TEST_CASE("a slide by a force does not end curves by its speed", "[plane]") {
+  Mechanism m;
+  m.gravity = {0, -10, 0};
+  m.bodies = {body("carriage", 1, {0, 0, 0}), body("lift", 1, {0, 0.04, 0})};
+  m.joints = {torque_driven(prismatic("stage", "ground", "carriage", {0, 0, 0}, {1, 0, 0}), 4,
+                            "10 N - 2 N s/m*rate(stage)"),
+              sprung(prismatic("lift", "ground", "lift", {0, 0.04, 0}, {0, 1, 0}), 1000)};
+  const PlaneCurves plane =
+      value_curves(m, {"gravity.1", -12, -8}, {"joints.lift.spring.stiffness", 500, 2000}, "lift", -0.01);
+  INFO(plane.message);
+  REQUIRE(plane.curves.size() == 1);
+  const PlaneCurve& curve = plane.curves[0];
+  CHECK(std::abs(curve.points.front().x - curve.points.back().x) == Approx(4));
+  for (const PlanePoint& p : curve.points) {
+    CHECK(p.y == Approx(-p.x / 0.01).epsilon(1e-11));
+    CHECK(p.coordinates[0].speed.value() == Approx(5).epsilon(1e-11));
+  }
 }

@@ -390,3 +390,31 @@ TEST_CASE("random mechanisms with three coupled drives end where solving says", 
   CAPTURE(followed);
   CHECK(followed > 40);
 }
+
+// A shaft with an eccentric mass across gravity, prescribed, and one by torque that a spring ties to it: they
+// turn together, wherever the search for the second one's speed begins.
+TEST_CASE("the torque of a drive that another goes along with ranges over a turn of both", "[torque]") {
+  const double guess = GENERATE(8., 10.);
+  const double mass = 2, eccentricity = 0.05;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("a", mass, {eccentricity, 0, 0}, {0.1, 0.1, 0.1}),
+              body("b", 1, {0, 0, 0.5}, {0.1, 0.1, 0.1})};
+  m.joints = {driven(revolute("p", "ground", "a", {0, 0, 0}, {0, 0, 1}), 10),
+              torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), guess,
+                            "5 N m - 0.4 N m s * rate(q)")};
+  m.forces = {point_spring("tie", "a", "b", {0.1, 0, 0.25}, {0.1, 0, 0.25}, 2000, 0)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  CAPTURE(guess, s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "q"), WithinRel(10, 1e-12));
+  const auto torque = std::ranges::find(s.drive_torques, "p", &DriveTorque::joint);
+  REQUIRE(torque != s.drive_torques.end());
+  REQUIRE(torque->varying);
+  REQUIRE(torque->range.has_value());
+  const double weight = mass * standard_gravity * eccentricity;
+  CHECK_THAT(torque->range->mean, WithinRel(-1, 1e-9));
+  CHECK_THAT(torque->range->least, WithinRel(-1 - weight, 1e-9));
+  CHECK_THAT(torque->range->most, WithinRel(-1 + weight, 1e-9));
+}
