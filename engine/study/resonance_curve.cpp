@@ -131,7 +131,8 @@ class Curve {
       const PeriodicRange *a = before.range_of(span.kind, span.name),
                           *b = here.range_of(span.kind, span.name), *c = after.range_of(span.kind, span.name);
       const double height = span.range.most - span.range.least;
-      if (!a || !b || !c || !(height > 100 * std::max(span.range.error, 1e-12))) continue;
+      const double rounding = 1e-12 * std::max(std::abs(span.range.most), std::abs(span.range.least));
+      if (!a || !b || !c || !(height > 100 * std::max(span.range.error, rounding))) continue;
       for (const auto value : {&PeriodicRange::mean, &PeriodicRange::least, &PeriodicRange::most})
         if (const double off = std::abs(a->*value + part * (c->*value - a->*value) - b->*value) / height;
             std::isfinite(off))
