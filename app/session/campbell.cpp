@@ -4,48 +4,39 @@
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
-
-constexpr double turn = 2 * std::numbers::pi;
 
 struct State {
   double speed = 0;
   std::vector<CoordinateSolution> coordinates;
 };
 
-// How far the branch passes by the state at its speed: the largest difference of a coordinate (rad, m).
+// How far (scaled) the branch passes by the state at its speed.
 double distance(const ResponseBranch& branch, const State& state) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < branch.points.size(); ++i) {
     const ResponsePoint &a = branch.points[i - 1], &b = branch.points[i];
     const double span = b.parameter - a.parameter;
-    double part = span == 0 ? 0 : (state.speed - a.parameter) / span;
+    const double part = span == 0 ? 0 : (state.speed - a.parameter) / span;
     if (part < -1e-6 || part > 1 + 1e-6) continue;
-    part = std::clamp(part, 0., 1.);
-    double most = 0;
-    for (std::size_t c = 0; c < state.coordinates.size() && c < a.coordinates.size(); ++c) {
-      if (state.coordinates[c].driven) continue;
-      const double from = a.coordinates[c].value;
-      double apart = from + part * (b.coordinates[c].value - from) - state.coordinates[c].value;
-      if (state.coordinates[c].angle) apart = std::remainder(apart, turn);
-      most = std::max(most, std::abs(apart));
-    }
-    least = std::min(least, most);
+    least = std::min(
+        least, scaled_distance(coordinates_between(a.coordinates, b.coordinates, std::clamp(part, 0., 1.)),
+                               state.coordinates));
   }
   return least;
 }
 
 // The branch that the state lies on, between whose points it may be off by a little.
 std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& branches, const State& state) {
-  constexpr double near = 0.03; // rad, m
+  constexpr double near = 0.03; // scaled
   std::optional<std::size_t> best;
   double least = near;
   for (std::size_t b = 0; b < branches.size(); ++b)

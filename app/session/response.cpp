@@ -6,11 +6,11 @@
 #include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
+#include "engine/solve/solution_difference.hpp"
 #include "engine/study/friction_branches.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace flyball {
 
@@ -135,28 +135,15 @@ void choose_first_quantity(Session& session) {
 
 // Whether coordinates are the same but for the straight lines that join a curve's points.
 bool near(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b) {
-  constexpr double tolerance = 2e-3; // rad, m
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].driven) continue;
-    double apart = a[i].value - b[i].value;
-    if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);
-    if (std::abs(apart) > tolerance) return false;
-  }
-  return true;
+  constexpr double tolerance = 2e-3; // scaled
+  return scaled_distance(a, b) <= tolerance;
 }
 
-// Between two points of a line; angles by the short way.
+// Between two points of a line.
 ResponsePoint between(const ResponsePoint& a, const ResponsePoint& b, double part) {
   ResponsePoint out = part < 0.5 ? a : b;
   out.parameter = a.parameter + part * (b.parameter - a.parameter);
-  for (std::size_t i = 0; i < out.coordinates.size() && i < a.coordinates.size() && i < b.coordinates.size();
-       ++i) {
-    double step = b.coordinates[i].value - a.coordinates[i].value;
-    if (a.coordinates[i].angle && std::abs(step) > std::numbers::pi)
-      step = std::remainder(step, 2 * std::numbers::pi);
-    out.coordinates[i].value = a.coordinates[i].value + part * step;
-  }
+  out.coordinates = coordinates_between(a.coordinates, b.coordinates, part);
   return out;
 }
 

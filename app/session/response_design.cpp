@@ -6,6 +6,7 @@
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,17 +15,6 @@
 namespace flyball {
 
 namespace {
-
-// How far a state is from the present one (rad and m, added up).
-double away(const Session& session, const ResponsePoint& point) {
-  const std::vector<CoordinateSolution>& now = session.answer.solution.coordinates;
-  double sum = 0;
-  for (std::size_t i = 0; i < now.size() && i < point.coordinates.size(); ++i) {
-    const double apart = point.coordinates[i].value - now[i].value;
-    if (!now[i].driven) sum += std::abs(now[i].angle ? std::remainder(apart, 2 * std::numbers::pi) : apart);
-  }
-  return sum;
-}
 
 // What the drive gives by a law, or else all that it gives.
 void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector<DesignGoal>& goals) {
@@ -152,7 +142,8 @@ void take_design(Session& session) {
   if (!answer.found) return;
   // Stable states first, then those that are like the present one.
   std::ranges::stable_sort(answer.found->result.solutions, {}, [&](const DesignSolution& s) {
-    return std::pair(s.at.stable != true, away(session, s.at));
+    return std::pair(s.at.stable != true,
+                     scaled_distance(s.at.coordinates, session.answer.solution.coordinates));
   });
 }
 

@@ -1,23 +1,18 @@
 // A diagram's branches with their special points in their places.
 #include "app/session/response.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace flyball {
 
 namespace {
 
-// How far apart two points look: the parameter over `range`, coordinates in radians and metres.
+// How far apart two points look: the parameter over `range`, coordinates scaled.
 double distance(const ResponsePoint& a, const ResponsePoint& b, double range) {
-  double square = std::pow((a.parameter - b.parameter) / range, 2);
-  for (std::size_t i = 0; i < a.coordinates.size() && i < b.coordinates.size(); ++i) {
-    double step = a.coordinates[i].value - b.coordinates[i].value;
-    if (a.coordinates[i].angle) step = std::remainder(step, 2 * std::numbers::pi);
-    square += step * step;
-  }
-  return std::sqrt(square);
+  return std::sqrt(std::pow((a.parameter - b.parameter) / range, 2) +
+                   squared_distance(a.coordinates, b.coordinates));
 }
 
 // Where a special point belongs in its branch: the gap that it lengthens least. 0: before all points, or at

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/text.hpp"
 #include "engine/periodic/limit_cycle.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -57,10 +58,8 @@ bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<Coor
           1e-6 * std::abs(*a[i].speed) + 10 * (a[i].speed_error + b[i].speed_error)))
       return false;
     if (a[i].driven || std::ranges::find(neutral, a[i].joint) != neutral.end()) continue;
-    double apart = a[i].value - b[i].value;
-    if (a[i].angle) apart = std::remainder(apart, 2 * std::numbers::pi);
-    const double rounding = 1e-6 * (a[i].angle ? 1 : std::max(1e-3, std::abs(a[i].value)));
-    if (!(std::abs(apart) <= rounding + 10 * (a[i].error + b[i].error))) return false;
+    if (!(std::abs(value_difference(a[i], b[i])) <= 1e-6 + 10 * (a[i].error + b[i].error) / a[i].scale))
+      return false;
   }
   return true;
 }

@@ -75,6 +75,7 @@ struct JointDraft {
   std::string named{};                // the named point there
   std::array<std::string, 2> bodies;  // parent, child
   std::array<std::string, 2> guessed; // the same, before the person chose: the card keeps clear of these
+  double away = 0;                    // m, of the point from what was guessed; 0 where it is on it
   Vec3 axis = Vec3::UnitZ(), axis2 = Vec3::UnitX();
   bool bodies_chosen = false, axis_chosen = false, axis2_chosen = false; // by the person
   bool picking_axis = false;                                             // by two points
@@ -96,10 +97,12 @@ struct ToolCaches {
   std::uint64_t aim_revision = 0;
   Vec2 aim_cursor = Vec2::Zero();
   ViewCamera aim_camera;
+  ViewSize aim_size;
   bool aim_snaps = false;
   Aim aim;
   std::shared_ptr<const ViewScene> hover_scene; // for which ViewState::hovered was found
   ViewCamera hover_camera;                      // likewise
+  ViewSize hover_size;                          // likewise
 };
 
 struct ToolState {

@@ -14,6 +14,7 @@ using Mat4 = Eigen::Matrix4d;
 
 struct ViewSize {
   double width = 1, height = 1; // pixels
+  bool operator==(const ViewSize&) const = default;
 };
 
 struct Ray {

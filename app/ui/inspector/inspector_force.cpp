@@ -259,14 +259,16 @@ void set_form(Force& vane, VaneForm form) {
 
 // Of lift and drag.
 void coefficient_row(Session& session, Ui& ui, const Force& vane, const std::string& label,
-                     const std::string& key, const std::optional<double>& coefficient, const char* help) {
+                     const std::string& key, const std::optional<double>& coefficient, const Formula* law,
+                     const char* help) {
   if (!coefficient) return; // zero, as the file leaves it out
   quantity_row(session, ui, label,
                {.name = "inspector/" + key,
                 .value = *coefficient,
                 .unit = "",
                 .help = help,
-                .address = address_of(vane, key)});
+                .address = address_of(vane, key),
+                .various = law_text(law)});
 }
 
 void vane_rows(Session& session, Ui& ui, const Force& vane) {
@@ -298,11 +300,11 @@ void vane_rows(Session& session, Ui& ui, const Force& vane) {
                  .address = address_of(vane, "chord")});
   if (has_polar(vane)) {
     coefficient_row(
-        session, ui, vane, "Lift coefficient", "lift", vane.lift,
+        session, ui, vane, "Lift coefficient", "lift", vane.lift, lift_law(vane),
         "Of the force square to the flow: an expression of the incidence, the angle from the chord "
         "to the flow towards the normal, such as =table(incidence, [-180 deg, 0], [-90 deg, 0], "
         "[-12 deg, -1.1], [12 deg, 1.1], [90 deg, 0], [180 deg, 0]).");
-    coefficient_row(session, ui, vane, "Drag coefficient", "drag", vane.drag,
+    coefficient_row(session, ui, vane, "Drag coefficient", "drag", vane.drag, drag_law(vane),
                     "Of the force along the flow, such as =0.01 + 1.2*sin(incidence)^2; zero or more.");
     return;
   }

@@ -157,11 +157,13 @@ const Aim& aim_at(const ViewContext& context, const ViewInput& input) {
   ToolCaches& cache = context.tool.caches;
   const std::uint64_t revision = context.session.document.revision();
   if (cache.aim_revision != revision || cache.aim_cursor != input.cursor ||
-      cache.aim_camera != input.camera || cache.aim_snaps != snaps(context.tool, input)) {
+      cache.aim_camera != input.camera || cache.aim_size != input.size ||
+      cache.aim_snaps != snaps(context.tool, input)) {
     cache.aim = find_aim(context, input);
     cache.aim_revision = revision;
     cache.aim_cursor = input.cursor;
     cache.aim_camera = input.camera;
+    cache.aim_size = input.size;
     cache.aim_snaps = snaps(context.tool, input);
   }
   return cache.aim;

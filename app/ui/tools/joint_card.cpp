@@ -113,6 +113,17 @@ void body_rows(Session& session, Ui& ui, ToolState& tool) {
   help_on_hover("Swap the two.");
 }
 
+// A point beside both bodies is rarely what was meant.
+void away_note(const Session& session, Ui& ui, const JointDraft& draft) {
+  if (draft.away <= 0 || draft.bodies != draft.guessed) return;
+  const ShownUnit unit = shown_unit("m", session.units);
+  const std::string& body = draft.guessed[1];
+  paragraph("The point is on no body: " + body + " is " + short_text(unit.shown(draft.away), 3) + " " +
+                unit.text + " away.",
+            colors_of(ui).warn);
+  note_widget(ui.widgets, "tools/away");
+}
+
 void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
   JointDraft& draft = *tool.joint;
   const float gap = 4 * ui.scale, width = (ImGui::GetContentRegionAvail().x - gap) / 2;
@@ -269,6 +280,7 @@ void joint_card(const ViewContext& context, const ViewInput& input) {
   ImGui::PopStyleVar(2);
   heading(context.ui, bearing ? "Bearing" : "Join");
   body_rows(context.session, context.ui, context.tool);
+  away_note(context.session, context.ui, *context.tool.joint);
   ImGui::Dummy({0, s});
   if (!bearing) type_rows(context.session, context.ui, context.tool, input);
   if (bearing || has_axis(context.tool.joint_type))

@@ -90,10 +90,12 @@ bool parallel(const Vec3& a, const Vec3& b) {
   return a.cross(b).norm() < 1e-9;
 }
 
-// Its centre line, with the greatest coordinate positive; nothing for other bodies.
-std::optional<Vec3> rod_axis(const Body& body) {
+// Its centre line, with the greatest coordinate positive; nothing for other bodies. A disc is no `slender`
+// one.
+std::optional<Vec3> rod_axis(const Body& body, bool slender = false) {
   for (const Shape& shape : body.shapes) {
     if (shape.type != ShapeType::cylinder && shape.type != ShapeType::capsule) continue;
+    if (slender && (shape.to - shape.from).norm() < 4 * shape.radius) continue;
     Vec3 axis = (shape.to - shape.from).stableNormalized();
     Vec3::Index largest = 0;
     if (!(axis.cwiseAbs().maxCoeff(&largest) > 0)) continue;
@@ -158,7 +160,11 @@ Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std
   if (type != JointType::prismatic && type != JointType::cylindrical) return Vec3::Unit(normal);
   for (const std::string& name : bodies)
     if (const Body* body = find_body(mechanism, name))
-      if (const auto rod = rod_axis(*body)) return *rod;
+      if (const auto rod = rod_axis(*body, true)) return *rod;
+  const Body *a = find_body(mechanism, bodies[0]), *b = find_body(mechanism, bodies[1]);
+  if (a && b && type == JointType::prismatic)
+    if (const Vec3 between = (b->position - a->position).stableNormalized(); between.norm() > 0.5)
+      return Vec3(between.array() + 0.0);
   return up_axis(mechanism).array() + 0.0;
 }
 

@@ -7,6 +7,7 @@
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/view_context.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/bodies_near.hpp"
 #include "app/viewport/snapping.hpp"
 
 #include <array>
@@ -21,6 +22,16 @@ void show_bodies(Session& session, const ToolState& tool) {
   for (const std::string& body : tool.joint->bodies)
     if (body != ground_name) selection.add({PartKind::body, body});
   select(session, std::move(selection));
+}
+
+// Of the point from the nearer body of those that were guessed (m).
+double distance_of(const ViewContext& context, const JointDraft& draft) {
+  const Mechanism& mechanism = context.session.mechanism();
+  for (const NearBody& near : bodies_near(mechanism, cached_scene(context).instances, draft.at))
+    if (const std::string& name = mechanism.bodies[static_cast<std::size_t>(near.body)].name;
+        name == draft.guessed[0] || name == draft.guessed[1])
+      return near.distance;
+  return 0;
 }
 
 void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& aim) {
@@ -38,6 +49,8 @@ void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& 
     context.session.notice = "There is nothing to join yet: place a body first.";
     return;
   }
+  draft.away = distance_of(context, draft);
+  if (draft.away <= reach) draft.away = 0;
   draft.bodies_chosen = former.bodies_chosen;
   draft.bodies = former.bodies_chosen ? former.bodies : draft.guessed;
   draft.axis_chosen = former.axis_chosen;

@@ -23,7 +23,7 @@ std::optional<Hit> part_under_cursor(const ViewContext& context, const ViewInput
 namespace {
 
 // Looking along a ray takes longest in a mechanism of thousands of bodies: only where the hand moves, or the
-// picture under it.
+// picture under it, which is another in a view of another size.
 void point_at_parts(const ViewContext& context, const ViewInput& input) {
   const bool steering = input.active && (input.moved || !input.held);
   const bool handle = context.tool.hovered != Handle::none || context.tool.hovered_point ||
@@ -36,11 +36,12 @@ void point_at_parts(const ViewContext& context, const ViewInput& input) {
   ToolCaches& cache = context.tool.caches;
   const std::shared_ptr<const ViewScene>& scene = context.view.scene.scene;
   if (input.cursor == context.view.pointed_at && cache.hover_scene == scene &&
-      cache.hover_camera == input.camera)
+      cache.hover_camera == input.camera && cache.hover_size == input.size)
     return;
   context.view.pointed_at = input.cursor;
   cache.hover_scene = scene;
   cache.hover_camera = input.camera;
+  cache.hover_size = input.size;
   const auto hit = part_under_cursor(context, input);
   context.view.hovered = hit ? hit->part : PartId{};
 }
