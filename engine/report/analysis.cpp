@@ -168,10 +168,10 @@ struct Analysis::State {
   // The same where it stands turned; of measures by central differences along it.
   void add_turned_rates(const Problem& problem, Solution& out) {
     for (const Slider& slider : mechanism->sliders) {
-      Mechanism varied = *mechanism;
-      VariedNumbers number(varied, {&slider.parameter, 1});
+      Mechanism changed = *mechanism;
+      VariedNumbers number(changed, {&slider.parameter, 1});
       const std::vector<TurnedRate> rates =
-          turned_rates(problem, steady.found.z, ties, varied, number, steady.elsewhere());
+          turned_rates(problem, steady.found.z, ties, changed, number, steady.elsewhere());
       if (rates.empty() || rates[0].q.size() == 0) continue; // none that is finite
       out.sensitivities.push_back(name_rates(system, slider.parameter, rates[0].q));
       if (measures.empty()) continue;
@@ -181,7 +181,7 @@ struct Analysis::State {
         for (const double by : {step, -step}) {
           const double there = value + by;
           number.set({&there, 1});
-          along += measures_beside(varied, by, rates[0]) / (2 * by);
+          along += measures_beside(changed, by, rates[0]) / (2 * by);
         }
       } catch (const SceneError&) { // expressions make no mechanism of it
         along.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -192,16 +192,16 @@ struct Analysis::State {
   }
 
   // Of a mechanism of which a number is `by` further, at the steady state by its rates.
-  Eigen::VectorXd measures_beside(const Mechanism& varied, double by, const TurnedRate& rate) {
+  Eigen::VectorXd measures_beside(const Mechanism& changed, double by, const TurnedRate& rate) {
     Parameters beside;
-    bind(system, varied, beside);
+    bind(system, changed, beside);
     for (std::size_t l = 0; l < system.links.size(); ++l)
       if (finds_speed(system.links[l]))
         beside.links[l].start = parameters.links[l].start + by * rate.starts[static_cast<Eigen::Index>(l)];
     Eigen::VectorXd q = steady.found.z.q;
     const Eigen::VectorXd moved = by * rate.q;
     retract<double>(system, moved, q);
-    measures.bind(varied, system, beside);
+    measures.bind(changed, system, beside);
     return measures.evaluate_at({system, beside, scaling}, q, steady.elsewhere());
   }
 
@@ -248,8 +248,9 @@ struct Analysis::State {
     if (turned) {
       stand(*taken, steady);
       ties = taken->ties;
-    } else
+    } else {
       turn(as_drawn);
+    }
   }
 
   // The angles that find_turned() found, one sentence.

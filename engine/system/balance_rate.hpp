@@ -10,10 +10,11 @@ namespace flyball {
 class BalanceRate {
  public:
   // `t` s after phase zero of the drives, which stand where they are while their speeds change. `parameters`:
-  // those of the mechanism, whose numbers have these rates.
+  // those of the mechanism, whose numbers have these rates. `starts`: how fast what turns at speeds that are
+  // found is displaced beside that, by link (rad or m; empty: not at all).
   void evaluate(const System& system, const Mechanism& mechanism, const NumberRates& rates,
                 const Parameters& parameters, const Eigen::VectorXd& q, const Eigen::VectorXd& lambda,
-                double t = 0);
+                double t = 0, const Eigen::VectorXd& starts = {});
 
   // Of forces by coordinate of q_R (N m or N) and of loops by row (m or 1; gears rad or m), per unit.
   const Eigen::VectorXd& force() const { return force_; }

@@ -434,7 +434,7 @@ TEST_CASE("rates of a state that stands turned: against differences of solves", 
     numbers.emplace_back("joints.q.drive.speed");
     numbers.emplace_back("forces.k.stiffness");
   }
-  m.points = {{"A", "", {0.3, 0, 0}, {}}, {"B", "", {0, 0.4, 0.5}, {}}};
+  m.points = {{"A", {0.3, 0, 0}}, {"B", {0, 0.4, 0.5}}};
   m.measures.push_back({"apart", "", "distance(a@A, b@B)", "m"});
   for (const std::string& number : numbers) {
     m.sliders.emplace_back().parameter = number;
