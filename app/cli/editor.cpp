@@ -316,6 +316,7 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
     throw;
   }
   if (!app.quit) tell_kept(keep_unsaved_work(app.session), *slot);
+  keep_beside_now(app.session);
   return {};
 }
 

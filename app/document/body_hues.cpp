@@ -68,8 +68,11 @@ bool same_bodies(const Mechanism& a, const Mechanism& b) {
   return std::ranges::equal(a.bodies, b.bodies, {}, &Body::name, &Body::name);
 }
 
-BodyHues choose_hues(const Mechanism& mechanism) {
+BodyHues choose_hues(const Mechanism& mechanism, const NamedHues& known) {
   BodyHues hues(mechanism.bodies.size(), none);
+  for (std::size_t i = 0; i < hues.size(); ++i)
+    if (const auto found = known.find(mechanism.bodies[i].name); found != known.end())
+      hues[i] = found->second;
   choose_missing(mechanism, hues);
   return hues;
 }

@@ -1,6 +1,7 @@
 // Which colour each body has, as a number; the theme says what it looks like. A body keeps its number through
 // every edit, whatever becomes of the others: a scene file has colours of shapes only, so the numbers are
-// chosen when a body enters the document and go with the document's steps.
+// chosen when a body enters the document and go with the document's steps. Those that a rename has made
+// others than the names ask for are kept beside the file (kept_beside.hpp).
 //
 // The number is the one that the body's name asks for (the same in every session), unless that hue is taken:
 // then the next one that is used least, and never a neighbour's while another is to be had.
@@ -9,7 +10,9 @@
 #include "engine/mechanism/mechanism.hpp"
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace flyball {
@@ -19,8 +22,10 @@ inline constexpr int body_hue_count = 6, body_shade_count = 2;
 
 using BodyHues = std::vector<std::uint8_t>; // by body
 
-// Of a mechanism that was just read.
-BodyHues choose_hues(const Mechanism& mechanism);
+using NamedHues = std::map<std::string, std::uint8_t>; // by the body's name
+
+// Of a mechanism that was just read; bodies that are known have theirs.
+BodyHues choose_hues(const Mechanism& mechanism, const NamedHues& known = {});
 // After an edit. Bodies are known by their names, one that was renamed by its place.
 BodyHues carried_hues(const Mechanism& before, const BodyHues& hues, const Mechanism& after);
 // Whether both have the same bodies by name, in the same order.

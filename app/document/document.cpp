@@ -17,13 +17,13 @@ bool is_finite(const Explored& explored) {
 
 } // namespace
 
-Document::Document(Mechanism mechanism, std::filesystem::path file)
+Document::Document(Mechanism mechanism, std::filesystem::path file, const NamedHues& hues)
     : file_(std::move(file)), saved_(std::make_shared<const Mechanism>(std::move(mechanism))) {
   steps_.push_back({.name = "Open",
                     .mechanism = saved_,
                     .selection = {},
                     .tried = saved_,
-                    .hues = std::make_shared<const BodyHues>(choose_hues(*saved_))});
+                    .hues = std::make_shared<const BodyHues>(choose_hues(*saved_, hues))});
 }
 
 // Once after every change: comparing thousands of bodies is too much for every frame.

@@ -29,8 +29,10 @@ struct Step {
 
 class Document {
  public:
-  // Nothing in it: the ease of a new drawing. `file` is empty for a document without one.
-  explicit Document(Mechanism mechanism = empty_mechanism(), std::filesystem::path file = {});
+  // Nothing in it: the ease of a new drawing. `file` is empty for a document without one; `hues` are those
+  // that its bodies are known by.
+  explicit Document(Mechanism mechanism = empty_mechanism(), std::filesystem::path file = {},
+                    const NamedHues& hues = {});
 
   // What is shown and solved: with the numbers that are explored, unless these are put aside.
   const Mechanism& mechanism() const { return *shared(); }

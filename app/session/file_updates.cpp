@@ -51,7 +51,28 @@ double next_look(const Session& session) {
   return wait;
 }
 
+// Numbers that are tried are written once the hand has paused.
+void keep_beside_later(Session& session, double seconds) {
+  constexpr double pause = 1; // s
+  constexpr double never = std::numeric_limits<double>::infinity();
+  FileState& files = session.files;
+  if (files.beside_revision != session.document.revision()) {
+    files.beside_revision = session.document.revision();
+    files.until_kept = files.beside.explored == session.document.explored() ? never : pause;
+  }
+  files.until_kept -= seconds;
+  if (files.until_kept <= 0) keep_beside_now(session);
+}
+
 } // namespace
+
+void keep_beside_now(Session& session) {
+  FileState& files = session.files;
+  files.until_kept = std::numeric_limits<double>::infinity();
+  if (files.beside.explored == session.document.explored() || is_example(session)) return;
+  files.beside.explored = session.document.explored();
+  keep_beside(session.options.state, session.document.file(), files.beside);
+}
 
 void note_unsaved_work(Session& session) {
   session.files.autosave.note(session.document, has_unsaved_work(session), session.files.watch.hash(),
@@ -65,6 +86,7 @@ std::string keep_unsaved_work(Session& session) {
 
 bool update_files(Session& session, double seconds) {
   FileState& files = session.files;
+  keep_beside_later(session, seconds);
   bool news = false;
   files.until_look = std::min(files.until_look - seconds, next_look(session));
   if (files.until_look <= 0) {
@@ -84,7 +106,7 @@ bool update_files(Session& session, double seconds) {
 }
 
 double next_file_update(const Session& session) {
-  const double autosave = session.files.autosave.due_in();
+  const double autosave = std::min(session.files.autosave.due_in(), std::max(session.files.until_kept, 0.));
   return session.document.file().empty() ? autosave
                                          : std::min(autosave, std::max(session.files.until_look, 0.));
 }

@@ -34,11 +34,46 @@ bool is_example(const Session& session) {
 }
 
 void replace_document(Session& session, Document document, std::string_view text) {
+  keep_beside_now(session);
+  session.files.beside = {};
   session.files.autosave.remove();
   session.files.conflict = session.files.save_wanted = false;
   open_document(session, std::move(document));
   session.files.watch = FileWatch(session.document.file(), text);
 }
+
+namespace {
+
+// What was tried when the file was last open stands beside it again.
+void bring_back_explored(Session& session) {
+  const Explored explored = session.files.beside.explored;
+  if (explored.empty() || is_example(session)) return;
+  const std::string step = "Explored last time";
+  if (session.mode == Mode::explore) {
+    change_parameters(session, step, explored);
+  } else {
+    try {
+      session.document.explore(step, explored);
+    } catch (const SceneError&) { // the file has become another
+    }
+  }
+  if (!session.document.explored().empty())
+    session.notice =
+        "Values that were explored last time are back: Keep makes them part of the document, Back "
+        "leaves them.";
+}
+
+// Those that the bodies' names do not ask for.
+NamedHues hues_to_keep(const Document& document) {
+  const Mechanism& stored = document.stored();
+  NamedHues named;
+  if (document.hues() == choose_hues(stored)) return named;
+  for (std::size_t i = 0; i < stored.bodies.size() && i < document.hues().size(); ++i)
+    named[stored.bodies[i].name] = document.hues()[i];
+  return named;
+}
+
+} // namespace
 
 void note_recent(Session& session, const fs::path& file) {
   if (!session.options.state.empty()) session.files.recent = add_recent_file(session.options.state, file);
@@ -50,7 +85,10 @@ void open_scene(Session& session, const fs::path& file) {
     // What comes from a pipe has no file to be saved to.
     const bool stream = file == "-" || !stamp_of(file);
     const fs::path own = stream ? fs::path() : resolved(file);
-    replace_document(session, Document(parse_scene(text), own), text);
+    KeptBeside beside = read_beside(session.options.state, own);
+    replace_document(session, Document(parse_scene(text), own, beside.hues), text);
+    session.files.beside = std::move(beside);
+    bring_back_explored(session);
   } catch (const SceneError& error) {
     session.problem = error.where() == file.string() ? error.what() : file.string() + ": " + error.what();
   }
@@ -73,6 +111,8 @@ std::string save_to(Session& session, const fs::path& file) {
   session.files.aside.clear();
   session.files.autosave.remove();
   if (!session.options.state.empty()) remove_aside(own, session.options.state);
+  session.files.beside = {session.document.explored(), hues_to_keep(session.document)};
+  keep_beside(session.options.state, own, session.files.beside);
   note_recent(session, own);
   const std::size_t tried = session.document.explored().size();
   session.notice = "Saved " + own.filename().string() +

@@ -5,10 +5,13 @@
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
 #include "app/document/file_watch.hpp"
+#include "app/document/kept_beside.hpp"
 #include "app/platform/change_watch.hpp"
 #include "app/platform/process.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,6 +29,10 @@ struct FileState {
   // The file has changed on disk, and there are unsaved edits; the person is to choose.
   bool conflict = false;
   bool save_wanted = false; // he was about to save
+
+  KeptBeside beside;                 // what is kept of the open document beside its file
+  std::uint64_t beside_revision = 0; // of the document, last looked at
+  double until_kept = std::numeric_limits<double>::infinity(); // s
 
   std::string owner = this_process(); // of autosaves
   Autosaver autosave;
@@ -61,6 +68,8 @@ void find_own_leftovers(Session& session);
 void note_unsaved_work(Session& session);
 // Writes unsaved work where the next start offers it: the program is about to end. Returns why it could not.
 std::string keep_unsaved_work(Session& session);
+// Keeps beside the open document's file what there is to keep, at once: it is left.
+void keep_beside_now(Session& session);
 // Once a frame, `seconds` after the last: autosaves what changed, and looks whether the file has changed on
 // disk. Returns whether there is anything new to show.
 bool update_files(Session& session, double seconds);
