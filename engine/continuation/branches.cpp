@@ -1,20 +1,25 @@
 #include "engine/continuation/branches.hpp"
 
 #include "engine/continuation/branch_follower.hpp"
+#include "engine/kkt/configuration_difference.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/search/all_equilibria.hpp"
 #include "engine/search/find_equilibrium.hpp"
+#include "engine/search/phase_search.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/existence.hpp"
+#include "engine/solve/solution_difference.hpp"
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace flyball {
 namespace {
@@ -129,8 +134,10 @@ class Diagram {
       const Stability none;
       out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string unit = parameter_unit(mechanism_, address_);
+      std::optional<TurnedState> turned = find_turned(problem, start);
+      if (turned && options_.turned) return follow_turned(std::move(*turned));
       const std::string why =
-          stands_turned(problem)
+          turned
               ? "The steady state stands turned against the drawn pose, and at other values otherwise: it is "
                 "not followed."
               : failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
@@ -156,14 +163,76 @@ class Diagram {
     if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
   }
 
-  // Whether solving finds a state, but with what turns at other angles than drawn (Solution::turned).
-  bool stands_turned(const Problem& problem) {
-    if (problem.system.torques.empty() || problem.cancelled()) return false;
-    SolveOptions solve;
-    solve.details = solve.friction = solve.explain = false;
-    solve.search = 0; // done
-    solve.cancel = options_.cancel;
-    return Analysis(follower_.mechanism()).solve(solve).turned;
+  // With what turns at other angles than drawn, where drives give torques.
+  std::optional<TurnedState> find_turned(const Problem& problem, const Eigen::VectorXd& start) {
+    if (problem.system.torques.empty() || problem.cancelled()) return {};
+    const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
+    return find_turned_state(dense, start, follower_.workspace());
+  }
+
+  // From value to value of the number, in steps in which little changes.
+  void follow_turned(TurnedState state) {
+    constexpr double first = 1. / 64, longest = 1. / 16, least = 1e-9; // of the range
+    const double range = to_ - from_;
+    std::vector<ResponsePoint> points;
+    std::string end = "the end of the range";
+    MeasureSet measures;
+    const auto add = [&](double value, const TurnedState& at) {
+      const Problem drawn = follower_.problem_at(value);
+      const Parameters turned = at_angles_of(drawn.parameters, at);
+      points.push_back(response_point(
+          follower_.mechanism(), {drawn.system, turned, drawn.scaling, drawn.cancel}, at.z, at.error,
+          {options_.eigenvalues, options_.reactions, &measures}, follower_.workspace()));
+      points.back().parameter = value;
+    };
+    const auto beside = [&](double value) -> std::optional<TurnedState> {
+      const Problem drawn = follower_.problem_at(value);
+      const Problem dense{drawn.system, drawn.parameters, drawn.scaling, drawn.cancel};
+      auto next = find_turned_state_beside(dense, state, follower_.workspace());
+      if (!next) return {};
+      const Parameters turned = at_angles_of(drawn.parameters, *next);
+      const std::vector<double> phases = sample_phases(drawn.system, turned, next->z.q);
+      const Problem there{drawn.system, turned, drawn.scaling, drawn.cancel};
+      if (!check_existence(there, next->z.q, phases, follower_.workspace()).holds) return {};
+      return next;
+    };
+    const auto way = [&](const TurnedState& next) {
+      const Problem problem = follower_.problem_at(points.back().parameter);
+      return std::max(scaled_difference(problem, state.z.q, next.z.q).lpNorm<Eigen::Infinity>(),
+                      (next.starts - state.starts).lpNorm<Eigen::Infinity>());
+    };
+    add(from_, state);
+    double at = from_, step = first * range;
+    while (at != to_ && static_cast<int>(points.size()) < options_.max_points) {
+      interruption_point();
+      report_progress(options_.progress, "following", (at - from_) / range);
+      const double value = std::abs(to_ - at) <= std::abs(step) ? to_ : at + step;
+      std::optional<TurnedState> next;
+      std::string why = "solving leads to no state beside it, as at a fold";
+      try {
+        next = beside(value);
+      } catch (const SceneError& error) {
+        why = std::string("beyond it no mechanism can be made: ") + error.what();
+      }
+      const double moved = next ? way(*next) : 0;
+      if (!next || moved > 4 * options_.largest_step) {
+        step /= 2;
+        if (std::abs(step) > least * std::abs(range)) continue;
+        end = why;
+        break;
+      }
+      state = std::move(*next);
+      at = value;
+      add(at, state);
+      if (moved < options_.largest_step)
+        step = std::copysign(std::min(1.5 * std::abs(step), longest * std::abs(range)), range);
+    }
+    if (at != to_ && static_cast<int>(points.size()) >= options_.max_points)
+      end = "the largest number of points";
+    out_.status = Status::converged;
+    out_.branches.push_back({std::move(points), std::move(end), {}, true});
+    out_.message = "1 branch, of states that stand turned against the drawn pose: folds, crossings and Hopf "
+                   "points were not looked for.";
   }
 
   // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.
@@ -211,10 +280,8 @@ class Diagram {
   // A branch that turns back in the crossing itself, as the bent one of a fork does, has no fold of its own.
   void drop_folds_at_crossings() {
     const auto same_place = [&](const ResponsePoint& a, const ResponsePoint& b) {
-      if (std::abs(a.parameter - b.parameter) > 1e-6 * std::abs(to_ - from_)) return false;
-      for (std::size_t i = 0; i < a.coordinates.size(); ++i)
-        if (std::abs(a.coordinates[i].value - b.coordinates[i].value) > 1e-3) return false; // rad, m
-      return true;
+      return std::abs(a.parameter - b.parameter) <= 1e-6 * std::abs(to_ - from_) &&
+             scaled_distance(a.coordinates, b.coordinates) <= 1e-3;
     };
     std::erase_if(out_.special, [&, crossings = out_.special](const SpecialPoint& fold) {
       return fold.type == SpecialPointType::fold &&

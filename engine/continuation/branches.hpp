@@ -81,6 +81,9 @@ struct BranchOptions {
   // find_all_equilibria finds at the values `all_at`, both ways, where it lies on no branch yet.
   bool all = false;
   std::vector<double> all_at; // values of the parameter; empty: both ends, and the present one where between
+  // Whether a steady state that stands turned against the drawn pose (Solution::turned) is followed: from
+  // value to value, as far as that goes, without folds, crossings and Hopf points.
+  bool turned = true;
   const std::atomic<bool>* cancel = nullptr;
   ReportProgress progress; // `part` is of the range, along the first branch; else of what is searched
   // With `all`, told what is there before the search at each value; not before there is a branch.

@@ -205,52 +205,29 @@ struct Analysis::State {
     return measures.evaluate_at({system, beside, scaling}, q, steady.elsewhere());
   }
 
-  // Looks for a steady state at other angles of what turns at found speeds, a stable one before others, which
-  // then takes the place of what does not hold.
+  // Looks for a steady state at other angles of what turns at found speeds, which then takes the place of
+  // what does not hold.
   void find_turned(const Problem& problem) {
-    const std::vector<TurnedState> states = find_turned_states(problem, start, steady.elsewhere());
-    if (states.empty()) return;
-    const auto turn = [&](const Eigen::VectorXd& starts) {
-      for (std::size_t l = 0; l < parameters.links.size(); ++l)
-        parameters.links[l].start = starts[static_cast<Eigen::Index>(l)];
-    };
-    const auto stand = [&](const TurnedState& state, SteadyState& there) {
-      turn(state.starts);
-      there.reuse();
-      there.found = {};
-      there.found.status = Status::converged;
-      there.found.z = state.z;
-      there.found.iterations = state.iterations;
-      there.history = state.history;
-      there.start = start;
-      there.stability.reset();
-      there.others.reset();
-      there.phases = sample_phases(system, parameters, state.z.q);
-      there.error = {};
-      there.error.solution = state.error;
-      there.error.data = there.error.undetermined = Eigen::VectorXd::Zero(state.error.size());
-      there.existence = check_existence(problem, state.z.q, there.phases, there.elsewhere());
-      there.holds = there.existence.holds;
-      return there.holds;
-    };
-    Eigen::VectorXd as_drawn(static_cast<Eigen::Index>(parameters.links.size()));
-    for (std::size_t l = 0; l < parameters.links.size(); ++l)
-      as_drawn[static_cast<Eigen::Index>(l)] = parameters.links[l].start;
-    const TurnedState* taken = nullptr;
-    SteadyState there;
-    for (const TurnedState& state : states) {
-      if (!stand(state, there)) continue;
-      const bool stable = stability_of(problem, there, false, 0).stable == true;
-      if (stable || !taken) taken = &state;
-      if (stable) break;
-    }
-    turned = taken != nullptr;
-    if (turned) {
-      stand(*taken, steady);
-      ties = taken->ties;
-    } else {
-      turn(as_drawn);
-    }
+    std::optional<TurnedState> state = find_turned_state(problem, start, steady.elsewhere());
+    turned = state.has_value();
+    if (!state) return;
+    parameters = at_angles_of(parameters, *state);
+    ties = std::move(state->ties);
+    steady.reuse();
+    steady.found = {};
+    steady.found.status = Status::converged;
+    steady.found.z = std::move(state->z);
+    steady.found.iterations = state->iterations;
+    steady.history = std::move(state->history);
+    steady.start = start;
+    steady.stability.reset();
+    steady.others.reset();
+    steady.phases = sample_phases(system, parameters, steady.found.z.q);
+    steady.error = {};
+    steady.error.solution = std::move(state->error);
+    steady.error.data = steady.error.undetermined = Eigen::VectorXd::Zero(system.nv);
+    steady.existence = check_existence(problem, steady.found.z.q, steady.phases, steady.elsewhere());
+    steady.holds = steady.existence.holds;
   }
 
   // The angles that find_turned() found, one sentence.

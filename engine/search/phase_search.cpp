@@ -5,6 +5,8 @@
 #include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/stability.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
@@ -427,9 +429,30 @@ bool may_stand_turned(const Problem& problem) {
 
 } // namespace
 
+Parameters at_angles_of(const Parameters& drawn, const TurnedState& state) {
+  Parameters out = drawn;
+  for (std::size_t l = 0; l < out.links.size(); ++l)
+    out.links[l].start = state.starts[static_cast<Eigen::Index>(l)];
+  return out;
+}
+
 std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
   if (!may_stand_turned(problem)) return {};
   return PhaseSearch(problem, q, w).run();
+}
+
+std::optional<TurnedState> find_turned_state(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  std::optional<TurnedState> out;
+  for (TurnedState& state : find_turned_states(problem, q, w)) {
+    const Parameters turned = at_angles_of(problem.parameters, state);
+    const Problem there{problem.system, turned, problem.scaling, problem.cancel};
+    if (!check_existence(there, state.z.q, sample_phases(problem.system, turned, state.z.q), w).holds)
+      continue;
+    const bool stable = find_stability(factor_at(there, state.z, w), false).stable == true;
+    if (stable || !out) out = std::move(state);
+    if (stable) break;
+  }
+  return out;
 }
 
 std::optional<TurnedState> find_turned_state_beside(const Problem& problem, const TurnedState& other,

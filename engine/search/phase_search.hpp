@@ -29,10 +29,16 @@ struct TurnedState {
   std::vector<double> history; // scaled residuals of these
 };
 
+// With what turns at its angles.
+Parameters at_angles_of(const Parameters& drawn, const TurnedState& state);
+
 // From q, found from several angles, each once; those that come to rest are left out. Whether they hold and
 // are stable is not looked at. Of small problems with speeds that are found.
 std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
-// The one beside another, that of numbers beside these. Nothing where Newton-Raphson from there finds none.
+// Of these one that holds at every phase, a stable one before others.
+std::optional<TurnedState> find_turned_state(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+// The one beside another, that of numbers beside these. Whether it holds is not looked at. Nothing where
+// Newton-Raphson from there finds none.
 std::optional<TurnedState> find_turned_state_beside(const Problem& problem, const TurnedState& other,
                                                     Workspace& w);
 

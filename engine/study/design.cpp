@@ -37,6 +37,7 @@ class Designer {
     }
     out_.unit = unit_of(mechanism_, system_, wanted_);
     BranchOptions follow;
+    follow.turned = false;
     follow.largest_step = options_.largest_step;
     follow.eigenvalues = false;
     follow.dense_up_to = 0;

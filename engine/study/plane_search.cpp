@@ -61,6 +61,7 @@ ReportProgress PlaneSearch::along_line() const {
 ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
   const PlaneAxis& along = moving(line);
   BranchOptions follow;
+  follow.turned = false;
   follow.largest_step = options_.largest_step;
   follow.eigenvalues = eigenvalues;
   follow.all = options_.all;

@@ -1,5 +1,6 @@
 // Steady states in which the angle of a shaft whose speed is found matters: it stands, or turns as fast as
 // another that it is tied to by a force.
+#include "engine/continuation/branches.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/scene.hpp"
@@ -483,4 +484,39 @@ TEST_CASE("what follows a steady state says that one that stands turned is not f
   const DesignAnswer wanted = design(m, number, 5, 20, "c", -0.06, {});
   CHECK(wanted.status != Status::converged);
   CHECK_THAT(wanted.message, ContainsSubstring(turned));
+}
+
+TEST_CASE("branches of states that stand turned", "[phase][coupling]") {
+  Mechanism m = shafts(false);
+  m.parameters.push_back({"T", "", 2, "N m", {}});
+  m.joints[0].formulas[0].text = "T - 0.2 N m s * rate(p)";
+  m.joints[1].formulas[0].text = "-T/3 - 0.05 N m s * rate(q)";
+  m.forces[0].free_length = 0;
+  validate(m);
+  // q gives what its spring takes up to 4.5 N m: T/3 + 0.05 (2 T / 3) / 0.25.
+  const auto taken = [](double t) { return t / 3 + 0.05 * (2 * t / 3) / 0.25; };
+  const double fold = 50 * 0.09 / taken(1);
+  const ResponseDiagram d = follow_branches(m, "parameters.T", 1, 12);
+  INFO(d.message);
+  REQUIRE(d.status == Status::converged);
+  CHECK_THAT(d.message, ContainsSubstring("turned against the drawn pose"));
+  REQUIRE(d.branches.size() == 1);
+  CHECK(d.branches[0].points.size() > 10);
+  CHECK_THAT(d.branches[0].points.back().parameter, WithinAbs(fold, 1e-5));
+  CHECK_THAT(d.branches[0].end, ContainsSubstring("as at a fold"));
+  for (const ResponsePoint& p : d.branches[0].points) {
+    CAPTURE(p.parameter);
+    const auto at = [&](std::string_view name) {
+      return *std::ranges::find(p.coordinates, name, &CoordinateSolution::joint);
+    };
+    CHECK_THAT(at("q").speed.value(), WithinRel(2 * p.parameter / 3 / 0.25, 1e-9));
+    if (p.parameter < 0.99 * fold) {
+      CHECK_THAT(at("p").value - at("q").value, WithinRel(std::asin(taken(p.parameter) / 4.5), 1e-6));
+      CHECK(p.stable == true);
+    }
+  }
+  const ResponseDiagram whole = follow_branches(m, "parameters.T", 6, 1);
+  REQUIRE(whole.branches.size() == 1);
+  CHECK(whole.branches[0].points.back().parameter == 1);
+  CHECK(whole.branches[0].end == "the end of the range");
 }
