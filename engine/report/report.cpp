@@ -6,6 +6,7 @@
 #include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report_forces.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/point_motion.hpp"
 #include "engine/system/rotation_vector.hpp"
@@ -30,12 +31,12 @@ double error_of(const System& system, const Parameters& p, const CoordinateInfo&
 // depend on their speeds.
 Kinematics<double> turning_motion(const System& system, const Parameters& p, const Eigen::VectorXd& q) {
   Parameters turning = p;
-  double fastest = 0;
-  for (const DrivenCoordinate& d : system.drives)
-    fastest = std::max(fastest, std::abs(p.links[static_cast<std::size_t>(d.link)].speed));
+  const double fastest = fastest_given_rate(system, p);
   for (const DrivenCoordinate& d : system.drives) {
-    LinkParameters& link = turning.links[static_cast<std::size_t>(d.link)];
-    if (link.speed == 0) link.speed = link.gear_ratio * (fastest > 0 ? 0.37 * fastest : 1);
+    const auto l = static_cast<std::size_t>(d.link);
+    LinkParameters& link = turning.links[l];
+    const double unit = system.links[l].type == LinkType::revolute ? 1 : p.length;
+    if (link.speed == 0) link.speed = link.gear_ratio * unit * (fastest > 0 ? 0.37 * fastest : 1);
   }
   turning.moving = !system.drives.empty();
   turning.speed_scale = 1;
@@ -118,8 +119,10 @@ std::optional<RateWithError> constant_rate(const System& system, const Parameter
   };
   RateWithError out{rate_at(q, 0), 0};
   const double fastest = fastest_drive(system, p, k);
-  for (const double turned : {0.9, 2.3, 4.1}) // rad of what turns fastest
-    if (fastest > 0 && !(std::abs(rate_at(q, turned / fastest) - out.value) <= 1e-9 * fastest * unit))
+  const std::vector<DriveRate> rates = drive_rates(system, p, q);
+  for (const double time : phase_times(rates))
+    if (!(std::abs(rate_at(q, time) - out.value) <=
+          (1e-9 + 4 * angle_rounding(rates, time)) * fastest * unit))
       return {};
   // Rates add up the speeds that are found; what the other coordinates change of them is taken as it comes.
   Eigen::VectorXd others = error;
@@ -155,6 +158,7 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
     x.index = r.index;
     x.count = r.count;
     x.angle = r.angle;
+    x.scale = r.angle ? 1 : p.length;
     if (r.cut >= 0) {
       if (!turning && !system.drives.empty() && !all_drives_turn(system, p))
         turning = turning_motion(system, p, q);
@@ -181,6 +185,7 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
     if (const Link& link = system.links[static_cast<std::size_t>(c.link)]; finds_speed(link)) {
       x.speed = q[link.q];
       x.speed_error = error[link.v];
+      x.speed_scale = found_scale(system, p, c);
     }
     out.push_back(std::move(x));
   }

@@ -4,6 +4,7 @@
 #include "engine/kkt/problem.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/implied_rates.hpp"
 #include "engine/system/kept_momentum.hpp"
 #include "engine/system/residual.hpp"
@@ -25,11 +26,21 @@ struct DrivenCuts {
 
 constexpr int few = 200; // coordinates, of which the null space costs nothing beside the rest
 
-// Whether forces along the directions that loops leave change as drives at this speed (rad/s, m/s over the
-// length) go on with all else at rest: weights are carried round, and whatever balances them does so for a
-// moment.
+// s, at which what the drives do to cuts shows: of each 0.05 rad of its turn, and of several their phases.
+std::vector<double> times_of_judging(const std::vector<DriveRate>& rates) {
+  std::vector<double> out;
+  for (const DriveRate& one : rates)
+    out.push_back(0.05 / one.rate);
+  if (rates.size() > 1)
+    for (const double time : phase_times(rates))
+      out.push_back(time);
+  return out;
+}
+
+// Whether forces along the directions that loops leave change as drives at these rates go on with all else at
+// rest: weights are carried round, and whatever balances them does so for a moment.
 bool balance_varies(const System& system, const Parameters& p, const Scaling& scaling,
-                    const Eigen::VectorXd& q, double fastest) {
+                    const Eigen::VectorXd& q, const std::vector<DriveRate>& rates) {
   const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
   Kinematics<double> k;
   Residual<double> r;
@@ -37,8 +48,10 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
   Magnitudes sizes;
   ConstraintSpace space;
   std::optional<Eigen::VectorXd> first;
-  for (const double turned : {0., 0.9, 2.3, 4.1}) {
-    forward<double>(system, p, q, turned / fastest, k);
+  std::vector<double> times = phase_times(rates);
+  times.insert(times.begin(), 0);
+  for (const double time : times) {
+    forward<double>(system, p, q, time, k);
     evaluate_residual<double>(system, p, q, lambda, k, r);
     evaluate_magnitudes(system, p, q, lambda, k, sizes);
     linearize_constraints(system, p, k, l);
@@ -47,7 +60,8 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
     Eigen::VectorXd f = basis * (basis.transpose() * r.f.cwiseProduct(scaling.column));
     if (!first)
       first = std::move(f);
-    else if ((f - *first).norm() > 1e-6 * sizes.force.cwiseProduct(scaling.column).norm())
+    else if ((f - *first).norm() >
+             (1e-6 + angle_rounding(rates, time)) * sizes.force.cwiseProduct(scaling.column).norm())
       return true;
   }
   return false;
@@ -90,13 +104,8 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism, Begin be
   Scaling scaling;
   set_scaling(system, p, scaling);
   // A drive that stands still now may be set going by a slider, and the cuts must do for that, too.
-  double fastest = 0;
-  for (const DrivenCoordinate& d : system.drives) {
-    const auto l = static_cast<std::size_t>(d.link);
-    if (p.links[l].speed == 0) p.links[l].speed = p.links[l].gear_ratio;
-    fastest = std::max(fastest, std::abs(p.links[l].speed) /
-                                    (system.links[l].type == LinkType::revolute ? 1 : p.length));
-  }
+  for (const DrivenCoordinate& d : system.drives)
+    if (LinkParameters& l = p.links[static_cast<std::size_t>(d.link)]; l.speed == 0) l.speed = l.gear_ratio;
   if (system.nv <= few)
     set_closing_rates(system, p);
   else
@@ -104,31 +113,41 @@ DrivenCuts drive_cuts(const System& system, const Mechanism& mechanism, Begin be
   Configuration<double> q;
   drawn_configuration(system, p, q);
   const Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.rows);
-  Kinematics<double> k[2];
-  Residual<double> r[2];
-  for (int i : {0, 1}) {
-    forward<double>(system, p, q, i * 0.05 / fastest, k[i]);
-    evaluate_residual<double>(system, p, q, lambda, k[i], r[i]);
-    set_closures(system, p, q, k[i], r[i].phi);
+  Kinematics<double> drawn, later;
+  Residual<double> of_drawn, of_later;
+  const auto evaluate_at = [&](double time, Kinematics<double>& k, Residual<double>& r) {
+    forward<double>(system, p, q, time, k);
+    evaluate_residual<double>(system, p, q, lambda, k, r);
+    set_closures(system, p, q, k, r.phi);
+  };
+  evaluate_at(0, drawn, of_drawn);
+  const std::vector<DriveRate> rates = drive_rates(system, p);
+  std::vector<bool> open(system.cuts.size());
+  for (const double time : times_of_judging(rates)) {
+    evaluate_at(time, later, of_later);
+    const double least = 1e-6 + 64 * angle_rounding(rates, time);
+    for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+      const CutJoint& cut = system.cuts[c];
+      const auto n = static_cast<Eigen::Index>(cut.rows.size());
+      const auto change = (of_later.phi - of_drawn.phi).cwiseProduct(scaling.row).segment(cut.first_row, n);
+      const auto relative = [&](const Kinematics<double>& k) {
+        return Mat3(k.at(cut.ends.a).R.transpose() * k.at(cut.ends.b).R);
+      };
+      if (n > 0 && change.lpNorm<Eigen::Infinity>() > least)
+        open[c] = true;
+      else if (cut.type != JointType::gear && (relative(later) - relative(drawn)).norm() > least)
+        out.turned[c] = true;
+    }
   }
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
-    const CutJoint& cut = system.cuts[c];
-    double change = 0;
-    for (int i = cut.first_row; i < cut.first_row + static_cast<int>(cut.rows.size()); ++i)
-      change = std::max(change, std::abs(r[1].phi[i] - r[0].phi[i]) * scaling.row[i]);
-    if (change > 1e-6) {
-      ++out.opened;
-      out.open.push_back(static_cast<int>(c));
-    } else if (cut.type != JointType::gear) {
-      const auto relative = [&](int i) {
-        return Mat3(k[i].at(cut.ends.a).R.transpose() * k[i].at(cut.ends.b).R);
-      };
-      out.turned[c] = (relative(1) - relative(0)).norm() > 1e-6;
-    }
+    if (!open[c]) continue;
+    ++out.opened;
+    out.open.push_back(static_cast<int>(c));
+    out.turned[c] = false;
   }
   out.varies = out.opened == 0 && system.nv <= few &&
                std::ranges::find(out.turned, true) != out.turned.end() &&
-               balance_varies(system, p, scaling, q, fastest);
+               balance_varies(system, p, scaling, q, rates);
   return out;
 }
 

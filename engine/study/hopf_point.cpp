@@ -6,8 +6,10 @@
 #include "engine/dynamics/start.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/study/lyapunov.hpp"
+#include "engine/system/drive_rates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,21 +24,18 @@ struct NoCoefficient {
 };
 
 // The motion must be the same at every phase, away from the steady state, too.
-void expect_one_motion(LocalMotion& motion, const Eigen::VectorXcd& swing, double fastest) {
+void expect_one_motion(LocalMotion& motion, const Eigen::VectorXcd& swing,
+                       const std::vector<DriveRate>& rates) {
   const Eigen::VectorXd x = 0.03 * (swing.real() + 0.7 * swing.imag());
   Eigen::VectorXd here, there;
   if (!motion.evaluate(x, here)) throw NoCoefficient{"the motion beside it cannot be evaluated"};
-  for (const double turn : {0.83, 2.31, 4.17})
-    if (!motion.evaluate(x, fastest > 0 ? turn / fastest : 0, turn, there) ||
-        !((there - here).norm() <= 1e-9 * here.norm()))
+  constexpr std::array turned{0.83, 2.31, 4.17}; // of what turns at found speeds
+  std::vector<double> times = phase_times(rates);
+  times.resize(std::max(times.size(), turned.size()), 0);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (!motion.evaluate(x, times[i], turned[i % turned.size()], there) ||
+        !((there - here).norm() <= (1e-9 + 4 * angle_rounding(rates, times[i])) * here.norm()))
       throw NoCoefficient{"the motion beside it turns with the drives"};
-}
-
-double fastest_of(const MotionModel& model) {
-  double fastest = 0;
-  for (const DrivenCoordinate& drive : model.system.drives)
-    fastest = std::max(fastest, std::abs(model.parameters.links[static_cast<std::size_t>(drive.link)].speed));
-  return fastest;
 }
 
 struct Amplitude {
@@ -105,7 +104,7 @@ void find_coefficient(const Mechanism& mechanism, const ResponsePoint& at, doubl
   if (!found) throw NoCoefficient{"the motion beside it is not smooth enough"};
   if (!(std::abs(found->eigenvalue - std::complex<double>(0, frequency)) < 1e-5 * frequency))
     throw NoCoefficient{"differences of the motion do not confirm the pair of eigenvalues"};
-  expect_one_motion(motion, found->q, fastest_of(model));
+  expect_one_motion(motion, found->q, drive_rates(model.system, model.parameters));
   const std::vector<Amplitude> all = amplitudes(model, motion, q, found->q);
   const Amplitude* unit = leading(all);
   if (wanted)

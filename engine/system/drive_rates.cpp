@@ -13,17 +13,17 @@ namespace {
 constexpr double alike = 1e-7; // of the faster: rates so near are one, given with seven digits
 constexpr double rest = 1e-9;  // of the fastest: what is found so slow stands
 
-double per_unit(const Link& link, const Parameters& p) {
+double unit_of(const Link& link, const Parameters& p) {
   return link.type == LinkType::revolute ? 1 : p.length;
 }
 
-std::vector<DriveRate> rates_of(const System& system, const Parameters& p, const Eigen::VectorXd* q) {
+std::vector<DriveRate> rates_at(const System& system, const Parameters& p, const Eigen::VectorXd* q) {
   const auto given = [&](const Link& link, std::size_t l) {
-    const double speed = std::abs(p.links[l].speed) / per_unit(link, p);
+    const double speed = std::abs(p.links[l].speed) / unit_of(link, p);
     return speed == 0 && finds_speed(link) ? 1 : speed;
   };
   const auto found = [&](const Link& link) {
-    return q && q->size() == system.nq && finds_speed(link) ? std::abs((*q)[link.q]) / per_unit(link, p) : 0;
+    return q && q->size() == system.nq && finds_speed(link) ? std::abs((*q)[link.q]) / unit_of(link, p) : 0;
   };
   double fastest = 0;
   for (const DrivenCoordinate& d : system.drives) {
@@ -99,17 +99,26 @@ bool covers(const std::vector<double>& times, double rate) {
 } // namespace
 
 std::vector<DriveRate> drive_rates(const System& system, const Parameters& p) {
-  return rates_of(system, p, nullptr);
+  return rates_at(system, p, nullptr);
 }
 
 std::vector<DriveRate> drive_rates(const System& system, const Parameters& p, const Eigen::VectorXd& q) {
-  return rates_of(system, p, &q);
+  return rates_at(system, p, &q);
 }
 
 double fastest_rate(const std::vector<DriveRate>& rates) {
   double fastest = 0;
   for (const DriveRate& one : rates)
     fastest = std::max(fastest, one.rate);
+  return fastest;
+}
+
+double fastest_given_rate(const System& system, const Parameters& p) {
+  double fastest = 0;
+  for (const DrivenCoordinate& d : system.drives) {
+    const auto l = static_cast<std::size_t>(d.link);
+    fastest = std::max(fastest, std::abs(p.links[l].speed) / unit_of(system.links[l], p));
+  }
   return fastest;
 }
 

@@ -23,6 +23,8 @@ std::vector<DriveRate> drive_rates(const System& system, const Parameters& param
 
 // 1/s; zero where nothing is driven.
 double fastest_rate(const std::vector<DriveRate>& rates);
+// 1/s, of what is given, torques' beginnings included; zero where all of it is at rest.
+double fastest_given_rate(const System& system, const Parameters& parameters);
 
 // s: for every rate and every low combination of rates several that lie apart on a turn of it (a third of the
 // reach counts as a radian), without those for which the times before them do. Of one rate four.

@@ -269,7 +269,11 @@ double law_input_size(const System& system, const Parameters& p, const DriveLaw&
         LawState<double>{system, p, q, k}.spring_of(c).slope(coordinate_value(system, p, q, c));
     return value + std::abs(slope) * (c.angle ? 1 : p.length);
   }
-  if (input.coordinate >= 0 || asked == Result::angle) return std::max(value, 1.);
+  if (asked == Result::angle) return std::max(value, 1.);
+  if (input.coordinate >= 0) {
+    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
+    return std::max(value, c.angle ? 1. : p.length);
+  }
   if (is_spring_force(asked)) {
     const auto s = static_cast<std::size_t>(input.spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);

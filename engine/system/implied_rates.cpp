@@ -2,6 +2,7 @@
 
 #include "engine/linear/spectral.hpp"
 #include "engine/system/constraint_row.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/linearization.hpp"
 
 #include <algorithm>
@@ -12,6 +13,11 @@ namespace {
 
 bool has_one_axis(const Link& link) {
   return link.type == LinkType::revolute || link.type == LinkType::prismatic;
+}
+
+// 1/m or 1: rows of points and lengths by the reach.
+double per_unit(const ConstraintRow& row, const Parameters& p) {
+  return row.type == RowType::point || row.type == RowType::distance ? 1 / p.length : 1;
 }
 
 // What springs and stops hold may move as well, or stands still.
@@ -26,9 +32,7 @@ std::optional<Eigen::VectorXd> closing_rates(const System& system, const Paramet
   drawn_configuration(system, p, q);
   Kinematics<double> k;
   forward<double>(system, p, q, 0, k);
-  double fastest = 0;
-  for (const LinkParameters& l : p.links)
-    fastest = std::max(fastest, std::abs(l.speed));
+  const double fastest = fastest_given_rate(system, p);
   constexpr double stiff = 1e-3; // of what a drive gives the speed of
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(system.nv), scale = Eigen::VectorXd::Ones(system.nv);
   for (std::size_t l = 0; l < system.links.size(); ++l) {
@@ -47,8 +51,7 @@ std::optional<Eigen::VectorXd> closing_rates(const System& system, const Paramet
     const CutJoint& cut = system.cuts[c];
     for (std::size_t r = 0; r < cut.rows.size(); ++r) {
       const Eigen::Index row = cut.first_row + static_cast<Eigen::Index>(r);
-      const double unit =
-          cut.rows[r].type == RowType::point || cut.rows[r].type == RowType::distance ? 1 / p.length : 1;
+      const double unit = per_unit(cut.rows[r], p);
       row_gradient(cut, p.cuts[c], cut.rows[r], k, [&](int v, double g) { gradient(row, v) += unit * g; });
       open[row] = cut.type == JointType::gear ? rates[cut.gear_vb] - p.cuts[c].ratio * rates[cut.gear_va]
                                               : unit * row_rate<double>(cut, p.cuts[c], cut.rows[r], q, k);
@@ -109,10 +112,7 @@ std::vector<CoordinateReference> implied_turning(const System& system, const Par
 bool loops_turn_with_drives(const System& system, const Parameters& p) {
   const auto rates = closing_rates(system, p, Elastic::stands);
   if (!rates) return false;
-  double fastest = 0;
-  for (const LinkParameters& l : p.links)
-    fastest = std::max(fastest, std::abs(l.speed));
-  if (fastest == 0) return false;
+  if (fastest_given_rate(system, p) == 0) return false;
   Eigen::VectorXd step = *rates, drawn;
   drawn_configuration(system, p, drawn);
   for (const Link& link : system.links)
@@ -122,17 +122,21 @@ bool loops_turn_with_drives(const System& system, const Parameters& p) {
     }
   Kinematics<double> k;
   Eigen::VectorXd phi = Eigen::VectorXd::Zero(system.rows), first;
-  for (const double turned : {0., 0.9, 2.3, 4.1}) {
+  const std::vector<DriveRate> turning = drive_rates(system, p, drawn);
+  std::vector<double> times = phase_times(turning);
+  times.insert(times.begin(), 0);
+  for (const double time : times) {
     Eigen::VectorXd q = drawn;
-    retract<double>(system, turned / fastest * step, q);
-    forward<double>(system, p, q, turned / fastest, k);
+    retract<double>(system, time * step, q);
+    forward<double>(system, p, q, time, k);
     for (std::size_t c = 0; c < system.cuts.size(); ++c) {
       const CutJoint& cut = system.cuts[c];
       for (std::size_t r = 0; r < cut.rows.size() && cut.type != JointType::gear; ++r)
-        phi[cut.first_row + static_cast<int>(r)] = row_value<double>(cut, p.cuts[c], cut.rows[r], q, k);
+        phi[cut.first_row + static_cast<int>(r)] =
+            per_unit(cut.rows[r], p) * row_value<double>(cut, p.cuts[c], cut.rows[r], q, k);
     }
     if (first.size() == 0) first = phi;
-    if ((phi - first).lpNorm<Eigen::Infinity>() > 1e-6 * (1 + p.length)) return false;
+    if ((phi - first).lpNorm<Eigen::Infinity>() > 1e-6 + 4 * angle_rounding(turning, time)) return false;
   }
   return true;
 }
@@ -160,6 +164,10 @@ std::vector<CoordinateReference> slipping_turning(const System& system, const Pa
   };
   evaluate_at(q);
   const Eigen::VectorXd phi = residual.phi;
+  Eigen::VectorXd units(system.rows);
+  for (const CutJoint& cut : system.cuts)
+    for (std::size_t r = 0; r < cut.rows.size(); ++r)
+      units[cut.first_row + static_cast<int>(r)] = per_unit(cut.rows[r], p);
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(count, count);
   if (system.rows > 0) {
     Linearization l;
@@ -192,7 +200,8 @@ std::vector<CoordinateReference> slipping_turning(const System& system, const Pa
     retract<double>(system, step, moved);
     evaluate_at(moved);
     if ((push() - pushed).norm() > 1e-9 * (size + pushed.norm())) return out;
-    if (phi.size() > 0 && (residual.phi - phi).lpNorm<Eigen::Infinity>() > 1e-9 * (1 + p.length)) return out;
+    if (phi.size() > 0 && (residual.phi - phi).cwiseProduct(units).lpNorm<Eigen::Infinity>() > 1e-9)
+      return out;
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     const Link& link = system.links[may[static_cast<std::size_t>(i)]];

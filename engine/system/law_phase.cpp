@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/point_quantity.hpp"
 
@@ -20,7 +21,7 @@ bool is_of_points(const DriveLaw::Input& input) {
   return input.coordinate < 0;
 }
 
-// Of no particular place, at speeds that are like the largest that are given.
+// Of no particular place, at speeds (1/s, of slides in reaches) that are like the largest that are given.
 Eigen::VectorXd some_configuration(const System& system, const Parameters& p, double speed) {
   Eigen::VectorXd q(system.nq);
   drawn_configuration(system, p, q);
@@ -31,16 +32,10 @@ Eigen::VectorXd some_configuration(const System& system, const Parameters& p, do
     if (link.v >= 0 && link.type == LinkType::prismatic) step[link.v] *= p.length;
   retract<double>(system, step, q);
   for (const Link& link : system.links)
-    if (finds_speed(link)) q[link.q] = speed * (1 + 0.4 * std::sin(0.7 + 1.9 * static_cast<double>(link.v)));
+    if (finds_speed(link))
+      q[link.q] = speed * (link.type == LinkType::prismatic ? p.length : 1) *
+                  (1 + 0.4 * std::sin(0.7 + 1.9 * static_cast<double>(link.v)));
   return q;
-}
-
-double largest_speed(const System& system, const Parameters& p) {
-  double largest = 0;
-  for (const DrivenCoordinate& d : system.drives)
-    if (const auto l = static_cast<std::size_t>(d.link); !finds_speed(system.links[l]))
-      largest = std::max(largest, std::abs(p.links[l].speed));
-  return largest > 0 ? largest : 1;
 }
 
 // An input's value, and how it changes with the rates of the coordinates. Of what a spring exerts its length,
@@ -81,25 +76,35 @@ bool asks_for_points(const System& system) {
 
 void refuse_turning_laws(const System& system, const Mechanism& mechanism, const Parameters& p) {
   if (!asks_for_points(system)) return;
-  const double speed = largest_speed(system, p);
-  const Eigen::VectorXd q = some_configuration(system, p, speed);
+  const double given = fastest_given_rate(system, p);
+  const Eigen::VectorXd q = some_configuration(system, p, given > 0 ? given : 1);
   Kinematics<double> here, later;
   forward<double>(system, p, q, 0, here);
-  forward<double>(system, p, q, 1.3 / speed, later);
+  const std::vector<DriveRate> rates = drive_rates(system, p, q);
+  const std::vector<double> times = phase_times(rates);
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(system.nv); // of what velocities are by rates, over the reach
+  for (const Link& link : system.links)
+    if (link.v >= 0 && link.type == LinkType::prismatic) units[link.v] = p.length;
+  const auto differ = [&](const AtPhase& a, const AtPhase& b, double size, double least) {
+    return !(std::abs(a.value - b.value) <= least * size && std::abs(a.direction - b.direction) <= least &&
+             (a.by_rates - b.by_rates).cwiseProduct(units).lpNorm<Eigen::Infinity>() <= least * p.length);
+  };
   const auto check = [&](const DriveLaw& law, const DriveLawParameters& numbers, const Link& link,
                          const char* which) {
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
       if (!is_of_points(law.inputs[i])) continue;
       const AtPhase a = at_phase(system, p, law, numbers, i, q, here);
-      const AtPhase b = at_phase(system, p, law, numbers, i, q, later);
       const Result result = law.inputs[i].quantity.result;
       const bool armless = result == Result::angle && std::isnan(a.value);
       if (!armless && !p.moving) continue;
       const double size =
           is_spring_force(result) ? a.value + p.length : law_input_size(system, p, law, numbers, i, q, here);
-      if (std::abs(a.value - b.value) <= rounding * size && std::abs(a.direction - b.direction) <= rounding &&
-          (a.by_rates - b.by_rates).lpNorm<Eigen::Infinity>() <= rounding * std::max(1., p.length))
-        continue;
+      const bool stays = std::ranges::none_of(times, [&](double time) {
+        forward<double>(system, p, q, time, later);
+        return differ(a, at_phase(system, p, law, numbers, i, q, later), size,
+                      rounding + 4 * angle_rounding(rates, time));
+      });
+      if (stays && !armless) continue;
       const Joint& of = mechanism.joints[static_cast<std::size_t>(
           system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)];
       const std::string text = drive_law(mechanism, of, link.coordinate, which)->text;

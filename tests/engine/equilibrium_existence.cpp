@@ -55,7 +55,68 @@ Mechanism four_bar(double second_link_offset = 0) {
   return m;
 }
 
+// A shaft about the vertical at 10 rad/s carries a sprung slide, which another at `second` rad/s holds by a
+// spring drawn along the slide.
+Mechanism two_shafts(double second) {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("a", 1, Vec3::Zero(), {0.01, 0.01, 0.01}), body("b", 1, Vec3::Zero(), {0.01, 0.01, 0.01}),
+              body("block", 0.5, {0.1, 0, 0})};
+  m.joints = {driven(revolute("a", "ground", "a", Vec3::Zero(), Vec3::UnitY()), 10),
+              driven(revolute("b", "ground", "b", Vec3::Zero(), Vec3::UnitY()), second),
+              sprung(prismatic("slide", "a", "block", {0.1, 0, 0}, Vec3::UnitX()), 500)};
+  m.forces = {point_spring("tie", "block", "b", {0.1, 0, 0}, {0.3, 0, 0}, 100, 0.)};
+  return m;
+}
+
+Joint rotor(const std::string& name, double x, double speed) {
+  return driven(revolute(name, "ground", name, {x, 0, 0}, Vec3::UnitX()), speed);
+}
+
 } // namespace
+
+TEST_CASE("what takes hours to come round is looked at") {
+  // The force along the slide is k (R cos d - r), d the angle between the shafts.
+  for (const double second : {10.00003, 10.0001, 9.99, 20.00001, 7.3, -10.}) {
+    const Solution s = solve(two_shafts(second));
+    CAPTURE(second, s.message);
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message, ContainsSubstring("tie"));
+  }
+  const Solution together = solve(two_shafts(10));
+  REQUIRE(together.status == Status::converged);
+  CHECK(stable(together));
+  // Without the tie any speeds do, and rounding of angles after so many turns adds nothing to the error.
+  for (const double second : {10.00003, 20.00001}) {
+    Mechanism apart = two_shafts(second);
+    apart.forces.clear();
+    const Solution s = solve(apart);
+    CAPTURE(second, s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stability_reason == StabilityReason::minimum);
+    CHECK(s.coordinates.back().error < 1e-14);
+  }
+}
+
+TEST_CASE("the slowest of many drives is looked at") {
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "rotor" + std::to_string(i);
+    m.bodies.push_back(body(name, 1, {0.1 * i, 0, 0}, {0.01, 0.01, 0.01}));
+    m.joints.push_back(rotor(name, 0.1 * i, 100 * (i + 1)));
+  }
+  m.bodies.push_back(body("shaft", 1, {1, 0, 0}, {0.01, 0.01, 0.01}));
+  m.bodies.push_back(body("block", 1, {1, 0.1, 0}));
+  m.joints.push_back(rotor("shaft", 1, 1e-3));
+  m.joints.push_back(sprung(prismatic("slide", "shaft", "block", {1, 0.1, 0}, Vec3::UnitY()), 500));
+  const Solution s = solve(m);
+  INFO(s.message);
+  CHECK(s.status == Status::no_steady_state);
+  CHECK_THAT(s.message, ContainsSubstring("the weight of block"));
+  m.gravity = {0, 0, 0};
+  CHECK(solve(m).status == Status::converged);
+}
 
 TEST_CASE("weight that turns with the drive leaves no steady state") {
   for (const double tilt : {1e-3, 0.1, 1.5}) {
@@ -182,6 +243,23 @@ TEST_CASE("a joint that has to turn at a constant rate is cut, and a note says s
   INFO(forced.message);
   CHECK(forced.status == Status::not_converged);
   CHECK_THAT(forced.message, ContainsSubstring("\"lift\"") && ContainsSubstring("bearing"));
+}
+
+TEST_CASE("what a slow drive turns in a loop is cut beside a fast drive, too") {
+  Mechanism m = shipped("governor_bearing");
+  for (Joint& j : m.joints)
+    if (j.name == "spin") j.coordinates[0].drive->speed = 0.005;
+  const auto cuts = [](const Mechanism& of) {
+    const SystemSummary summary = Analysis(of).summary();
+    return std::ranges::find(summary.cut_joints, "bearing") != summary.cut_joints.end();
+  };
+  CHECK(cuts(m));
+  m.bodies.push_back(body("rotor", 1, {2, 0, 0}, {0.01, 0.01, 0.01}));
+  m.joints.push_back(rotor("rotor", 2, 3000));
+  CHECK(cuts(m));
+  const Solution s = solve(m);
+  INFO(s.message);
+  CHECK(s.status == Status::converged);
 }
 
 TEST_CASE("loops that cannot be closed are infeasible, and the joint is named") {
