@@ -49,6 +49,7 @@ void Recorder::lay_out() {
     track.index = r.index;
     track.count = r.count;
     track.angle = r.angle;
+    track.scale = r.angle ? 1 : model_->parameters.length;
     if (r.cut >= 0) {
       const JointType type = system.cuts[index(r.cut)].type;
       track.dependent = true;

@@ -80,6 +80,7 @@ struct CoordinateTrack {
   bool rotation = false;           // a component of a rotation vector
   bool dependent = false;          // of a joint that closes a loop: follows from the others
   bool turns = false;              // whole turns do not matter
+  double scale = 1;                // as of a CoordinateSolution: 1 rad, or m, the mechanism's reach
   std::vector<double> value, rate; // rad or m; a second
 };
 

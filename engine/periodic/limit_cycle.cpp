@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 namespace flyball {
 namespace {
 
 constexpr double cycle_patience = 10; // see PeriodicOptions
 
-// Whether anything in it moves beside what goes on.
+// Whether anything in it moves beside what goes on: by its range, and by that of its rate over a radian of
+// the cycle.
 bool anything_swings(const PeriodicState& state) {
-  constexpr double least = 1e-6; // rad, m, rad/s, m/s
-  return std::ranges::any_of(state.coordinates, [](const PeriodicCoordinate& c) {
-    return c.range.most - c.range.least > least || c.rate.most - c.rate.least > least;
+  constexpr double least = 1e-6; // scaled
+  const double radian = state.period / (2 * std::numbers::pi);
+  return std::ranges::any_of(state.coordinates, [&](const PeriodicCoordinate& c) {
+    return std::max(c.range.most - c.range.least, radian * (c.rate.most - c.rate.least)) > least * c.scale;
   });
 }
 

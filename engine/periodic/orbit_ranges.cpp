@@ -88,7 +88,7 @@ PeriodicRange range_without(std::vector<double> values, double advance) {
 // By how much a track goes on; what comes back does so but for rounding and the steps' errors.
 double advance_of(const CoordinateTrack& track) {
   const double advance = track.value.back() - track.value.front();
-  return std::abs(advance) > 1e-6 * (1 + std::abs(track.value.front())) ? advance : 0;
+  return std::abs(advance) > 1e-6 * (track.scale + std::abs(track.value.front())) ? advance : 0;
 }
 
 // Whether the end joins the beginning. What wheels measure that have no part in the period does not;
@@ -124,7 +124,8 @@ PeriodicRange range_over_period(std::span<const double> values) {
 void fill_ranges(const Run& run, PeriodicState& out) {
   for (const CoordinateTrack& track : run.coordinates) {
     if (track.driven) continue;
-    PeriodicCoordinate c{track.joint, track.index, track.count, track.angle, track.dependent, 0, {}, {}};
+    PeriodicCoordinate c{track.joint, track.index, track.count, track.angle, track.dependent,
+                         track.scale, 0,           {},          {}};
     if (jumps(track)) {
       c.range = c.rate = {unknown, unknown, unknown, unknown};
     } else {

@@ -37,6 +37,7 @@ struct PeriodicCoordinate {
   std::string joint;
   int index = 0, count = 1;
   bool angle = false, dependent = false;
+  double scale = 1;   // as of a CoordinateSolution: 1 rad, or m, the mechanism's reach
   double advance = 0; // rad or m a period
   PeriodicRange range;
   PeriodicRange rate; // rad/s or m/s

@@ -1,3 +1,4 @@
+#include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/system/dampers.hpp"
@@ -28,6 +29,7 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
     x.index = r.index;
     x.count = r.count;
     x.angle = r.angle;
+    x.scale = r.angle ? 1 : p.length;
     x.dependent = r.cut >= 0;
     if (x.dependent) {
       x.value = p.cuts[static_cast<std::size_t>(r.cut)].drawn[static_cast<std::size_t>(r.index)];
@@ -39,8 +41,10 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
       const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(r.coordinate)];
       x.driven = system.links[static_cast<std::size_t>(c.link)].drive >= 0;
       x.value = coordinate_value(system, p, drawn, c);
-      if (const Link& link = system.links[static_cast<std::size_t>(c.link)]; finds_speed(link))
+      if (const Link& link = system.links[static_cast<std::size_t>(c.link)]; finds_speed(link)) {
         x.speed = drawn[link.q];
+        x.speed_scale = found_scale(system, p, c);
+      }
     }
     out.coordinates.push_back(std::move(x));
   }

@@ -77,6 +77,9 @@ struct CoordinateSolution {
   std::optional<double> speed{};
   double speed_error = 0; // estimated, absolute
   bool dependent = false; // of a joint that closes a loop: follows from the others, and starts nothing
+  // What differences are measured by (solution_difference.hpp): 1 rad, or m, the mechanism's reach; and of a
+  // speed that is found rad/s or m/s, that where the search for it begins.
+  double scale = 1, speed_scale = 1;
 };
 
 // Whether a steady state finds something of a coordinate, which no drive prescribes: where it stands, or how

@@ -7,6 +7,7 @@
 #include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/solve/solution_difference.hpp"
 #include "engine/study/mode_tracks.hpp"
 
 #include <algorithm>
@@ -21,10 +22,8 @@ constexpr double along = 1e-10; // of its frequency: a mode that is no further a
 
 // How far apart two points of a branch are, by what moves: only ratios count.
 double apart(const ResponsePoint& a, const ResponsePoint& b, double range) {
-  double sum = std::pow((b.parameter - a.parameter) / range, 2);
-  for (std::size_t i = 0; i < a.coordinates.size() && i < b.coordinates.size(); ++i)
-    sum += std::pow(b.coordinates[i].value - a.coordinates[i].value, 2);
-  return std::sqrt(sum);
+  return std::sqrt(std::pow((b.parameter - a.parameter) / range, 2) +
+                   squared_distance(a.coordinates, b.coordinates));
 }
 
 // Floquet's exponents and what large mechanisms tell: eigenvalues alone.
@@ -101,11 +100,7 @@ class Describer {
   }
   // Beside a fold the nearest state may be of the other side.
   bool same_as(const ResponsePoint& point) const {
-    for (std::size_t i = 0; i < point.coordinates.size() && i < solution_.coordinates.size(); ++i) {
-      const double value = point.coordinates[i].value;
-      if (std::abs(solution_.coordinates[i].value - value) > 1e-5 * (1 + std::abs(value))) return false;
-    }
-    return true;
+    return scaled_distance(point.coordinates, solution_.coordinates) <= 1e-5;
   }
 
   std::string joint_;

@@ -5,6 +5,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/report/friction_state.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -33,12 +34,18 @@ struct FrictionPlace {
   bool goes = false;
 };
 
-// What is followed of a state: where coordinates stand, or how fast they go on.
-std::vector<double> values_of(const FrictionPlace& place) {
-  std::vector<double> out;
-  for (const CoordinateSolution& c : place.point.coordinates)
-    out.push_back(c.speed ? *c.speed : c.driven ? 0 : c.value);
-  return out;
+// How far from the middle between two states the third lies in what is followed of a coordinate, where it
+// stands or how fast it goes on: a part of the larger of the two, or of a thousandth of what it is measured
+// by.
+double bend(const CoordinateSolution& from, const CoordinateSolution& middle, const CoordinateSolution& to,
+            const CoordinateSolution& here) {
+  constexpr double least = 1e-3;
+  if (middle.speed && here.speed)
+    return std::abs(*here.speed - *middle.speed) /
+           std::max({least * middle.speed_scale, std::abs(from.speed.value_or(0)),
+                     std::abs(to.speed.value_or(0))});
+  return std::abs(value_difference(middle, here)) /
+         std::max({least, std::abs(from.value) / from.scale, std::abs(to.value) / to.scale});
 }
 
 class FrictionFollower {
@@ -205,12 +212,11 @@ class FrictionFollower {
               std::vector<FrictionPlace>& out) const {
     std::optional<FrictionPlace> middle = at(parts, a.number + (b.number - a.number) / 2, &a);
     if (!middle || !middle->goes) return false;
-    const std::vector<double> from = values_of(a), to = values_of(b), here = values_of(*middle);
+    const std::vector<CoordinateSolution>&from = a.point.coordinates, &to = b.point.coordinates,
+          &here = middle->point.coordinates, straight = coordinates_between(from, to, 0.5);
     double most = 0;
-    for (std::size_t i = 0; i < here.size(); ++i) {
-      const double size = std::max({1e-3, std::abs(from[i]), std::abs(to[i])});
-      most = std::max(most, std::abs(here[i] - (from[i] + to[i]) / 2) / size);
-    }
+    for (std::size_t i = 0; i < here.size(); ++i)
+      most = std::max(most, bend(from[i], straight[i], to[i], here[i]));
     if (most <= friction_bend) return true; // it is on the line that is drawn
     if (halvings == 0) return most <= 0.05;
     std::vector<FrictionPlace> before, after;
