@@ -179,6 +179,10 @@ bool take_input(WindowInput& input, App& app, Stage& stage, PixelSize size, doub
     changed = true;
     stage.frame(app, size, 0);
   }
+  if (stage.behind(app, size)) {
+    input.rest();
+    stage.frame(app, size, 0);
+  }
   return changed;
 }
 

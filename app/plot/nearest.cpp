@@ -108,7 +108,9 @@ std::vector<PlotReading> readings_at(const Plot& plot, const PlotLook& look, con
           best->note = curve.notes[near];
         if (curve.along && i < curve.along->values.size()) {
           const double from = curve.along->values[i - 1], to = curve.along->values[i];
-          best->along = {from + part_of_way(layout, a, b, x) * (to - from), std::abs(to - from)};
+          const double value = from + part_of_way(layout, a, b, x) * (to - from);
+          constexpr double finest = 1e-5; // of it: what hardly changes has no more digits than what does
+          best->along = {value, std::max(std::abs(to - from), finest * std::abs(value))};
         }
       }
     }

@@ -51,10 +51,12 @@ void share_view(const Session& session, Layout& layout) {
 
 // Returns how far the person has dragged the line this frame. Each has a small window of its own, above the
 // sizes.
-float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright) {
+// `below`: pixels under the line that take hold of it, too.
+float splitter(Ui& ui, const char* name, const PanelRect& line, bool upright, float below = 0) {
   const float grip = 4 * ui.scale, thick = std::max(1.f, std::round(ui.scale));
   const ImVec2 from(line.x - (upright ? grip : 0), line.y - (upright ? 0 : grip));
-  const ImVec2 size(upright ? 2 * grip : line.width, upright ? line.height : 2 * grip);
+  const ImVec2 size(upright ? 2 * grip : line.width,
+                    upright ? line.height : std::max(2 * grip, grip + below));
   ImGui::SetNextWindowPos(from);
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
@@ -146,11 +148,17 @@ void drag_splitters(Session& session, Ui& ui, PanelSizes& sizes, const Layout& l
   }
   const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
   if (lower.height == side.height) return;
-  const float by = splitter(ui, "splitter/lower", {side.x, lower.y, side.width, 1}, false);
+  const bool titled = layout.results.height > 0 && layout.inspector.height > 0;
+  const float by = splitter(ui, "splitter/lower", {side.x, lower.y, side.width, 1}, false,
+                            titled ? results_title_height(ui) : 0);
   if (by == 0) return;
   const float share =
       std::clamp(upper_share(session, ui, sizes, layout, side.height) + by / side.height, 0.15f, 0.85f);
   (layout.stacked && session.mode == Mode::explore ? sizes.stacked_share : sizes.inspector_share) = share;
+}
+
+float results_title_height(const Ui& ui) {
+  return std::round(ImGui::GetFontSize() + 9 * ui.scale);
 }
 
 void begin_panel(const char* name, const PanelRect& rect, int more_flags) {

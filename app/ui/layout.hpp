@@ -10,6 +10,7 @@ struct Ui;
 
 struct PanelRect {
   float x = 0, y = 0, width = 0, height = 0; // pixels
+  bool operator==(const PanelRect&) const = default;
 };
 
 struct Layout {
@@ -37,6 +38,8 @@ Layout view_alone_layout(float width, float height);
 
 // Draws the lines between panels and moves them; before the panels.
 void drag_splitters(Session& session, Ui& ui, PanelSizes& sizes, const Layout& layout);
+// Pixels of the title of results below an inspector, which is a grip of the line between them.
+float results_title_height(const Ui& ui);
 // Begins the window of a panel without frame or title; ImGui::End ends it.
 void begin_panel(const char* name, const PanelRect& rect, int more_flags = 0);
 

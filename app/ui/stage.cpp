@@ -81,6 +81,9 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
   const Layout layout = layout_of(app, width, height);
   const PanelRect& view = layout.view;
+  opened_ = app.session.opened;
+  view_rect_ = layout.view;
+  beside_rect_ = layout.beside;
   update(app, seconds, {static_cast<double>(view.width), static_cast<double>(view.height)});
   ViewFrame shown = view_frame(app.session, app.ui, app.tool, app.view);
   shown.options.triad = !has_view_cube(app.ui, app.view, view); // the cube shows the axes
@@ -112,6 +115,11 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   ImGui::NewFrame();
   build_gui(app);
   ImGui::Render();
+}
+
+bool Stage::behind(const App& app, PixelSize size) const {
+  const Layout layout = layout_of(app, static_cast<float>(size.width), static_cast<float>(size.height));
+  return app.session.opened != opened_ || layout.view != view_rect_ || layout.beside != beside_rect_;
 }
 
 void Stage::render(const Ui& ui, const Framebuffer& target) {

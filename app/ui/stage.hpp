@@ -4,6 +4,7 @@
 
 #include "app/render/fonts.hpp"
 #include "app/render/imgui_renderer.hpp"
+#include "app/ui/layout.hpp"
 #include "app/ui/scene_pictures.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/studies/motion/movie_export.hpp"
@@ -47,6 +48,9 @@ class Stage {
   // One frame: update(), which views have changed, then the interface. ImGui's input must be in place;
   // `seconds` have passed since the last frame.
   void frame(App& app, PixelSize size, double seconds);
+  // Whether the frame has come to another document or other panels than its views were made for, as by a
+  // command: another frame puts that right.
+  bool behind(const App& app, PixelSize size) const;
   // Draws the frame into `target`: the views that have changed since they were drawn, then the interface.
   void render(const Ui& ui, const Framebuffer& target);
   // The same into the window's own picture.
@@ -96,6 +100,8 @@ class Stage {
   int views_changed_ = 0;
   bool told_coarse_ = false; // that a view has fewer pixels or samples than it should
   bool drafts_ = false;
+  std::uint64_t opened_ = 0;          // the document that the views were made for
+  PanelRect view_rect_, beside_rect_; // and their places
 };
 
 } // namespace flyball

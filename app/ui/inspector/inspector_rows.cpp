@@ -161,13 +161,13 @@ bool inspector_section(const Session& session, Ui& ui, const std::string& name, 
   if (found != ui.sections.open.end()) {
     now = found->second;
   } else {
-    // What is open stays open while one works in it, even if the last number that opened it goes.
+    // While one works on a selection none opens or closes of itself: what is below would move from under the
+    // hand.
     if (ui.sections.seen_of.parts != session.selection().parts) {
       ui.sections.seen.clear();
       ui.sections.seen_of = session.selection();
     }
-    bool& seen = ui.sections.seen[name];
-    now = seen = seen || open;
+    now = ui.sections.seen.try_emplace(name, open).first->second;
   }
   const bool before = now;
   ImGui::Dummy({0, 2 * ui.scale});

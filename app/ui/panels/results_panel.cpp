@@ -109,9 +109,9 @@ void refusal(Session& session, Ui& ui) {
 // they scroll. Returns what is left for them.
 PanelRect below_title(Ui& ui, const PanelRect& rect) {
   const UiColors& colors = colors_of(ui);
-  const float s = ui.scale, pad = ImGui::GetStyle().WindowPadding.x;
+  const float pad = ImGui::GetStyle().WindowPadding.x;
   PanelRect title = rect, rest = rect;
-  title.height = std::min(std::round(ImGui::GetFontSize() + 9 * s), rect.height);
+  title.height = std::min(results_title_height(ui), rect.height);
   rest.y += title.height;
   rest.height = std::max(rect.height - title.height, 1.f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});

@@ -11,7 +11,7 @@ namespace flyball {
 
 struct SectionState {
   std::map<std::string, bool, std::less<>> open; // that were opened or closed by hand
-  std::map<std::string, bool, std::less<>> seen; // those that were shown open of themselves, of `seen_of`
+  std::map<std::string, bool, std::less<>> seen; // the others as they stood first, of `seen_of`
   Selection seen_of{};
 };
 

@@ -51,6 +51,8 @@ std::string four_digits(double value, double size) {
 std::string whirl_words(const Whirl& whirl, double frequency) {
   const WhirlDirection direction = whirl.direction();
   if (direction == WhirlDirection::straight) return "\nSwings straight to and fro: no whirl.";
+  constexpr double little = 0.01; // of a circle: nobody sees it go round
+  if (std::abs(whirl.value) < little) return "\nSwings all but straight to and fro: no whirl to speak of.";
   const bool forward = direction == WhirlDirection::forward;
   std::string text =
       forward ? "\nWhirls forward, as the drive turns" : "\nWhirls backward, against the drive";
