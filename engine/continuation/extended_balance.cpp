@@ -6,11 +6,11 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/report/measures.hpp"
+#include "engine/solve/refine.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/balance_rate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace flyball {
@@ -119,11 +119,7 @@ void ExtendedBalance::rates(const ExtendedState& state, std::size_t index, Eigen
 }
 
 void ExtendedBalance::evaluate_extended(const Unknowns& z, Eigen::VectorXd& force, Eigen::VectorXd& phi) {
-  w_.q_extended = z.q.cast<Extended>();
-  w_.lambda_extended = z.lambda.cast<Extended>();
-  forward<Extended>(system_, parameters_, w_.q_extended, 0, w_.kinematics_extended);
-  evaluate_residual<Extended>(system_, parameters_, w_.q_extended, w_.lambda_extended, w_.kinematics_extended,
-                              w_.residual_extended);
+  flyball::evaluate_extended(problem(), z, w_);
   phi = w_.residual_extended.phi.cast<double>().cwiseProduct(scaling_.row);
   force = w_.residual_extended.f.cast<double>().cwiseProduct(scaling_.column);
 }

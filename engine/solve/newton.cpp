@@ -28,9 +28,9 @@ double resolution(const Problem& problem, const Eigen::VectorXd& q) {
 double merit(const Problem& problem, Workspace& w) {
   w.scaled_force = w.residual.f.cwiseProduct(problem.scaling.column);
   double sum = 0;
-  const double size = std::max(1e-300, largest(w.magnitudes.force.cwiseProduct(problem.scaling.column)));
+  const double size = largest(w.magnitudes.force.cwiseProduct(problem.scaling.column));
   w.kkt(problem).project(w.scaled_force, w.projected);
-  sum += std::max(0., w.projected.dot(w.scaled_force)) / (size * size);
+  sum += std::max(0., w.projected.dot(w.scaled_force)) / std::max(size * size, 1e-300);
   sum += w.residual.phi.cwiseProduct(problem.scaling.row).squaredNorm();
   return std::sqrt(sum);
 }

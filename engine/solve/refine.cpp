@@ -7,16 +7,9 @@
 namespace flyball {
 namespace {
 
-// The balance at z in extended precision; what is left of it is small, and then rounded.
-void evaluate_extended(const Problem& problem, const Unknowns& z, Workspace& w) {
-  w.q_extended = z.q.cast<Extended>();
-  // Quaternions of double precision are of unit length to double precision only, and scale what they turn.
-  for (const Link& link : problem.system.links)
-    if (link.v >= 0 && link.type == LinkType::spherical) w.q_extended.segment<4>(link.q).normalize();
-  w.lambda_extended = z.lambda.cast<Extended>();
-  forward<Extended>(problem.system, problem.parameters, w.q_extended, 0, w.kinematics_extended);
-  evaluate_residual<Extended>(problem.system, problem.parameters, w.q_extended, w.lambda_extended,
-                              w.kinematics_extended, w.residual_extended);
+// What is left of the balance is small, and then rounded.
+void evaluate_rounded(const Problem& problem, const Unknowns& z, Workspace& w) {
+  evaluate_extended(problem, z, w);
   w.residual.f = w.residual_extended.f.cast<double>();
   w.residual.phi = w.residual_extended.phi.cast<double>();
 }
@@ -248,7 +241,7 @@ double displacement_along(const Problem& problem, const Eigen::VectorXd& directi
 void add_singular_directions(const Problem& problem, const Unknowns& z, Workspace& w, ErrorEstimate& error) {
   Eigen::MatrixXd null_space = w.dense.constraints().basis() * w.dense.hessian().null_basis();
   Eigen::VectorXd displacement = Eigen::VectorXd::Zero(null_space.cols());
-  evaluate_extended(problem, z, w);
+  evaluate_rounded(problem, z, w);
   for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
     const double size = null_space.col(c).lpNorm<Eigen::Infinity>();
     if (!(size > 0)) continue;
@@ -282,6 +275,20 @@ void drop_shift(const Problem& problem, Workspace& w) {
 
 } // namespace
 
+void evaluate_extended(const Problem& problem, const Unknowns& z, Workspace& w) {
+  w.q_extended = z.q.cast<Extended>();
+  w.lambda_extended = z.lambda.cast<Extended>();
+  evaluate_extended(problem, w);
+}
+
+void evaluate_extended(const Problem& problem, Workspace& w) {
+  for (const Link& link : problem.system.links)
+    if (link.v >= 0 && link.type == LinkType::spherical) w.q_extended.segment<4>(link.q).normalize();
+  forward<Extended>(problem.system, problem.parameters, w.q_extended, 0, w.kinematics_extended);
+  evaluate_residual<Extended>(problem.system, problem.parameters, w.q_extended, w.lambda_extended,
+                              w.kinematics_extended, w.residual_extended);
+}
+
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
             ErrorEstimate& estimate) {
   const System& system = problem.system;
@@ -296,7 +303,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
   constexpr int last_round = 4;
   for (int round = 0; round <= last_round; ++round) {
-    evaluate_extended(problem, z, w);
+    evaluate_rounded(problem, z, w);
     left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
     // Multipliers are corrected like the rest, so that the forces they balance do not drown what they cannot.
     newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);

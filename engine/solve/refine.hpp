@@ -19,6 +19,12 @@ struct ErrorEstimate {
   bool singular_loops = false; // see at_singular_loops()
 };
 
+// The balance in extended precision, in the workspace's residual_extended: at z, or at the state that the
+// workspace holds in extended precision. Quaternions of double precision are of unit length to double
+// precision only, and scale what they turn: they are normalised.
+void evaluate_extended(const Problem& problem, const Unknowns& z, Workspace& w);
+void evaluate_extended(const Problem& problem, Workspace& w);
+
 // Corrects a converged state, evaluated and factored in the workspace, by Newton steps on the residual
 // evaluated in extended precision (iterative refinement; Higham, Accuracy and Stability of Numerical
 // Algorithms, 2002, chapter 12), and estimates its error. Leaves the workspace factored beside the state, by

@@ -9,6 +9,7 @@
 #include "engine/report/report.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/refine.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -93,9 +94,9 @@ class Direct {
     Eigen::VectorXd correction;
     double previous = std::numeric_limits<double>::infinity();
     for (int i = 0; i < 12; ++i) {
-      forward<Extended>(system_, parameters_, reference_, 0, w_.kinematics_extended);
-      evaluate_residual<Extended>(system_, parameters_, reference_, multipliers, w_.kinematics_extended,
-                                  w_.residual_extended);
+      w_.q_extended = reference_;
+      w_.lambda_extended = multipliers;
+      evaluate_extended(problem(), w_);
       w_.residual.f = w_.residual_extended.f.cast<double>();
       w_.residual.phi = w_.residual_extended.phi.cast<double>();
       newton_step(problem(), w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);

@@ -12,6 +12,8 @@
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -380,7 +382,36 @@ class Binder {
   BasicParameters<N>& p_;
 };
 
-// Half the largest distance from the middle of all points that matter.
+// Of what is drawn at one point: how far slides are from where their springs are slack, stops touch and
+// coordinates are counted from, springs are long, and loads deflect the softest spring. Zero where nothing
+// tells.
+double reach_from_one_point(const System& system, const Parameters& p) {
+  double far = 0, load = 0, softest = std::numeric_limits<double>::infinity();
+  const auto spring_of = [&](double stiffness) {
+    if (stiffness != 0) softest = std::min(softest, std::abs(stiffness));
+  };
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const LinkParameters& link = p.links[l];
+    load += std::abs(link.mass) * p.gravity.norm();
+    if (system.links[l].type != LinkType::prismatic) continue;
+    const CoordinateForce& force = link.force[0];
+    far = std::max(far, std::abs(link.drawn));
+    if (force.has_spring()) far = std::max(far, std::abs(force.slack() - link.drawn));
+    if (force.has_lower) far = std::max(far, std::abs(force.lower - link.drawn));
+    if (force.has_upper) far = std::max(far, std::abs(force.upper - link.drawn));
+    load += std::abs(force.friction);
+    spring_of(force.stiffness);
+  }
+  for (const PointSpringParameters& spring : p.springs) {
+    far = std::max(far, std::abs(spring.free_length));
+    spring_of(spring.stiffness);
+  }
+  for (const BodyForceParameters& force : p.body_forces)
+    if (force.type == ForceType::force) load += force.vector.norm();
+  return std::max(far, load / softest);
+}
+
+// Half the largest distance from the middle of all points that matter. Of what has none 1 m.
 double reach(const System& system, const Parameters& p) {
   Eigen::AlignedBox3d box;
   for (const LinkParameters& l : p.links) {
@@ -399,8 +430,9 @@ double reach(const System& system, const Parameters& p) {
     add(p.cuts[i].a, system.cuts[i].ends.a);
     add(p.cuts[i].b, system.cuts[i].ends.b);
   }
-  const double half = box.isEmpty() ? 0 : box.diagonal().norm() / 2;
-  return half > 0 ? half : 1;
+  double half = box.isEmpty() ? 0 : box.diagonal().norm() / 2;
+  if (half == 0) half = reach_from_one_point(system, p);
+  return half > 0 && std::isfinite(half) ? half : 1;
 }
 
 bool phase_free(const System& system, const Parameters& p) {
