@@ -12,6 +12,7 @@
 #include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
+#include "engine/report/turned_measures.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/search/phase_search.hpp"
@@ -27,7 +28,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 
 namespace flyball {
 namespace {
@@ -165,7 +165,7 @@ struct Analysis::State {
     }
   }
 
-  // The same where it stands turned; of measures by central differences along it.
+  // The same where it stands turned.
   void add_turned_rates(const Problem& problem, Solution& out) {
     for (const Slider& slider : mechanism->sliders) {
       Mechanism changed = *mechanism;
@@ -175,34 +175,11 @@ struct Analysis::State {
       if (rates.empty() || rates[0].q.size() == 0) continue; // none that is finite
       out.sensitivities.push_back(name_rates(system, slider.parameter, rates[0].q));
       if (measures.empty()) continue;
-      const double value = number.values()[0], step = 1e-5 * (value != 0 ? std::abs(value) : 1);
-      Eigen::VectorXd along = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(measures.size()));
-      try {
-        for (const double by : {step, -step}) {
-          const double there = value + by;
-          number.set({&there, 1});
-          along += measures_beside(changed, by, rates[0]) / (2 * by);
-        }
-      } catch (const SceneError&) { // expressions make no mechanism of it
-        along.setConstant(std::numeric_limits<double>::quiet_NaN());
-      }
+      const Eigen::VectorXd along = turned_measure_rates(problem, steady.found.z.q, rates[0], measures,
+                                                         changed, number, 0, steady.elsewhere());
       measures.bind(*mechanism, system, parameters);
       out.sensitivities.back().measures.assign(along.begin(), along.end());
     }
-  }
-
-  // Of a mechanism of which a number is `by` further, at the steady state by its rates.
-  Eigen::VectorXd measures_beside(const Mechanism& changed, double by, const TurnedRate& rate) {
-    Parameters beside;
-    bind(system, changed, beside);
-    for (std::size_t l = 0; l < system.links.size(); ++l)
-      if (finds_speed(system.links[l]))
-        beside.links[l].start = parameters.links[l].start + by * rate.starts[static_cast<Eigen::Index>(l)];
-    Eigen::VectorXd q = steady.found.z.q;
-    const Eigen::VectorXd moved = by * rate.q;
-    retract<double>(system, moved, q);
-    measures.bind(changed, system, beside);
-    return measures.evaluate_at({system, beside, scaling}, q, steady.elsewhere());
   }
 
   // Looks for a steady state at other angles of what turns at found speeds, which then takes the place of

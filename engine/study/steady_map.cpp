@@ -2,13 +2,18 @@
 
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/continuation/branches.hpp"
+#include "engine/kkt/configuration_difference.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
+#include "engine/report/turned_measures.hpp"
+#include "engine/search/turned_rates.hpp"
 #include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/existence.hpp"
 #include "engine/solve/sensitivity.hpp"
 
 #include <algorithm>
@@ -78,6 +83,11 @@ void SteadyMap::set(const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
   }
 }
 
+void SteadyMap::set(const State& state) {
+  set(state.p, state.z.q);
+  if (state.turned) parameters_ = at_angles_of(parameters_, *state.turned);
+}
+
 void SteadyMap::find_values(State& state) {
   const Eigen::VectorXd* measured = nullptr;
   if (measures_wanted()) {
@@ -105,19 +115,62 @@ std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std
     first.status = Status::no_steady_state;
     return std::nullopt;
   }
-  if (first.turned) {
-    first.status = Status::no_steady_state;
-    first.message = "The steady state stands turned against the drawn pose, and at other numbers otherwise: "
-                    "its rates are not told, and it is not followed.";
-    return std::nullopt;
-  }
-  State state{p_, {configuration_of(problem(), first.coordinates), {}}, {}};
+  if (first.turned) return begin_turned();
+  State state{p_, {configuration_of(problem(), first.coordinates), {}}, {}, {}};
   if (!correct(state.z)) { // neutral, say: the state itself is known
     state.z.q = configuration_of(problem(), first.coordinates);
     evaluate_with_multipliers(problem(), state.z, w_);
   }
   find_values(state);
   return state;
+}
+
+// The one that solving answers.
+std::optional<SteadyMap::State> SteadyMap::begin_turned() {
+  Eigen::VectorXd drawn;
+  drawn_configuration(system_, parameters_, drawn);
+  std::optional<TurnedState> turned = find_turned_state(dense(), drawn, w_);
+  if (!turned) return std::nullopt;
+  State state{p_, turned->z, {}, std::move(turned)};
+  set(state);
+  find_values(state);
+  return state;
+}
+
+std::optional<SteadyMap::State> SteadyMap::step_to_turned(const State& from, const Eigen::VectorXd& p) {
+  set(p, from.z.q);
+  std::optional<TurnedState> turned = find_turned_state_beside(dense(), *from.turned, w_);
+  if (!turned || !turned->z.q.allFinite() ||
+      largest_size(scaled_difference(dense(), from.z.q, turned->z.q)) > 2 * longest_way)
+    return std::nullopt;
+  State to{p, turned->z, {}, std::move(turned)};
+  set(to);
+  if (!check_existence(dense(), to.z.q, sample_phases(system_, parameters_, to.z.q), w_).holds)
+    return std::nullopt;
+  find_values(to);
+  return to;
+}
+
+bool SteadyMap::find_turned_rates(const State& state) {
+  const Problem p = dense();
+  const std::vector<TurnedRate> found = turned_rates(p, state.z, state.turned->ties, varied_, *numbers_, w_);
+  if (found.empty() || std::ranges::any_of(found, [](const TurnedRate& r) { return r.q.size() == 0; }))
+    return false;
+  state_rates_.resize(system_.nv, count());
+  rates_.resize(static_cast<Eigen::Index>(wanted_.size()), count());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    state_rates_.col(column) = found[k].q;
+    Eigen::VectorXd measured;
+    if (measures_wanted())
+      measured = turned_measure_rates(p, state.z.q, found[k], measures_, varied_, *numbers_, k, w_);
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+      rates_(static_cast<Eigen::Index>(i), column) =
+          wanted_[i].coordinate
+              ? found_gradient(system_, parameters_, state.z.q, *wanted_[i].coordinate).dot(found[k].q)
+              : measured[static_cast<Eigen::Index>(wanted_[i].measure)];
+  }
+  return true;
 }
 
 bool SteadyMap::correct(Unknowns& z) {
@@ -133,7 +186,14 @@ bool SteadyMap::find_rates(const State& state) try {
   if (state_rates_.cols() > 0 && state.p == rated_p_ && state.z.q == rated_q_)
     return state_rates_.allFinite();
   state_rates_.resize(0, 0);
-  set(state.p, state.z.q);
+  set(state);
+  if (state.turned) {
+    if (!find_turned_rates(state)) return false;
+    rated_p_ = state.p;
+    rated_q_ = state.z.q;
+    rated_scale_ = scaling_.column;
+    return state_rates_.allFinite();
+  }
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
@@ -170,11 +230,12 @@ double SteadyMap::way(const Eigen::VectorXd& step) const {
 
 std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eigen::VectorXd& p) {
   try {
+    if (from.turned) return step_to_turned(from, p);
     set(p, from.z.q);
   } catch (const SceneError&) {
     return std::nullopt;
   }
-  State to{p, from.z, {}};
+  State to{p, from.z, {}, {}};
   retract<double>(system_, state_rates_ * (p - from.p), to.z.q);
   if (!correct(to.z)) return std::nullopt;
   // Past a fold, or where branches cross, the steady states are others.
@@ -205,19 +266,29 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
 }
 
 Solution SteadyMap::solution(const State& state, bool details) {
-  set(state.p, state.z.q);
+  set(state);
   forward<double>(system_, parameters_, state.z.q, 0, w_.kinematics);
   SolveOptions solve;
-  solve.start = start_values(coordinate_solutions(system_, parameters_, state.z.q,
-                                                  Eigen::VectorXd::Zero(system_.nv), w_.kinematics));
-  solve.nearest = true;
+  if (!state.turned)
+    solve.start = start_values(coordinate_solutions(system_, parameters_, state.z.q,
+                                                    Eigen::VectorXd::Zero(system_.nv), w_.kinematics));
+  solve.nearest = !state.turned; // that is looked for from the drawn pose
   solve.details = details;
   solve.cancel = cancel_;
   if (analysis_)
     analysis_->update(varied_);
   else
     analysis_.emplace(varied_);
-  return analysis_->solve(solve);
+  Solution out = analysis_->solve(solve);
+  if (state.turned && out.status == Status::converged) {
+    constexpr double same = 1e-6;
+    const Eigen::VectorXd found = configuration_of(problem(), out.coordinates);
+    if (!out.turned || largest_size(scaled_difference(problem(), found, state.z.q)) > same) {
+      out.status = Status::not_converged;
+      out.message = "Solving from the drawn pose leads to another state that stands turned.";
+    }
+  }
+  return out;
 }
 
 Eigen::VectorXd SteadyMap::inside(Eigen::VectorXd p) const {

@@ -10,6 +10,7 @@
 #include "engine/mechanism/varied_numbers.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
+#include "engine/search/phase_search.hpp"
 #include "engine/study/wanted.hpp"
 
 #include <optional>
@@ -32,6 +33,8 @@ class SteadyMap {
     Eigen::VectorXd p;      // the numbers, in their units
     Unknowns z;             // at the drawn phase
     Eigen::VectorXd values; // of what is asked for: rad, m or the measure's unit
+    // Of one that stands turned against the drawn pose (phase_search.hpp): its angles, with `z`.
+    std::optional<TurnedState> turned{};
   };
 
   // `wanted` as of find_wanted(). Throws SceneError as that does, for addresses that do not exist, for ranges
@@ -83,6 +86,12 @@ class SteadyMap {
   bool measures_wanted() const;
   // The numbers, and what a speed that is found is measured by, which is that in q.
   void set(const Eigen::VectorXd& p, const Eigen::VectorXd& q);
+  // The same with the angles of a state.
+  void set(const State& state);
+  Problem dense() const { return {system_, parameters_, scaling_, cancel_}; }
+  std::optional<State> begin_turned();
+  std::optional<State> step_to_turned(const State& from, const Eigen::VectorXd& p);
+  bool find_turned_rates(const State& state);
   void find_values(State& state);
   bool correct(Unknowns& z);
 
