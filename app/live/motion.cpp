@@ -59,7 +59,7 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
   try {
     if (before && before->time.empty()) before = nullptr;
     if (before) {
-      last = sample_before(*before, request.time + 1e-9 * (1 + std::abs(request.time))); // one that is meant
+      last = sample_before(*before, request.time);
       duration -= before->time[last] - before->time.front();
       options.start = Start::state;
       options.state = state_at(*before, last);

@@ -13,7 +13,7 @@ FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRib
   const ResponseRequest& of = request.curve->of;
   FoundRibbon found;
   std::vector<RibbonPlace> places;
-  for (BandPlace& place : band_places(*request.curve, found.stretches))
+  for (BandPlace& place : band_places(*request.curve, BandOf::not_unstable, found.stretches))
     places.push_back({place.number, std::move(place.start)});
   found.points = friction_ribbon(*of.mechanism, of.address, places, &context.cancel);
   return found;

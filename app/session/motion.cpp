@@ -240,11 +240,12 @@ void step_motion(Session& session, int samples) {
   if (!shown) return;
   session.playback.playing = false;
   const std::vector<double>& times = shown->run->time;
-  const auto now = static_cast<long>(sample_before(*shown->run, session.playback.time + 1e-12));
+  const std::size_t now = sample_before(*shown->run, session.playback.time);
   // From between two samples, back means to the one before.
-  const long back =
-      samples < 0 && times[static_cast<std::size_t>(now)] < session.playback.time - 1e-9 ? 1 : 0;
-  const long to = std::clamp(now + samples + back, 0L, static_cast<long>(times.size()) - 1);
+  const bool between = now + 1 < times.size() &&
+                       session.playback.time - times[now] > same_sample * (times[now + 1] - times[now]);
+  const long to = std::clamp(static_cast<long>(now) + samples + (samples < 0 && between ? 1 : 0), 0L,
+                             static_cast<long>(times.size()) - 1);
   seek_motion(session, times[static_cast<std::size_t>(to)]);
 }
 
@@ -276,7 +277,7 @@ double steady_time(const Run& run, const Mechanism& mechanism, double time) {
 void keep_motion_state(Session& session) {
   const MotionRun* shown = shown_motion(session);
   if (!shown) return;
-  session.motion.saved = state_at(*shown->run, sample_before(*shown->run, session.playback.time + 1e-12));
+  session.motion.saved = state_at(*shown->run, sample_before(*shown->run, session.playback.time));
   session.notice = "The state of the motion is kept to start from.";
 }
 

@@ -24,7 +24,7 @@ FoundBand find_band(const BandRequest& request, const TaskContext<FoundBand>& co
     context.progress({"making the band", static_cast<double>(done) / static_cast<double>(all)});
   };
   FoundBand found;
-  const std::vector<BandPlace> places = band_places(*request.curve, found.stretches);
+  const std::vector<BandPlace> places = band_places(*request.curve, BandOf::stable, found.stretches);
   ThreadSharing sharing;
   found.band = spread_band(*of.mechanism, of.address, places, request.tolerances, options, sharing);
   return found;
@@ -40,8 +40,12 @@ std::string share_text(double share) {
 
 } // namespace
 
-std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vector<BandStretch>& stretches) {
+std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, BandOf which,
+                                   std::vector<BandStretch>& stretches) {
   const ResponseRequest& of = curve.of;
+  const auto counts = [&](const ResponsePoint& point) {
+    return which == BandOf::stable ? point.stable == true : point.stable != false;
+  };
   // How far along the axis, in parts of it.
   const auto along = [&](double number) {
     return of.logarithmic ? std::log(number / of.from) / std::log(of.to / of.from)
@@ -58,12 +62,12 @@ std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vecto
       double last = 0;
       for (std::size_t i = 0; i < line.points.size(); ++i) {
         const ResponsePoint& point = line.points[i];
-        if (point.stable != true || line.special[i]) {
+        if (!counts(point) || line.special[i]) {
           on = on && line.special[i];
           continue;
         }
         // The ends of a stretch are places, whatever they are apart.
-        const bool ends = i + 1 == line.points.size() || line.points[i + 1].stable != true;
+        const bool ends = i + 1 == line.points.size() || !counts(line.points[i + 1]);
         const double at = along(point.parameter);
         if (on && !ends && std::abs(at - last) < step) continue;
         if (!on) stretches.push_back({places.size(), 0});

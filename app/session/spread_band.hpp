@@ -39,8 +39,11 @@ std::string band_words(const Session& session);
 // Which of the band's outputs the response shows; none where it is none of them.
 std::optional<std::size_t> band_output(const Session& session);
 
-// The places of the curve's stable states about which samples are made: about a fortieth of the range apart.
-// None of what rests on friction.
-std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, std::vector<BandStretch>& stretches);
+// Stable states alone; or those that are undecided, too, which friction may hold.
+enum class BandOf { stable, not_unstable };
+// The places of the curve's states about which a band is made: about a fortieth of the range apart. None of
+// what rests on friction.
+std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, BandOf which,
+                                   std::vector<BandStretch>& stretches);
 
 } // namespace flyball

@@ -273,7 +273,8 @@ void joint_card(const ViewContext& context, const ViewInput& input) {
   ImGui::SetNextWindowSize({size.x, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::Begin("joint", nullptr,
+  // Each has a window of its own, which begins as tall as it was last.
+  ImGui::Begin(bearing ? "bearing" : "joint", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
                    ImGuiWindowFlags_AlwaysAutoResize);

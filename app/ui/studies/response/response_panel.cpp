@@ -172,8 +172,15 @@ void ribbon_choice(Session& session, Ui& ui) {
           ui, "response/ribbon", "Band of friction", wanted,
           "Where friction lets it stand: along the lower edge as it rises, along the upper as it falls."))
     wanted = !wanted;
-  if (const std::string& problem = session.study.friction.ribbon.problem; wanted && !problem.empty())
-    paragraph(problem, colors_of(ui).bad);
+  if (!wanted) return;
+  const auto& ribbon = session.study.friction.ribbon;
+  if (!ribbon.problem.empty()) return paragraph(ribbon.problem, colors_of(ui).bad);
+  const auto shown = shown_ribbon(session);
+  const auto empty = [](const RibbonPoint& point) { return point.extents.empty(); };
+  if (!shown || !std::ranges::all_of(shown->result.points, empty)) return;
+  paragraph("No band is known here: friction holds nothing of this curve's states, or they are unstable.",
+            colors_of(ui).dim);
+  note_widget(ui.widgets, "response/ribbon/none");
 }
 
 // A bar for what takes long; false where there is none.
