@@ -3,6 +3,7 @@
 #include "engine/dynamics/fastest_rates.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/system/drive_rates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,12 +40,7 @@ MethodChoice choose_method(Equations& equations, double t, const Eigen::VectorXd
   } else if (model.system.nv > 0) {
     rates = fastest_rates(equations, t, q, s);
   }
-  double driven = 0;
-  for (const DrivenCoordinate& d : model.system.drives) {
-    const auto l = static_cast<std::size_t>(d.link);
-    const double unit = model.system.links[l].type == LinkType::revolute ? 1 : model.parameters.length;
-    driven = std::max(driven, std::abs(model.parameters.links[l].speed) / unit);
-  }
+  const double driven = fastest_given_rate(model.system, model.parameters);
   double fastest = 0, slowest = 0, explicit_cost = 0, implicit_cost = 0;
   std::complex<double> costly = 0;
   for (const std::complex<double>& rate : rates) {

@@ -1,6 +1,7 @@
 #include "engine/dynamics/recorder.hpp"
 
 #include "engine/report/report.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/potential.hpp"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <optional>
 
 namespace flyball {
 namespace {
@@ -187,13 +189,12 @@ bool Recorder::has_jacobi() {
   const Eigen::VectorXd u = all_u.head(system.nv);
   Kinematics<double> moving;
   std::vector<LinkRates> none;
-  double first = 0, size = 0;
-  for (int phase = 0; phase < 5; ++phase) {
-    double slowest = 0;
-    for (const DrivenCoordinate& d : system.drives)
-      if (const double speed = std::abs(p.links[index(d.link)].speed); speed > 0)
-        slowest = slowest == 0 ? speed : std::min(slowest, speed);
-    const double t = slowest > 0 ? 1.3 * phase / slowest : 0;
+  const std::vector<DriveRate> rates = drive_rates(system, p);
+  std::vector<double> times = phase_times(rates);
+  times.insert(times.begin(), 0);
+  std::optional<double> first;
+  double size = 0;
+  for (const double t : times) {
     all_q.head(system.nq) = q;
     set_drives(system, p, t, all_q, all_u);
     move(model_->released, p, {all_q, all_u}, moving, none);
@@ -202,9 +203,9 @@ bool Recorder::has_jacobi() {
     // T_0 of bodies that only drives move differs from phase to phase with nothing that depends on q_R.
     const double lagrangian =
         kinetic - kinetic_energy(system, p, standing_) - amended_potential(system, p, q, standing_).value;
-    if (phase == 0) first = lagrangian;
-    size = std::max(size, kinetic + std::abs(first));
-    if (std::abs(lagrangian - first) > 1e-10 * size) return false;
+    if (!first) first = lagrangian;
+    size = std::max(size, kinetic + std::abs(*first));
+    if (std::abs(lagrangian - *first) > (1e-10 + 4 * angle_rounding(rates, t)) * size) return false;
   }
   return true;
 }

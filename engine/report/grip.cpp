@@ -4,6 +4,7 @@
 #include "engine/report/report.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/factored_state.hpp"
+#include "engine/system/drive_rates.hpp"
 #include "engine/system/point_motion.hpp"
 
 #include <algorithm>
@@ -41,12 +42,7 @@ std::string holder_of(const System& system, const Mechanism& mechanism, int body
 // N/m, of what moves: its weight, and what holds it at its speed, by the mechanism's reach; springs.
 double usual_stiffness(const Problem& problem, double mass) {
   const Parameters& p = problem.parameters;
-  double fastest = 0; // rad/s, the largest of the drives
-  for (const DrivenCoordinate& drive : problem.system.drives) {
-    const auto l = static_cast<std::size_t>(drive.link);
-    const double unit = problem.system.links[l].type == LinkType::revolute ? 1 : p.length;
-    fastest = std::max(fastest, std::abs(p.links[l].speed) / unit);
-  }
+  const double fastest = fastest_given_rate(problem.system, p);
   double sum = mass * (p.gravity.norm() / p.length + fastest * fastest);
   for (const PointSpringParameters& spring : p.springs)
     sum = std::max(sum, spring.pull_slope(spring.free_length));

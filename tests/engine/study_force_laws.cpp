@@ -208,6 +208,22 @@ TEST_CASE("snap-through: folds stand at the crests of a spring's law", "[laws][b
   CHECK(std::abs(loads[0] - crest((b + w) / (3 * c))) < 1e-10);
 }
 
+TEST_CASE("the equilibria of a slide of micrometres drawn at the origin are told apart", "[laws][scale]") {
+  // k d (d^2 / a^2 - 1), between stops: the reach is theirs, not a metre.
+  const double a = 4e-7;
+  Mechanism m = sliding(1e-9, by_law(slide_along_x(), "1.25e13 N/m^3*deflection^3 - 2 N/m*deflection"));
+  m.joints[0].coordinates[0].stop = Stop{-1e-6, 1e-6, 1e3};
+  const AllSolutions all = Analysis(m).solve_all();
+  std::vector<double> found;
+  for (const Solution& s : all.equilibria)
+    found.push_back(s.coordinates[0].value);
+  std::ranges::sort(found);
+  REQUIRE(found.size() == 3);
+  CHECK_THAT(found[0], WithinRel(-a, 1e-12));
+  CHECK(std::abs(found[1]) < 1e-18);
+  CHECK_THAT(found[2], WithinRel(a, 1e-12));
+}
+
 TEST_CASE("an undamped motion on springs by laws keeps its energy", "[laws]") {
   Mechanism m = sliding(0.7, by_law(slide_along_x(), "table(deflection, [-50 mm, -90 N], [0 mm, 0 N], "
                                                      "[20 mm, 10 N], [60 mm, 90 N])"));
