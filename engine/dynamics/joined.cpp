@@ -70,7 +70,11 @@ void add(RunStatistics& sum, const RunStatistics& part) {
 
 std::size_t sample_before(const Run& run, double time) {
   const auto later = std::ranges::upper_bound(run.time, time);
-  return later == run.time.begin() ? 0 : static_cast<std::size_t>(later - run.time.begin()) - 1;
+  if (later == run.time.begin()) return 0;
+  const auto next = static_cast<std::size_t>(later - run.time.begin());
+  const bool at_next =
+      next < run.time.size() && run.time[next] - time <= same_sample * (run.time[next] - run.time[next - 1]);
+  return at_next ? next : next - 1;
 }
 
 Run joined(const Run& before, std::size_t last, const Run& after) {

@@ -6,7 +6,11 @@
 
 namespace flyball {
 
-// Index of the last sample at or before `time` (s); 0 where all are later. The run must have samples.
+// A time no further from a sample than this part of the distance of samples is that sample's.
+inline constexpr double same_sample = 1e-6;
+
+// Index of the last sample at or before `time` (s), or at it by same_sample; 0 where all are later. The run
+// must have samples.
 std::size_t sample_before(const Run& run, double time);
 
 // The first samples of `before`, the one of index `last` included, followed by `after`, which was started

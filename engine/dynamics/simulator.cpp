@@ -32,7 +32,7 @@ constexpr double still = 1e-9;
 const std::string locked = "the loops have come to a position that they cannot pass";
 
 std::string at_time(double t) {
-  return "at t = " + number_text(std::round(t * 1e9) / 1e9) + " s";
+  return "at t = " + rounded_text(t, 10) + " s";
 }
 
 } // namespace
@@ -593,7 +593,8 @@ bool Simulator::advance(double until, bool sample_end) {
   x.run.status = RunStatus::completed;
   x.watch.allow(x.options.time_limit - x.run.statistics.run_time_s);
   const auto clock = std::chrono::steady_clock::now();
-  const double rounding = 1e-12 * std::max(1., std::abs(until));
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(until) +
+                          (x.options.rate > 0 ? 1e-9 / x.options.rate : 0);
   bool well = true;
   while (well && x.options.rate > 0 && x.grid(x.next_sample) <= until + rounding) {
     const double t = x.grid(x.next_sample);

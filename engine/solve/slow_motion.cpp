@@ -58,7 +58,9 @@ class SlowMotion {
     KktSystem& kkt = w_.kkt(p_);
     const Eigen::VectorXd f = w_.residual.f, phi = w_.residual.phi;
     const Unknowns begin = z_;
-    constexpr double least_time = 1e-12, most_time = 1e12;
+    constexpr double least_time = 1e-30, most_time = 1e12;
+    constexpr double least_size =
+        1e-12; // scaled: what is not as the model says so near is not to be followed
     for (; time_ > least_time; time_ /= 4) {
       kkt.factor(1 / time_);
       if (!kkt.known()) continue;
@@ -76,7 +78,10 @@ class SlowMotion {
       const double before = f.cwiseProduct(p_.scaling.column).norm();
       const double wrong = (left - model).norm() / std::max(before, 1e-300);
       const bool at_rest = size < 1e-6 && scaled_residual(p_, w_) < tolerance::near_balance;
-      if (wrong > 0.3 && !at_rest) continue;
+      if (wrong > 0.3 && !at_rest) {
+        if (size < least_size) return false;
+        continue;
+      }
       if (wrong < 0.1 && size < longest / 3) time_ = std::min(3 * time_, most_time);
       rests_ = at_rest;
       return true;
@@ -88,7 +93,7 @@ class SlowMotion {
   Unknowns& z_;
   Workspace& w_;
   Eigen::VectorXd resisted_; // W x of a step
-  double time_ = 1e-3;       // s, of the next step
+  double time_ = 1e-3;       // s^2, as W is an inertia: pseudo-time of the next step
   int iterations_ = 0;
   bool rests_ = false;
 };

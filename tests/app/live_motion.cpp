@@ -173,6 +173,32 @@ TEST_CASE("a motion goes on from any moment with other numbers") {
   CHECK(poses_at(run, 3.2)[1].position.isApprox(poses_at(tail, 3.2)[1].position, 1e-12));
 }
 
+TEST_CASE("a motion of a microsecond goes on from the very sample that is meant") {
+  Mechanism governor = shipped("governor");
+  SimulationOptions options = lasting(1e-6);
+  options.rate = 2e9; // as a window samples it
+  Motions live(BackgroundWorker::Mode::immediate);
+  start(live, governor, options);
+  const Motion first = finished(live);
+  REQUIRE(first.run);
+  const std::vector<double>& times = first.run->time;
+  REQUIRE(times.size() == 2001);
+  set_parameter(governor, "joints.spin.drive.speed", 14);
+  const std::size_t last = 700;
+  const double distance = times[last + 1] - times[last];
+  for (const double time : {times[last], times[last] + 0.4 * distance, times[last] - 1e-9 * distance}) {
+    CAPTURE(time);
+    CHECK(sample_before(*first.run, time) == last);
+    start(live, {shared(governor), options, first.run, time});
+    const Motion second = finished(live);
+    REQUIRE(second.run);
+    REQUIRE(second.run->segments.size() == first.run->segments.size() + 1);
+    CHECK(second.run->segments.back().first == last);
+    CHECK(second.run->time.size() == times.size());
+    CHECK(second.run->time.back() == Approx(1e-6).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("a motion that cannot begin says why") {
   const Mechanism crank = shipped("governor");
   SimulationOptions options = lasting(1);
