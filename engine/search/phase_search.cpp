@@ -7,6 +7,7 @@
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/stability/stability.hpp"
+#include "engine/system/constraint_row.hpp"
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
@@ -117,7 +118,7 @@ class PhaseSearch {
     Eigen::VectorXd out(system.nv + system.rows);
     out << w_.residual.f.cwiseProduct(given_.scaling.column),
         w_.residual.phi.cwiseProduct(given_.scaling.row);
-    for (const CutJoint& cut : system.cuts) // closed at any angle, or tied by their rates
+    for (const CutJoint& cut : system.cuts) // see closed_angles()
       if (cut.by_rates)
         out.segment(system.nv + cut.first_row, static_cast<Eigen::Index>(cut.rows.size())).setZero();
     return out;
@@ -142,6 +143,32 @@ class PhaseSearch {
     return out;
   }
 
+  // Along which gears and loops that are tied by their rates stay closed, too: orthonormal, by column.
+  std::optional<Eigen::MatrixXd> closed_angles() {
+    const System& system = given_.system;
+    turn(Eigen::VectorXd::Zero(found_));
+    forward<double>(system, p_, q_, 0, w_.kinematics);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(system.rows, found_);
+    for (std::size_t c = 0; c < system.cuts.size(); ++c) {
+      const CutJoint& cut = system.cuts[c];
+      for (std::size_t r = 0; r < cut.rows.size() && cut.by_rates; ++r)
+        row_gradient(cut, p_.cuts[c], cut.rows[r], w_.kinematics, [&](int v, double g) {
+          for (Eigen::Index i = 0; i < found_; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const Eigen::Index row = cut.first_row + static_cast<Eigen::Index>(r);
+            if (system.links[links_[k]].v == v) rows(row, i) += g * given_.scaling.row[row] * units_[k];
+          }
+        });
+    }
+    SymmetricEigen squares; // of what opens them
+    if (!rows.allFinite() || !squares.compute(rows.transpose() * rows)) return {};
+    constexpr double opens = 1e-12;
+    Eigen::Index closed = 0;
+    while (closed < found_ && squares.values()[closed] <= opens * squares.values()[found_ - 1])
+      ++closed;
+    return Eigen::MatrixXd(squares.vectors().leftCols(rows.isZero(0) ? found_ : closed));
+  }
+
   // V and h.
   bool find_directions() {
     const auto m = static_cast<Eigen::Index>(links_.size());
@@ -158,13 +185,16 @@ class PhaseSearch {
     }
     turn(Eigen::VectorXd::Zero(m));
     if (!by_angles.allFinite()) return false;
+    const auto closed = closed_angles();
+    if (!closed || closed->cols() == 0) return false;
+    closed_ = *closed;
     const Eigen::MatrixXd by_found = by_angles.leftCols(found_);
-    const auto parts = singular_vectors(by_found);
+    const auto parts = singular_vectors(by_found * closed_);
     if (!parts || parts->values.size() == 0 || !(parts->values[0] > 0)) return false;
     Eigen::Index rank = 0;
     while (rank < parts->values.size() && parts->values[rank] > counts * parts->values[0])
       ++rank;
-    directions_ = parts->right.leftCols(rank);
+    directions_ = closed_ * parts->right.leftCols(rank);
     const auto given = least_squares_columns(by_found * directions_, by_angles.rightCols(m - found_));
     if (!given) return false;
     of_given_ = given->transpose();
@@ -318,7 +348,8 @@ class PhaseSearch {
         given_.system.cuts, [](const CutJoint& cut) { return cut.by_rates && cut.type != JointType::gear; });
     Eigen::VectorXd by = directions_ * along;
     const Eigen::VectorXd first = Eigen::VectorXd::Unit(by.size(), 0),
-                          together = first - directions_ * (directions_.transpose() * first);
+                          together = closed_ * (closed_.transpose() * first) -
+                                     directions_ * (directions_.transpose() * first);
     if (!tied && together[0] > counts) by -= by[0] / together[0] * together;
     turn(by);
   }
@@ -411,7 +442,8 @@ class PhaseSearch {
   std::vector<std::size_t> links_; // that are driven: first those whose speeds are found
   Eigen::Index found_ = 0;         // how many these are
   std::vector<double> units_;      // of links_: 1 rad, or the reach
-  Eigen::MatrixXd directions_;     // V
+  Eigen::MatrixXd closed_;         // angles along which what is tied by rates stays closed
+  Eigen::MatrixXd directions_;     // V, among these
   Eigen::MatrixXd of_given_;       // h by the speeds of the others, over their units
   Eigen::VectorXd drift_;          // h, 1/s
   Linearization linearization_;

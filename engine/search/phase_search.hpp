@@ -2,8 +2,9 @@
 // that a spring ties, or that close a loop through one, turn alike, the one some way behind the other.
 //
 // Angles along which the balance or the loops change cannot drift as the drives turn on. With V a basis of
-// these and w the speeds, V^T w + h = 0, h what drives at given speeds do; that is as many equations as there
-// are angles along V, and Newton-Raphson solves them by these, the speeds being those of the balance there.
+// these, along which gears and what else is tied by rates stay closed, and w the speeds, V^T w + h = 0, h what
+// drives at given speeds do; that is as many equations as there are angles along V, and Newton-Raphson solves
+// them by these, the speeds being those of the balance there.
 #pragma once
 
 #include "engine/solve/newton.hpp"

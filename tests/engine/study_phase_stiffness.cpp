@@ -417,6 +417,32 @@ TEST_CASE("of states that stand turned a stable one is the answer, wherever it l
   CHECK_THAT(at("p2") - at("p0"), WithinAbs(coordinate(s, "p2").value - coordinate(s, "p0").value, 1e-6));
 }
 
+TEST_CASE("two couplings side by side, one of them behind gears", "[phase][coupling]") {
+  Mechanism m;
+  const Vec3 inertia(0.2, 0.2, 0.3);
+  m.bodies = {body("a", 1, {0, 0, 0}, inertia), body("b", 1, {0, 0, 0.1}, inertia),
+              body("c", 1, {0.3, 0, 0}, inertia), body("d", 1, {0.3, 0, 0.1}, inertia)};
+  const Vec3 axis(0, 0, 1);
+  m.joints = {torque_driven(revolute("pa", "ground", "a", {0, 0, 0}, axis), 5, "5 N m - 1 N m s*rate(pa)"),
+              torque_driven(revolute("pb", "ground", "b", {0, 0, 0.1}, axis), 5, "-0.2 N m s*rate(pb)"),
+              revolute("pc", "ground", "c", {0.3, 0, 0}, axis),
+              revolute("pd", "ground", "d", {0.3, 0, 0.1}, axis),
+              dampened(sprung(revolute("c", "a", "b", {0, 0, 0.05}, axis), 10), 0.1),
+              dampened(sprung(revolute("k", "c", "d", {0.3, 0, 0.05}, axis), 4), 0.05),
+              gear("g1", "pa", "pc", 2),
+              gear("g2", "pd", "pb", 0.5)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  // k = 2 c, and both carry what b takes.
+  const double c = -0.2 * 5 / 1.2 / (10 + 2 * 4 * 2);
+  CHECK_THAT(value(s, "c"), WithinRel(c, 1e-9));
+  CHECK_THAT(value(s, "k"), WithinRel(2 * c, 1e-9));
+  CHECK_THAT(speed(s, "pb"), WithinRel(5 / 1.2, 1e-11));
+  CHECK(s.stable == true);
+}
+
 TEST_CASE("rates of a state that stands turned: against differences of solves", "[phase][coupling]") {
   enum class Tie { coupling, spring_and_given_speed };
   const Tie tie = GENERATE(Tie::coupling, Tie::spring_and_given_speed);
