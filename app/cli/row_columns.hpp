@@ -3,7 +3,6 @@
 
 #include "app/cli/row_output.hpp"
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

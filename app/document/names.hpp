@@ -4,7 +4,6 @@
 #include "app/document/part.hpp"
 
 #include <string>
-#include <string_view>
 #include <unordered_set>
 
 namespace flyball {

@@ -6,7 +6,6 @@
 #include "engine/task/progress.hpp"
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>

@@ -8,7 +8,6 @@
 #include "engine/report/analysis.hpp"
 #include "engine/study/friction_report.hpp"
 
-#include <functional>
 #include <memory>
 
 namespace flyball {

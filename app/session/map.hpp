@@ -9,7 +9,6 @@
 #include "engine/study/hopf_curve.hpp"
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -19,14 +19,15 @@
 
 namespace flyball {
 
+namespace {
+
+// 1, 2 or 5 times a power of ten, not below the value.
 double round_up(double value) {
   const double power = std::pow(10, std::floor(std::log10(value)));
   for (const double m : {1.0, 2.0, 5.0})
     if (value <= m * power * (1 + 1e-12)) return m * power;
   return 10 * power;
 }
-
-namespace {
 
 std::vector<std::string> split(std::string_view address) {
   std::vector<std::string> parts(1);
@@ -311,6 +312,12 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
   if (!always && (*value == 0 || *saved == 0)) return false;
   control->value = *value;
   return true;
+}
+
+double new_drive_speed(const DisplayUnits& units) {
+  constexpr double rad_per_s = 10;
+  const ShownUnit unit = shown_unit("rad/s", units);
+  return unit.si(round_up(unit.shown(rad_per_s)));
 }
 
 Slider slider_for(const Mechanism& mechanism, const std::string& address, const DisplayUnits& units) {

@@ -46,8 +46,8 @@ bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechan
 // A slider with a range that suits the number's present value and is round in `units`. Throws SceneError for
 // an unknown address.
 Slider slider_for(const Mechanism& mechanism, const std::string& address, const DisplayUnits& units);
-// 1, 2 or 5 times a power of ten, the least that is not below the value, which is above zero.
-double round_up(double value);
+// Of a new drive that turns (rad/s): 10, or the next that is round as it is shown.
+double new_drive_speed(const DisplayUnits& units);
 // "speed of spin", "mass of ball1", "y of gravity".
 std::string parameter_phrase(std::string_view address);
 // The sentence with the number's phrase where it names the address.

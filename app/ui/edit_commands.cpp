@@ -1,6 +1,7 @@
 #include "app/ui/edit_commands.hpp"
 
 #include "app/document/backlash.hpp"
+#include "app/document/bearing_drive.hpp"
 #include "app/document/clipboard.hpp"
 #include "app/document/copies.hpp"
 #include "app/document/create.hpp"
@@ -237,6 +238,40 @@ void give_backlash_to_selected(Session& session) {
     selection.set({PartKind::joint, give_backlash(mechanism, gear)});
   });
   session.notice = "Half of the play is to either side; its stop is as stiff as the teeth.";
+}
+
+namespace {
+
+// The body that a bearing holds, of what alone is selected; empty: none.
+std::string selected_in_bearings(const Session& session) {
+  if (session.selection().parts.size() != 1) return {};
+  const Part& part = session.selection().parts[0];
+  for (const Force& force : session.mechanism().forces)
+    if (force.type == ForceType::bearing && ((part.kind == PartKind::body && force.bodies[1] == part.name) ||
+                                             (part.kind == PartKind::force && force.name == part.name)))
+      return force.bodies[1];
+  return {};
+}
+
+} // namespace
+
+bool can_drive_in_bearings(const Session& session) {
+  return !selected_in_bearings(session).empty();
+}
+
+void drive_selected_in_bearings(Session& session) {
+  if (const std::string body = selected_in_bearings(session); !body.empty()) drive_in_bearings(session, body);
+}
+
+void drive_in_bearings(Session& session, const std::string& body) {
+  if (const std::string why = bearing_drive_refused(session.document.stored(), body); !why.empty()) {
+    session.notice = why;
+    return;
+  }
+  edit(session, "Drive " + body + " in its bearings", [&](Mechanism& mechanism, Selection& selection) {
+    selection.set({PartKind::joint, give_bearing_drive(mechanism, body, new_drive_speed(session.units))});
+  });
+  session.notice = "Its bearings hold a sleeve without mass now, in which the drive turns " + body + ".";
 }
 
 } // namespace flyball

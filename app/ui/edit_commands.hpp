@@ -3,6 +3,8 @@
 
 #include "app/document/gear_kinds.hpp"
 
+#include <string>
+
 namespace flyball {
 
 struct Session;
@@ -23,5 +25,11 @@ bool can_gear_selected(const Session& session, GearKind kind);
 // Of the gear that alone is selected.
 bool can_give_backlash(const Session& session);
 void give_backlash_to_selected(Session& session);
+
+// Of the body that alone is selected, or that the selected bearing holds.
+bool can_drive_in_bearings(const Session& session);
+void drive_selected_in_bearings(Session& session);
+// Of that body.
+void drive_in_bearings(Session& session, const std::string& body);
 
 } // namespace flyball

@@ -1,13 +1,19 @@
 // What a person can do at once where there is no steady state.
 #include "app/ui/remedies.hpp"
 
+#include "app/document/bearing_drive.hpp"
 #include "app/document/remedies.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/edit_commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <set>
+#include <string>
 
 namespace flyball {
 
@@ -85,8 +91,34 @@ void holding_buttons(Buttons& buttons, Session& session) {
 
 } // namespace
 
+namespace {
+
+// Bodies that stand in elastic bearings, free to turn, which nothing turns.
+void bearing_buttons(Session& session, Ui& ui) {
+  const Mechanism& mechanism = session.mechanism();
+  std::set<std::string> seen;
+  std::optional<Buttons> buttons;
+  for (const Force& force : mechanism.forces) {
+    if (force.type != ForceType::bearing || !seen.insert(force.bodies[1]).second) continue;
+    const std::string& body = force.bodies[1];
+    if (!bearing_drive_refused(mechanism, body).empty()) continue;
+    if (!buttons) {
+      paragraph("Nothing turns what stands in bearings.", colors_of(ui).dim);
+      buttons.emplace(ui);
+    }
+    buttons->add(
+        "drive/" + body, ("Drive " + body + " in its bearings").c_str(), command("edit.bearing_drive").help,
+        [&session, body] { drive_in_bearings(session, body); }, true);
+  }
+  if (buttons) ImGui::Dummy({0, 2 * ui.scale});
+}
+
+} // namespace
+
 void remedies(Session& session, Ui& ui) {
   const Solution& solution = session.answer.solution;
+  if (solution.status == Status::converged && solution.stability_reason == StabilityReason::neutral)
+    return bearing_buttons(session, ui);
   if (solution.status != Status::not_converged && solution.status != Status::no_steady_state) return;
   ImGui::Dummy({0, 2 * ui.scale});
   Buttons buttons(ui);

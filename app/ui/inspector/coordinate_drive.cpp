@@ -15,9 +15,8 @@ const char* drive_refused(const Joint& joint, int coordinate) {
 }
 
 void set_driven(Session& session, Ui& ui, const std::string& joint, int coordinate, bool driven) {
-  constexpr double rad_per_s = 10, m_per_s = 0.1; // of a new drive, or the next that is round as it is shown
-  const ShownUnit turning = rate_unit(true, session.units);
-  const double turned = turning.si(round_up(turning.shown(rad_per_s)));
+  constexpr double m_per_s = 0.1; // of a new drive
+  const double turned = new_drive_speed(session.units);
   edit_joint(session, ui, (driven ? "Add drive to " : "Remove drive of ") + joint, joint, [=](Joint& same) {
     const auto i = static_cast<std::size_t>(coordinate);
     if (i >= same.coordinates.size()) return;

@@ -138,6 +138,15 @@ const std::array edit_commands{
                 "rim between two stops.",
             .run = given<give_backlash_to_selected>,
             .enabled = of_session<can_give_backlash>},
+    Command{.id = "edit.bearing_drive",
+            .title = "Drive in its bearings",
+            .help =
+                "A drive for the selected body that elastic bearings hold: they hold a sleeve then, in which "
+                "it turns.",
+            .run = given<drive_selected_in_bearings>,
+            .enabled = of_session<can_drive_in_bearings>,
+            .words = "rotor shaft spin turn speed",
+            .lacks = "no body that bearings hold is selected."},
     Command{.id = "edit.settle",
             .title = "Draw as it settles",
             .help = "The steady state becomes the drawn pose; the mechanism stays the same.",

@@ -135,6 +135,7 @@ void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& 
                                          {GearKind::screw, "edit.screw"}})
     if (can_gear_selected(session, kind)) command_item(ui, commands, command_id);
   if (can_give_backlash(session)) command_item(ui, commands, "edit.backlash");
+  if (can_drive_in_bearings(session)) command_item(ui, commands, "edit.bearing_drive");
   ImGui::Separator();
   if (alone && id.kind == PartKind::joint)
     drive_items(session, ui, mechanism.joints[static_cast<std::size_t>(id.index)]);

@@ -4,9 +4,6 @@
 #include "app/session/parameter_list.hpp"
 #include "app/ui/widgets/shown_rate.hpp"
 
-#include <map>
-#include <string>
-
 namespace flyball {
 
 struct PanelRect;
