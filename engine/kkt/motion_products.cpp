@@ -1,9 +1,8 @@
 #include "engine/kkt/motion_products.hpp"
 
 #include "engine/linear/spectral.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/system/constraint_row.hpp"
-
-#include <random>
 
 namespace flyball {
 namespace {
@@ -17,10 +16,9 @@ Mat3 square_root(const Mat3& a) {
 
 Eigen::VectorXd any_motion(int size) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> any(-1, 1);
   Eigen::VectorXd x(size);
   for (double& entry : x)
-    entry = any(random);
+    entry = uniform(random, -1, 1);
   return x;
 }
 

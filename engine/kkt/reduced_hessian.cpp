@@ -1,9 +1,9 @@
 #include "engine/kkt/reduced_hessian.hpp"
 
 #include "engine/linear/large.hpp"
+#include "engine/linear/uniform_random.hpp"
 
 #include <algorithm>
-#include <random>
 
 namespace flyball {
 namespace {
@@ -132,10 +132,9 @@ Eigen::MatrixXd ReducedHessian::null_basis() const {
 
 Eigen::VectorXd mixture_of(const Eigen::MatrixXd& directions) {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> any(0.5, 1);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(directions.rows());
   for (Eigen::Index i = 0; i < directions.cols(); ++i)
-    sum += (i % 2 == 0 ? 1 : -1) * any(random) * directions.col(i);
+    sum += (i % 2 == 0 ? 1 : -1) * uniform(random, 0.5, 1) * directions.col(i);
   return sum / sum.lpNorm<Eigen::Infinity>();
 }
 

@@ -8,9 +8,8 @@ namespace flyball {
 
 class ReducedHessian {
  public:
-  // `scale` (positive, by row) makes the diagonal comparable; see factor().
-  // Symmetric matrices are averaged with their transposes. `noise[i]` is the size below which entry (i, i) is
-  // rounding.
+  // Equilibrated by its own diagonal. Symmetric matrices are averaged with their transposes. `noise[i]` is
+  // the size below which entry (i, i) is rounding.
   void factor(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& noise, bool symmetric);
 
   // Directions without stiffness get no component.

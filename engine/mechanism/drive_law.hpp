@@ -8,7 +8,6 @@
 
 #include "engine/mechanism/measure_plan.hpp"
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -6,7 +6,6 @@
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

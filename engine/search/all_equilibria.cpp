@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 #include <random>
 
 namespace flyball {
@@ -284,19 +283,6 @@ class Searcher {
     }
   }
 
-  // The Newton step from an evaluated and factored state, and the multipliers after it: of small systems
-  // solved for whole, so that those of redundant rows are of this state alone.
-  void find_step(Unknowns& z) {
-    if (const DenseKkt* matrices = w_.matrices(p_)) {
-      if (p_.system.rows > 0)
-        w_.residual.f.noalias() -= matrices->linearization.constraint.transpose() * z.lambda;
-      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, z.lambda);
-    } else {
-      newton_step(p_, w_.residual.f, w_.residual.phi, w_, w_.scaled_step, w_.trial.lambda);
-      z.lambda += w_.trial.lambda;
-    }
-  }
-
   // Newton-Raphson on the balance times the deflation operator: the same direction, another length (Farrell
   // et al., section 3.2). True where it came near an equilibrium that is not known.
   bool deflated_newton(Unknowns& z) {
@@ -308,7 +294,8 @@ class Searcher {
       if (!std::isfinite(scaled_residual(p_, w_))) return false;
       factor(p_, z, w_);
       if (!w_.kkt(p_).known()) return false;
-      find_step(z);
+      const bool whole = w_.matrices(p_) != nullptr; // those of redundant rows are then of this state alone
+      find_step(p_, whole, z, w_);
       const double size = largest_size(w_.scaled_step);
       if (!std::isfinite(size) || size == 0) return false;
       // Directional derivative of the operator along the step, by a central difference.

@@ -1,14 +1,13 @@
 #include "engine/search/find_equilibrium.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/solve/eigenvector_descent.hpp"
 #include "engine/solve/homotopy.hpp"
 #include "engine/solve/slow_motion.hpp"
 #include "engine/solve/trust_region.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/stability.hpp"
-
-#include <random>
 
 namespace flyball {
 namespace {
@@ -304,12 +303,11 @@ class EquilibriumSearch {
     // Gauss-Newton can stall: try from a few places around the start before calling it infeasible.
     record_opening();
     std::mt19937 random(12345);
-    std::uniform_real_distribution<double> spread(-0.7, 0.7);
     for (int i = 0; i < 12 && !p_.cancelled(); ++i) {
       w_.assembled = start_;
       w_.step.resize(p_.system.nv);
       for (Eigen::Index k = 0; k < w_.step.size(); ++k)
-        w_.step[k] = spread(random) * p_.scaling.column[k];
+        w_.step[k] = uniform(random, -0.7, 0.7) * p_.scaling.column[k];
       retract<double>(p_.system, w_.step, w_.assembled);
       if (assembled()) return true;
     }

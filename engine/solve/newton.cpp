@@ -52,17 +52,6 @@ void take_off_multipliers(const Problem& problem, const Eigen::VectorXd& lambda,
   take_off(problem.system.division.between, 0);
 }
 
-// The step from an evaluated and factored state, and the multipliers there: solved for whole, so that nothing
-// stays of those of worse places, or corrected, so that nothing stays of the rounding of the last solve.
-void find_step(const Problem& problem, bool whole, Unknowns& z, Workspace& w) {
-  if (whole) take_off_multipliers(problem, z.lambda, w);
-  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
-  if (whole)
-    z.lambda = w.trial.lambda;
-  else
-    z.lambda += w.trial.lambda;
-}
-
 // After a short step of this size another with the same factors: of sparse equations it costs a fifth of one
 // with new factors, and takes an error e^2 on to e^3 (Shamanskii, A modification of Newton's method, 1967).
 void step_again(const Problem& problem, double size, Unknowns& z, Workspace& w) {
@@ -94,6 +83,15 @@ double scaled_residual(const Problem& problem, const Workspace& w) {
     worst = std::max(worst, std::abs(w.residual.phi[i]) * problem.scaling.row[i]);
   return std::isfinite(w.residual.f.sum() + w.residual.phi.sum()) ? worst
                                                                   : std::numeric_limits<double>::infinity();
+}
+
+void find_step(const Problem& problem, bool whole, Unknowns& z, Workspace& w) {
+  if (whole) take_off_multipliers(problem, z.lambda, w);
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  if (whole)
+    z.lambda = w.trial.lambda;
+  else
+    z.lambda += w.trial.lambda;
 }
 
 void factor_constraints(const Problem& problem, Workspace& w) {
@@ -194,7 +192,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
             now < tolerance::merit_rounding || fraction < tolerance::least_fraction)
           break;
       }
-      if (fraction < tolerance::least_fraction && size > settings.step_tolerance) break;
+      if (fraction < tolerance::least_fraction && size > tolerance::step) break;
     } else {
       apply_step(problem, w.scaled_step, 1, z.q, w);
     }
@@ -208,7 +206,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     // So far away only a balance that is as good as linear leads.
     if (size > tolerance::far && !(scaled_residual(problem, w) < tolerance::near_balance)) break;
     const double enough =
-        settings.step_tolerance +
+        tolerance::step +
         (size > tolerance::far || outcome.largest_step > tolerance::far ? resolution(problem, z.q) : 0);
     const double contraction = previous_step > 0 ? size / (previous_step * previous_step) : 0;
     const bool next_is_none = settings.trusting && previous_step > 0 && size < tolerance::short_step &&

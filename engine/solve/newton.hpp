@@ -39,10 +39,14 @@ void factor_with_multipliers(const Problem& problem, Unknowns& z, Workspace& w);
 void newton_step(const Problem& problem, const Eigen::VectorXd& f, const Eigen::VectorXd& phi, Workspace& w,
                  Eigen::VectorXd& scaled_step, Eigen::VectorXd& lambda);
 
+// The step from an evaluated and factored state in w.scaled_step, and the multipliers there: solved for
+// whole, so that nothing stays of those of worse places, or corrected, so that nothing stays of the rounding
+// of the last solve.
+void find_step(const Problem& problem, bool whole, Unknowns& z, Workspace& w);
+
 struct NewtonSettings {
   int max_iterations = 30;
-  bool damped = false;                     // halve steps until the scaled residual falls
-  double step_tolerance = tolerance::step; // scaled
+  bool damped = false; // halve steps until the scaled residual falls
   // 1/s^2, of the metric added to the stiffness: it keeps still what nothing resists, where rounding and what
   // is left of the forces look like a little stiffness of either sign (regularised Newton method; Li,
   // Fukushima, Qi, Yamashita, Regularized Newton methods for convex minimization problems with singular

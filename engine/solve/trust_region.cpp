@@ -1,9 +1,8 @@
 #include "engine/solve/trust_region.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/solve/tolerances.hpp"
-
-#include <random>
 
 namespace flyball {
 namespace {
@@ -328,10 +327,9 @@ class TrustRegion {
   // which is nearly singular.
   void find_lowest_direction() {
     std::mt19937 random(7);
-    std::uniform_real_distribution<double> any(-1, 1);
     lowest_.resize(step_.size());
     for (double& x : lowest_)
-      x = any(random);
+      x = uniform(random, -1, 1);
     double size = std::sqrt(kkt_.metric(lowest_, other_));
     for (int i = 0; i < 6; ++i) {
       lowest_image_ = other_ / size;

@@ -6,6 +6,8 @@
 #include "engine/stability/periodic_motion.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numbers>
 #include <variant>
 

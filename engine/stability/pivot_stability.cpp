@@ -2,10 +2,9 @@
 
 #include "engine/kkt/motion_products.hpp"
 #include "engine/linear/largest.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/stability/play.hpp"
-
-#include <random>
 
 namespace flyball {
 namespace {
@@ -70,12 +69,11 @@ Stability of_shifted_directions(const FactoredState& at) {
   Stability out;
   KktSystem& kkt = at.kkt();
   std::mt19937 random(11);
-  std::uniform_real_distribution<double> any(-1, 1);
   Eigen::VectorXd direction, one(problem.system.nv), image;
   std::vector<bool> takes_part(static_cast<std::size_t>(problem.system.nv));
   for (int i = 0; i < samples; ++i) {
     for (double& x : one)
-      x = any(random);
+      x = uniform(random, -1, 1);
     for (int k = 0; k < iterations; ++k) {
       kkt.metric(one, image);
       kkt.solve(image, one);

@@ -4,7 +4,6 @@
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 namespace flyball {

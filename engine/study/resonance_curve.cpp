@@ -14,6 +14,7 @@ namespace {
 
 // Of a point from which no steady state is found, as sweep() looks for others (see SolveOptions::search).
 constexpr double point_search = 0.05; // s
+constexpr double finest = 1. / 1024;  // of the range: points are no nearer
 
 using Outputs = std::vector<ResonanceOutput>;
 
@@ -160,7 +161,7 @@ class Curve {
       bends[i] = bend(i, all);
     double most = options_.tolerance;
     for (std::size_t i = 0; i + 1 < count; ++i) {
-      if (places()[i + 1] - places()[i] <= options_.finest) continue;
+      if (places()[i + 1] - places()[i] <= finest) continue;
       double rough = std::max(bends[i], bends[i + 1]);
       if (!alike(*curve_.points[i], *curve_.points[i + 1])) rough = 1; // where it changes is told
       if (rough <= options_.tolerance) continue;

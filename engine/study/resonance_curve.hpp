@@ -60,7 +60,6 @@ struct ResonanceOptions {
   int most = 257;            // in all
   double tolerance = 0.01;   // how far a point may be off the line through its neighbours, of what an output
                              // goes through over the range
-  double finest = 1. / 1024; // of the range: points are no nearer
   // Of the equations of motion, of all points together: then no other point is begun.
   long most_evaluations = std::numeric_limits<long>::max();
   const std::atomic<bool>* cancel = nullptr; // the point under way is dropped, those before stay

@@ -6,7 +6,6 @@
 
 #include <Random123/philox.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>

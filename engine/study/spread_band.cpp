@@ -6,7 +6,6 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/study/spread_sampler.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>

@@ -5,7 +5,6 @@
 #include "engine/system/parameters.hpp"
 #include "engine/system/spatial.hpp"
 
-#include <span>
 
 namespace flyball {
 
