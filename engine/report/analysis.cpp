@@ -329,6 +329,9 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                .newton_only = options.newton_only,
                .seconds = options.search,
                .progress = options.progress});
+  if (!steady.holds && !options.nearest && !options.newton_only && problem.form == KktForm::dense &&
+      !problem.cancelled())
+    s.find_turned(problem);
   if (on_friction && !steady.holds && !problem.cancelled())
     if (std::optional<StateOnFriction> state = find_friction_state(*s.mechanism, options)) {
       state->solution.run_time_s =
@@ -336,9 +339,6 @@ Solution Analysis::solve_through(const SolveOptions& options) {
       s.on_friction = std::move(state->analysis);
       return std::move(state->solution);
     }
-  if (!steady.holds && !on_friction && !options.nearest && !options.newton_only &&
-      problem.form == KktForm::dense && !problem.cancelled())
-    s.find_turned(problem);
   Stability stability;
   if (steady.holds && steady.found.minimum && steady.phases.empty() &&
       !stands_on_kink(problem, steady.found.z.q, steady.elsewhere())) {

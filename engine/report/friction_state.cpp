@@ -87,7 +87,7 @@ class Attempt {
     inner.explain = false;
     std::erase_if(inner.start, [&](const auto& named) { return plays(named.first); });
     out.solution = out.analysis.solve(inner);
-    if (out.solution.status != Status::converged || !tell(out)) return std::nullopt;
+    if (out.solution.status != Status::converged || !tell(*changed, out)) return std::nullopt;
     return out;
   } catch (const SceneError&) { // drives that close a loop, say
     return std::nullopt;
@@ -173,9 +173,46 @@ class Attempt {
                                                                       : drive.range->least;
   }
 
+  // Whether it stands still as a fixed joint: see standing_still().
+  bool is_fixed(const Mechanism& changed, std::size_t i) const {
+    const std::size_t j = place(frictions_[i].joint);
+    return changed.joints[j].type == JointType::fixed && mechanism_.joints[j].type != JointType::fixed;
+  }
+
+  // Coordinates of such joints, in the scene's order.
+  void add_fixed(const Mechanism& changed, Solution& s) const {
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      if (parts_[i] != Part::holds || !is_fixed(changed, i)) continue;
+      const int j = frictions_[i].joint;
+      const Joint& joint = mechanism_.joints[place(j)];
+      CoordinateSolution held;
+      held.joint = joint.name;
+      held.angle = is_angle(joint.type, 0);
+      held.value = joint.coordinates[0].drawn;
+      const auto after = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& c) {
+        return find_coordinate(mechanism_, coordinate_label(c)).joint > j;
+      });
+      s.coordinates.insert(after, std::move(held));
+    }
+  }
+
+  // What holds one. Nothing where that changes as the drives turn.
+  std::optional<double> of_fixed(const Joint& joint, const Solution& s) const {
+    const auto reaction = std::ranges::find(s.reactions, joint.name, &Reaction::joint);
+    if (reaction == s.reactions.end() || reaction->varying) return {};
+    const auto parent = std::ranges::find(mechanism_.bodies, joint.bodies[0], &Body::name);
+    Mat3 turned = Mat3::Identity();
+    if (parent != mechanism_.bodies.end())
+      turned = (s.poses[place(static_cast<int>(parent - mechanism_.bodies.begin()))].rotation *
+                parent->rotation.normalized().conjugate())
+                   .toRotationMatrix();
+    return holding_force(joint, *reaction, turned);
+  }
+
   // Puts what was found of drives into the words of friction. False where it is not found what they give.
-  bool tell(StateOnFriction& out) const {
+  bool tell(const Mechanism& changed, StateOnFriction& out) const {
     Solution& s = out.solution;
+    add_fixed(changed, s);
     out.margins.assign(parts_.size(), std::numeric_limits<double>::infinity());
     out.goes = true;
     bool slipping = false;
@@ -212,9 +249,14 @@ class Attempt {
           force.value = holding_->joints[i].force;
           out.margins[i] = 1 - *holding_->takes;
         } else {
-          if (drive == s.drive_torques.end() || drive->nonunique || (drive->varying && !drive->range))
-            return false;
-          force.value = largest(*drive);
+          if (is_fixed(changed, i)) {
+            force.value = of_fixed(joint, s);
+            if (!force.value) return false;
+          } else {
+            if (drive == s.drive_torques.end() || drive->nonunique || (drive->varying && !drive->range))
+              return false;
+            force.value = largest(*drive);
+          }
           out.margins[i] = force.limit > 0     ? 1 - std::abs(*force.value) / force.limit
                            : *force.value == 0 ? 0
                                                : -std::numeric_limits<double>::infinity();

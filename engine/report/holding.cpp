@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/fields.hpp"
@@ -78,6 +79,34 @@ Coordinate& coordinate_at(Mechanism& mechanism, CoordinateReference at) {
 
 void drive_at_rest(Coordinate& c) {
   c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
+}
+
+// Of these coordinates those that close a loop of joints that are driven or held: they cannot be driven, too.
+std::vector<bool> closing_driven_loops(const Mechanism& mechanism,
+                                       std::span<const CoordinateReference> coordinates) {
+  const BodyNumbers numbers(mechanism);
+  BodyGroups driven(numbers);
+  for (const Joint& joint : mechanism.joints)
+    if (joint.type != JointType::gear &&
+        std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); }))
+      driven.join(joint.bodies);
+  std::vector<bool> out;
+  for (const CoordinateReference& c : coordinates) {
+    const Joint& joint = mechanism.joints[static_cast<std::size_t>(c.joint)];
+    const bool one_axis = joint.type == JointType::revolute || joint.type == JointType::prismatic;
+    const bool geared = std::ranges::any_of(mechanism.joints, [&](const Joint& gear) {
+      return gear.type == JointType::gear && std::ranges::find(gear.joints, joint.name) != gear.joints.end();
+    });
+    out.push_back(!driven.join(joint.bodies) && one_axis && !geared);
+  }
+  return out;
+}
+
+void fix(Joint& joint) {
+  joint.type = JointType::fixed;
+  joint.coordinates.clear();
+  joint.formulas.clear();
+  joint.cut.reset();
 }
 
 // Calls act(numbers) for what gears move along with a drive.
@@ -279,10 +308,24 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   }
   locked.sliders.clear();
   locked.measures.clear();
-  for (const std::size_t i : which.independent) {
-    // What it takes is told of a drive in the tree.
-    locked.joints[static_cast<std::size_t>(frictions[i].joint)].cut = false;
-    drive_at_rest(coordinate_at(locked, frictions[i]));
+  std::vector<CoordinateReference> independent;
+  for (const std::size_t i : which.independent)
+    independent.push_back(frictions[i]);
+  const std::vector<bool> fixed = closing_driven_loops(mechanism, independent);
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    Joint& joint = locked.joints[static_cast<std::size_t>(independent[k].joint)];
+    if (fixed[k]) {
+      const Link& link = free.link(free.find(mechanism, independent[k]));
+      if (free.q[link.q] != coordinate_at(locked, independent[k]).drawn) {
+        out.message = "What holding takes is not found away from the drawn pose: " + joint.name +
+                      " closes a loop of driven joints.";
+        return out;
+      }
+      fix(joint);
+      continue;
+    }
+    joint.cut = false; // what it takes is told of a drive in the tree
+    drive_at_rest(coordinate_at(locked, independent[k]));
   }
   std::optional<Compiled> made;
   try {
@@ -303,8 +346,9 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const bool follows = c.joint >= 0 && held.find(locked, c) < 0;
     if (!is_held && !follows) rest.emplace_back(name, value);
   }
-  for (const std::size_t i : which.independent) {
-    const int to = held.find(locked, frictions[i]), from = free.find(mechanism, frictions[i]);
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    if (fixed[k]) continue;
+    const int to = held.find(locked, independent[k]), from = free.find(mechanism, independent[k]);
     const LinkParameters& p = held.numbers(to);
     move_drive(held, held.link(to).drive, free.q[free.link(from).q] - p.drawn);
   }
@@ -328,9 +372,31 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     return out;
   }
   const Unknowns z = evaluate_reported(problem, steady.found.z.q, w);
+  const Kinematics<double> there_drawn = w.kinematics;
   const ReportedForces forces = report_forces(locked, problem, z, w);
   std::vector<double> needed;
-  for (const std::size_t i : which.independent) {
+  for (std::size_t k = 0; k < independent.size(); ++k) {
+    const std::size_t i = which.independent[k];
+    const int c = free.find(mechanism, frictions[i]);
+    CoordinateForce spring = free.numbers(c).force[0];
+    spring.friction = 0;
+    const double of_spring = spring.gradient(free.q[free.link(c).q]);
+    if (fixed[k]) {
+      const Joint& joint = mechanism.joints[static_cast<std::size_t>(frictions[i].joint)];
+      const auto reaction = std::ranges::find(forces.reactions, joint.name, &Reaction::joint);
+      const BodyNumbers numbers(mechanism);
+      const int parent = static_cast<int>(numbers[joint.bodies[0]]) - 1;
+      const Mat3 turned = parent < 0
+                              ? Mat3(Mat3::Identity())
+                              : there_drawn.at(held.system.body_link[static_cast<std::size_t>(parent)]).R;
+      if (reaction == forces.reactions.end() || reaction->varying) {
+        out.message = "What holding takes is not found: what " + joint.name +
+                      " takes changes with the phase of the drives.";
+        return out;
+      }
+      needed.push_back(holding_force(joint, *reaction, turned) + of_spring);
+      continue;
+    }
     const auto torque = std::ranges::find_if(forces.drive_torques, [&](const DriveTorque& d) {
       return d.joint == out.joints[i].joint && d.index == out.joints[i].index;
     });
@@ -346,11 +412,7 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
           out.joints[i].joint + ".";
       return out;
     }
-    const int c = free.find(mechanism, frictions[i]);
-    CoordinateForce spring = free.numbers(c).force[0];
-    spring.friction = 0;
-    const double own = spring.gradient(free.q[free.link(c).q]) +
-                       geared_springs(held, held.link(held.find(locked, frictions[i])).drive);
+    const double own = of_spring + geared_springs(held, held.link(held.find(locked, frictions[i])).drive);
     if (torque->varying && !torque->range) {
       out.message = "What holding takes is not found: what " + out.joints[i].joint +
                     " takes changes with the phase of drives that are too many, or slide, to try all that "
@@ -400,11 +462,22 @@ Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateR
   for (const CoordinateReference& c : coordinates)
     standing.push_back({c, coordinate_at(out, c).drawn});
   put_into_laws(out, standing);
-  for (const CoordinateReference& c : coordinates) {
-    out.joints[static_cast<std::size_t>(c.joint)].cut = false;
-    drive_at_rest(coordinate_at(out, c));
+  const std::vector<bool> fixed = closing_driven_loops(mechanism, coordinates);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    Joint& joint = out.joints[static_cast<std::size_t>(coordinates[i].joint)];
+    if (fixed[i]) {
+      fix(joint);
+      continue;
+    }
+    joint.cut = false;
+    drive_at_rest(coordinate_at(out, coordinates[i]));
   }
   return out;
+}
+
+double holding_force(const Joint& joint, const Reaction& reaction, const Mat3& turned) {
+  const Vec3 axis = turned * joint.axis.normalized();
+  return axis.dot(joint.type == JointType::revolute ? reaction.torque : reaction.force);
 }
 
 Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel,

@@ -110,6 +110,11 @@ std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std
   solve.details = false;
   solve.cancel = cancel_;
   first = Analysis(varied_).solve(solve);
+  if (first.status != Status::converged && !start.empty()) { // states that stand turned are near no start
+    solve.start.clear();
+    solve.nearest = false;
+    if (Solution other = Analysis(varied_).solve(solve); other.turned) first = std::move(other);
+  }
   if (first.status != Status::converged) return std::nullopt;
   if (!first.frictions.empty()) { // rates of what rests on it are none
     first.status = Status::no_steady_state;

@@ -57,6 +57,60 @@ void expect_motion(const Mechanism& m, const Solution& s, const std::string& joi
 
 } // namespace
 
+namespace {
+
+// Two shafts, each in a bearing of its own, 5 N m - 1 N m s w and -0.2 N m s w, and a joint between them.
+Mechanism motor_and_load(const std::string& coupling) {
+  return read_scene(R"json({"flyball": 2, "name": "Motor and load",
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
+      {"name": "b", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.2, 0.3, 0.2]}],
+    "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=5 N m - 1 N m s*rate(pa)", "speed": 5}},
+      {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=-0.2 N m s*rate(pb)", "speed": 3}},
+      {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0.05, 0], "axis": [0, 1, 0], )json" +
+                    coupling + "}]}");
+}
+
+} // namespace
+
+TEST_CASE("a clutch between two shafts in bearings of their own locks or slips") {
+  const double limit = GENERATE(0.5, 0.9, 1.9);
+  CAPTURE(limit);
+  const Mechanism m = motor_and_load(R"("friction": {"limit": )" + number_text(limit) + "}");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  REQUIRE(s.frictions.size() == 1);
+  const double taken = 0.2 * 5 / 1.2;
+  const bool locks = limit > taken;
+  CHECK(s.frictions[0].slips == !locks);
+  CHECK_THAT(s.frictions[0].value.value(), WithinRel(locks ? taken : limit, 1e-10));
+  CHECK_THAT(rate(s, "pa"), WithinRel(locks ? 5 / 1.2 : 5 - limit, 1e-10));
+  CHECK_THAT(rate(s, "pb"), WithinRel(locks ? 5 / 1.2 : limit / 0.2, 1e-10));
+  if (!locks) return;
+  CHECK(value(s, "c") == 0);
+  CHECK_THAT(s.message, ContainsSubstring("Friction holds c as drawn"));
+  const Holding holding = find_holding(m, {});
+  CHECK_THAT(holding.takes.value(), WithinRel(taken / limit, 1e-10));
+}
+
+TEST_CASE("a flexible coupling with friction has a band") {
+  const Mechanism m =
+      motor_and_load(R"("spring": {"stiffness": 10}, "damping": 0.1, "friction": {"limit": 0.3})");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "c"), WithinRel(-0.2 * 5 / 1.2 / 10, 1e-9));
+  const FrictionReport report = report_friction(m, s);
+  INFO(report.band.message);
+  REQUIRE(report.band.found);
+  const auto c = std::ranges::find(report.band.extents, "c", &BandExtent::name);
+  REQUIRE(c != report.band.extents.end());
+  CHECK_THAT(c->low, WithinRel(-(0.2 * 5 / 1.2 + 0.3) / 10, 1e-8));
+  CHECK_THAT(c->high, WithinRel(-(0.2 * 5 / 1.2 - 0.3) / 10, 1e-8));
+}
+
 TEST_CASE("a clutch that slips drives against a brake: T / c") {
   const Mechanism m = disc_on_shaft(turning("clutch", "shaft", R"("friction": {"limit": 0.5})") + ", " +
                                     turning("brake", "ground", R"("damping": 0.1)"));
