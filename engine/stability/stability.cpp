@@ -8,8 +8,8 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
+#include "engine/stability/kink_stability.hpp"
 #include "engine/stability/linear_motion.hpp"
-#include "engine/stability/moved_inputs.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/pivot_stability.hpp"
 #include "engine/stability/play.hpp"
@@ -317,14 +317,106 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
 
 namespace {
 
-// Taking the slopes of all laws as they are evaluated.
+// Puts coordinates into out.neutral that take part in null directions along which it stays balanced at a
+// distance; how many such directions there are.
+int find_neutral(const FactoredState& at, const Eigen::MatrixXd& null_space, Stability& out) {
+  const Problem& problem = at.problem;
+  int count = 0;
+  const auto stays_along = [&](const Eigen::VectorXd& direction) {
+    const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
+    return stays_balanced(at, null_space, step(0.05)) && stays_balanced(at, null_space, step(-0.11));
+  };
+  // What holds for a mixture of many holds for each.
+  const bool all = null_space.cols() > few_null_directions && stays_along(mixture_of(null_space));
+  for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
+    Eigen::VectorXd direction = null_space.col(c);
+    const double size = direction.lpNorm<Eigen::Infinity>();
+    if (!(size > 0)) continue;
+    direction /= size;
+    if (!all && !stays_along(direction)) continue;
+    ++count;
+    for (int i = 0; i < problem.system.nv; ++i)
+      if (std::abs(direction[i]) > tolerance::takes_part &&
+          std::ranges::find(out.neutral, i) == out.neutral.end())
+        out.neutral.push_back(i);
+  }
+  std::ranges::sort(out.neutral);
+  return count;
+}
+
+// What the potential, where there is one, and null directions tell of a state that is no minimum.
+struct EnergyVerdict {
+  bool potential = false;
+  double most_negative = 0; // the lowest eigenvalue of `hessian`, where there is a potential
+  ReducedHessian& hessian;
+  Eigen::MatrixXd null_space; // scaled, by column
+  int neutral = 0;            // see find_neutral()
+};
+
+// By the eigenvalues in `out`, of `motion`.
+void judge_eigenvalues(const FactoredState& at, const SteadyMotion& motion, const EnergyVerdict& energy,
+                       Stability& out) {
+  const Problem& problem = at.problem;
+  Workspace& w = at.w;
+  const Eigen::MatrixXd &mass = motion.mass, &velocity = motion.velocity, &stiffness = motion.stiffness;
+  const Eigen::Index null_count = energy.null_space.cols();
+  // What belongs to null directions is zero but for rounding: the smallest are left out.
+  out.null_eigenvalues = 2 * static_cast<int>(null_count);
+  if (out.null_eigenvalues > 0 && problem.system.torques.empty()) {
+    const Eigen::MatrixXd null_basis = energy.hessian.null_basis();
+    ReducedHessian transposed;
+    if (!energy.potential) transposed.factor(w.dense.reduced().transpose(), w.dense.noise(), false);
+    out.null_eigenvalues =
+        count_null_eigenvalues(velocity, energy.potential ? null_basis : transposed.null_basis(), null_basis);
+  }
+  std::vector<Complex> moving = *out.eigenvalues;
+  std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
+  const double largest = moving.empty() ? 0 : std::abs(moving.back());
+  for (int i = 0; i < out.null_eigenvalues && !moving.empty() &&
+                  std::abs(moving.front()) < tolerance::null_eigenvalue * largest;
+       ++i)
+    moving.erase(moving.begin());
+  bool right = false, left = !moving.empty() || null_count == 0;
+  for (Complex x : moving) {
+    const double rounding = real_part_rounding(x, largest);
+    if (x.real() > rounding) right = true;
+    if (x.real() >= -rounding) left = false;
+  }
+  const auto tipping = massless_directions_tip(mass, velocity, stiffness);
+  if (!tipping) return;
+  if (*tipping) right = true;
+  // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
+  const bool falls = !energy.potential || energy.most_negative < -ReducedHessian::zero;
+  if (right && falls) {
+    out.stable = false;
+    out.reason = StabilityReason::unstable;
+  } else if (energy.neutral > 0) {
+    out.reason = StabilityReason::neutral;
+  } else if (null_count > 0) {
+    out.reason = StabilityReason::marginal;
+  } else if (left) {
+    out.stable = true;
+    out.reason = StabilityReason::asymptotic;
+  } else if (energy.potential && energy.most_negative < -ReducedHessian::zero) {
+    const auto damped =
+        damping_destabilizes(problem, at.z.q, w.dense.constraints().basis(), mass, velocity, stiffness, w);
+    if (!damped) return;
+    if (*damped) out.stable = false;
+    out.reason = *damped ? StabilityReason::unstable : StabilityReason::gyroscopic_only;
+  } else {
+    out.reason = StabilityReason::marginal;
+  }
+}
+
+} // namespace
+
 Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) {
   const Problem& problem = at.problem;
   if (problem.form != KktForm::dense) return find_pivot_stability(at);
   Stability out;
   Workspace& w = at.w;
-  const bool varies =
-      motion_varies(problem, at.z.q, sample_phases(problem.system, problem.parameters, at.z.q), w.elsewhere());
+  const bool varies = motion_varies(problem, at.z.q,
+                                    sample_phases(problem.system, problem.parameters, at.z.q), w.elsewhere());
   const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty() ||
                          loops_tie_angles(problem, w.kinematics);
   // The potential at given speeds tells nothing of their angles.
@@ -341,33 +433,13 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
     out.reason = StabilityReason::minimum;
   }
 
-  // Neutral directions: null directions here, and still in balance at a distance.
   const Eigen::MatrixXd null_space = basis * energy.null_basis();
-  int neutral_count = 0;
-  const auto stays_along = [&](const Eigen::VectorXd& direction) {
-    const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
-    return stays_balanced(at, null_space, step(0.05)) && stays_balanced(at, null_space, step(-0.11));
-  };
-  // What holds for a mixture of many holds for each.
-  const bool all = null_space.cols() > few_null_directions && stays_along(mixture_of(null_space));
-  for (Eigen::Index c = 0; c < null_space.cols(); ++c) {
-    Eigen::VectorXd direction = null_space.col(c);
-    const double size = direction.lpNorm<Eigen::Infinity>();
-    if (!(size > 0)) continue;
-    direction /= size;
-    if (!all && !stays_along(direction)) continue;
-    ++neutral_count;
-    for (int i = 0; i < problem.system.nv; ++i)
-      if (std::abs(direction[i]) > tolerance::takes_part &&
-          std::ranges::find(out.neutral, i) == out.neutral.end())
-        out.neutral.push_back(i);
-  }
-  std::ranges::sort(out.neutral);
+  const int neutral = find_neutral(at, null_space, out);
   // Multipliers take such angles for cyclic, and where momentum is kept the row of what acts is not at hand.
   out.angles_leave_open = of_angles && (varies || keeps_momentum(problem.system));
   if (out.angles_leave_open) return out;
   if (varies) {
-    classify_by_multipliers(problem, at.z, neutral_count, w.elsewhere(), out);
+    classify_by_multipliers(problem, at.z, neutral, w.elsewhere(), out);
     return out;
   }
 
@@ -401,172 +473,10 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
     out.reason = StabilityReason::minimum;
     return out;
   }
-  const Eigen::MatrixXd &mass = motion->mass, &velocity = motion->velocity, &stiffness = motion->stiffness;
   if (minimum || kept || !out.eigenvalues) return out;
-
-  // What belongs to null directions is zero but for rounding: the smallest are left out.
-  out.null_eigenvalues = 2 * static_cast<int>(null_space.cols());
-  if (out.null_eigenvalues > 0 && problem.system.torques.empty()) {
-    const Eigen::MatrixXd null_basis = energy.null_basis();
-    ReducedHessian transposed;
-    if (!potential) transposed.factor(reduced.transpose(), w.dense.noise(), false);
-    out.null_eigenvalues =
-        count_null_eigenvalues(velocity, potential ? null_basis : transposed.null_basis(), null_basis);
-  }
-  std::vector<Complex> moving = *out.eigenvalues;
-  std::ranges::sort(moving, [](Complex a, Complex b) { return std::abs(a) < std::abs(b); });
-  const double largest = moving.empty() ? 0 : std::abs(moving.back());
-  for (int i = 0; i < out.null_eigenvalues && !moving.empty() &&
-                  std::abs(moving.front()) < tolerance::null_eigenvalue * largest;
-       ++i)
-    moving.erase(moving.begin());
-  bool right = false, left = !moving.empty() || null_space.cols() == 0;
-  for (Complex x : moving) {
-    const double rounding = real_part_rounding(x, largest);
-    if (x.real() > rounding) right = true;
-    if (x.real() >= -rounding) left = false;
-  }
-  const auto tipping = massless_directions_tip(mass, velocity, stiffness);
-  if (!tipping) return out;
-  if (*tipping) right = true;
-  // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
-  const bool falls = !potential || most_negative < -ReducedHessian::zero;
-  if (right && falls) {
-    out.stable = false;
-    out.reason = StabilityReason::unstable;
-  } else if (neutral_count > 0) {
-    out.reason = StabilityReason::neutral;
-  } else if (null_space.cols() > 0) {
-    out.reason = StabilityReason::marginal;
-  } else if (left) {
-    out.stable = true;
-    out.reason = StabilityReason::asymptotic;
-  } else if (potential && most_negative < -ReducedHessian::zero) {
-    const auto damped = damping_destabilizes(problem, at.z.q, basis, mass, velocity, stiffness, w);
-    if (!damped) return out;
-    if (*damped) out.stable = false;
-    out.reason = *damped ? StabilityReason::unstable : StabilityReason::gyroscopic_only;
-  } else {
-    out.reason = StabilityReason::marginal;
-  }
+  judge_eigenvalues(at, *motion, {potential, most_negative, energy, null_space, neutral}, out);
   return out;
 }
-
-// What holds on the softer and the stiffer side of all kinks of springs holds in between: of a minimum; of
-// directions that nothing resists; and at rest, where nothing but a potential and dampers act, of a potential
-// that falls. Eigenvalues of either side alone prove nothing of a motion that goes to and fro between them.
-Stability common_stability(const FactoredState& at, const std::vector<Kink>& kinks) {
-  const auto on_side = [&](KinkSide side) {
-    const Parameters numbers = straightened(at.problem, kinks, side);
-    Problem problem{at.problem.system, numbers, at.problem.scaling, at.problem.cancel, at.problem.form};
-    problem.as_gradient = at.problem.as_gradient;
-    Workspace w;
-    return find_smooth_stability(factor_at(problem, at.z, w), false);
-  };
-  const Stability softer = on_side(KinkSide::softer);
-  if (softer.reason == StabilityReason::minimum) return softer;
-  Stability common = on_side(KinkSide::stiffer);
-  const bool proven =
-      softer.reason == StabilityReason::neutral ||
-      (softer.reason == StabilityReason::unstable && at.problem.symmetric() && !at.problem.parameters.moving);
-  if (proven && softer.reason == common.reason && softer.neutral == common.neutral) return common;
-  common.stable.reset();
-  common.reason = StabilityReason::marginal;
-  common.kinks_leave_open = true;
-  return common;
-}
-
-// On the kink of a drive's law alone the linearised motion has two sides, which meet where that input is as
-// it is. A real eigenvalue that grows on either side proves that the state is unstable: of its direction and
-// the opposite one either lies on that side, and the motion along it stays there. That both die out proves
-// that the state is stable where there is one eigenvalue, so that a motion stays on its side; with more of
-// them one that goes to and fro may grow all the same.
-//
-// Where the input itself has no slope, as an angle of 0, but one direction alone moves it, the sides are
-// looked at a little beside the state.
-std::optional<bool> stable_on_both_sides(const FactoredState& at, const std::vector<Kink>& of_drives) {
-  constexpr double beside = 1e-6; // scaled
-  const Kink& of_drive = of_drives.front();
-  const bool own = of_drive.gradients[0].empty();
-  std::optional<Eigen::VectorXd> across;
-  if (own) {
-    const DriveTorqueElement& e = at.problem.system.torques[of_drive.entry];
-    const DriveTorqueParameters& numbers = at.problem.parameters.torques[of_drive.entry];
-    const bool torque = of_drive.law == Kink::Law::torque;
-    across = single_motion(at.problem, torque ? e.torque : e.load, torque ? numbers.torque : numbers.load,
-                           of_drive.input, at.z.q, at.w.kinematics);
-    if (!across) return {};
-  }
-  std::size_t dying = 0;
-  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    Parameters numbers = at.problem.parameters;
-    for (const Kink& kink : of_drives)
-      if (!own) numbers = beside_kink({at.problem.system, numbers, at.problem.scaling}, kink, side);
-    const Problem problem{at.problem.system, numbers, at.problem.scaling, at.problem.cancel};
-    Workspace w;
-    Unknowns z = at.z;
-    if (own) {
-      const Eigen::VectorXd step =
-          (side == 0 ? -beside : beside) * across->cwiseProduct(problem.scaling.column);
-      retract<double>(problem.system, step, z.q);
-    }
-    const Stability there = find_smooth_stability(factor_at(problem, z, w), true);
-    if (!there.eigenvalues || there.floquet) return {};
-    if (there.reason == StabilityReason::unstable &&
-        std::ranges::any_of(*there.eigenvalues, [](Complex s) { return s.imag() == 0 && s.real() > 0; }))
-      return false;
-    if (there.reason == StabilityReason::asymptotic && there.eigenvalues->size() == 1) ++dying;
-  }
-  if (dying == 2) return true;
-  return {};
-}
-
-// Whether all are of laws that cross theirs as the same input does.
-bool cross_together(const System& system, const std::vector<Kink>& kinks) {
-  const auto input_of = [&](const Kink& kink) -> const DriveLaw::Input& {
-    const DriveTorqueElement& e = system.torques[kink.entry];
-    return (kink.law == Kink::Law::torque ? e.torque : e.load).inputs[kink.input];
-  };
-  return !kinks.empty() && std::ranges::all_of(kinks, [&](const Kink& kink) {
-    if (kink.of != Kink::Of::drive) return false;
-    return kinks.size() == 1 || (!kink.gradients[0].empty() && input_of(kink) == input_of(kinks.front()));
-  });
-}
-
-bool judge_kink_of_drive(const FactoredState& at, Stability& out) {
-  if (!cross_together(at.problem.system, out.kinks)) return false;
-  const std::optional<bool> stable = stable_on_both_sides(at, out.kinks);
-  if (!stable) return false;
-  out.stable = stable;
-  out.reason = *stable ? StabilityReason::asymptotic : StabilityReason::unstable;
-  return true;
-}
-
-void judge_kinks(const FactoredState& at, Stability& out) {
-  out.kinks = find_kinks(at.problem, at.z.q, at.w.kinematics);
-  if (judge_kink_of_drive(at, out)) return;
-  if (std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law == Kink::Law::spring; })) {
-    const Stability common = common_stability(at, out.kinks);
-    out.stable = common.stable;
-    out.reason = common.reason;
-    out.neutral = common.neutral;
-    out.kinks_leave_open = common.kinks_leave_open;
-  }
-  const bool by_eigenvalues =
-      out.reason != StabilityReason::minimum && out.reason != StabilityReason::neutral;
-  const bool others =
-      std::ranges::any_of(out.kinks, [](const Kink& kink) { return kink.law != Kink::Law::spring; });
-  // What torques keep at a minimum they keep by their slopes on one side.
-  const bool kept = out.reason == StabilityReason::minimum &&
-                    std::ranges::any_of(out.kinks, [](const Kink& k) { return k.of == Kink::Of::drive; });
-  if ((others && by_eigenvalues) || kept) { // of one side of it
-    out.stable.reset();
-    out.reason = StabilityReason::marginal;
-    out.kinks_leave_open = true;
-  }
-}
-
-} // namespace
 
 Stability find_stability(const FactoredState& at, bool with_eigenvalues) {
   Stability out = find_smooth_stability(at, with_eigenvalues);

@@ -20,8 +20,8 @@ struct Stability {
   std::optional<StabilityReason> reason;
   // 1/s, by size of the imaginary part: of the linearised motion, or Floquet's exponents.
   std::optional<std::vector<std::complex<double>>> eigenvalues;
-  int null_eigenvalues = 0; // at most as many of these, the smallest, belong to null directions
-  std::optional<Floquet> floquet;                // where the linearised motion turns with the drives
+  int null_eigenvalues = 0;       // at most as many of these, the smallest, belong to null directions
+  std::optional<Floquet> floquet; // where the linearised motion turns with the drives
   std::optional<FloquetFailure> floquet_failure; // where it does and there are no multipliers
   std::vector<int> neutral; // coordinates of q_R that take part in directions nothing resists
   std::vector<Kink> kinks;  // of laws, on which it stands
@@ -51,7 +51,9 @@ std::optional<std::vector<std::complex<double>>> motion_eigenvalues(const Proble
 
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
 // minimum is found; of others the signs of the pivots decide (pivot_stability.hpp). On kinks of laws it is
-// what both sides have in common.
+// what both sides have in common (kink_stability.hpp).
 Stability find_stability(const FactoredState& at, bool with_eigenvalues);
+// Taking the slopes of all laws as they are evaluated.
+Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues);
 
 } // namespace flyball
