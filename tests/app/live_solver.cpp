@@ -207,3 +207,36 @@ TEST_CASE("a start survives the requests that come before it was solved") {
     CHECK(std::abs(value(answer->solution, "swing")) < 1e-9);
   }
 }
+
+TEST_CASE("a pull that is given up while its grip is found leaves the state where it was") {
+  LiveSolver live(LiveSolver::Mode::background);
+  const auto answer_to = [&](std::uint64_t ticket) {
+    std::optional<LiveAnswer> answer;
+    const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while ((!answer || answer->ticket < ticket) && std::chrono::steady_clock::now() < limit) {
+      if (auto news = live.take_answer()) answer = std::move(news);
+      std::this_thread::yield();
+    }
+    REQUIRE(answer);
+    REQUIRE(answer->ticket == ticket);
+    return *std::move(answer);
+  };
+  // The bent state that the drawn pose does not lead to; only what was solved last leads on to it.
+  const double bent =
+      value(answer_to(live.ask({.mechanism = conical_pendulum(6), .another = true})).solution, "swing");
+  REQUIRE(bent > 1);
+  const auto other =
+      answer_to(live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", -bent}}}));
+  REQUIRE(value(other.solution, "swing") == Approx(-bent));
+  answer_to(live.ask({.mechanism = conical_pendulum(6)}));
+  for (int round = 0; round < 300; ++round) {
+    const double speed = 6 + 1e-3 * (round % 7);
+    live.ask({.mechanism = conical_pendulum(speed), .grip = BodyPoint{"ball"}});
+    const auto later = std::chrono::steady_clock::now() + std::chrono::microseconds(5 * (round % 100));
+    while (std::chrono::steady_clock::now() < later)
+      ;
+    const LiveAnswer answer = answer_to(live.ask({.mechanism = conical_pendulum(speed)}));
+    INFO(round);
+    REQUIRE(value(answer.solution, "swing") < -1);
+  }
+}

@@ -1,4 +1,5 @@
 // Trying values while exploring changes nothing of the document, until they are kept.
+#include "app/document/rename.hpp"
 #include "app/ui/file_commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
@@ -142,4 +143,53 @@ TEST_CASE("an explored value is told with the digits of its field") {
   change_parameter(app.session, speed, 14.2857142857);
   CHECK_THAT(explored_words(app.session).front(), ContainsSubstring(" 14.2857143 rad/s"));
   CHECK_THAT(explored_words(app.session).front(), ContainsSubstring("stored is 11.0174 rad/s"));
+}
+
+TEST_CASE("what was explored stands beside the file again when it is opened, as a step") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder), other = governor_in(folder, "other.json");
+  double tried = 0;
+  {
+    FileRobot robot(folder);
+    robot.open(file);
+    drag_speed(robot);
+    tried = robot.speed_now();
+    REQUIRE(tried > 15);
+    robot.pass(2);
+  }
+  FileRobot robot(folder);
+  robot.open(other);
+  CHECK(robot.speed_now() == 11.0174);
+  robot.open(file);
+  CHECK(robot.speed_now() == tried);
+  CHECK(robot.shows("explored/keep"));
+  CHECK_FALSE(robot.app.session.document.unsaved());
+  CHECK(in_file(file) == 11.0174);
+  CHECK_THAT(robot.app.session.notice, ContainsSubstring("explored last time"));
+  // Left behind, it does not come again.
+  robot.click("explored/back");
+  robot.open(other);
+  robot.open(file);
+  CHECK(robot.speed_now() == 11.0174);
+  CHECK_FALSE(robot.shows("explored/keep"));
+}
+
+TEST_CASE("a body that was renamed has its colour again when the file is opened") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  FileRobot robot(folder);
+  robot.open(file);
+  Session& session = robot.app.session;
+  // Names that would ask for other colours.
+  edit(session, "Rename", [](Mechanism& m, Selection&) {
+    rename_part(m, {PartKind::body, "ball1"}, "left");
+    rename_part(m, {PartKind::body, "ball2"}, "a weight");
+  });
+  const BodyHues before = session.document.hues();
+  REQUIRE(before != choose_hues(session.document.stored()));
+  robot.key('S', true);
+  REQUIRE_FALSE(session.document.unsaved());
+  FileRobot again(folder);
+  again.open(file);
+  CHECK(again.app.session.document.hues() == before);
 }

@@ -1,4 +1,6 @@
 // The card of a joint stays under the hand, keeps what was chosen, and hides nothing that is written.
+#include "app/document/create.hpp"
+#include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
@@ -98,4 +100,40 @@ TEST_CASE("no button of the card is cut, and it covers nothing that is written b
   REQUIRE(card);
   CHECK(card->Pos.y + card->Size.y <= d.app.view.lines_top);
   CHECK(card->Pos.y + card->Size.y <= d.widget("status").from.y);
+}
+
+TEST_CASE("a point that is on no body is told, and how far the one offered is") {
+  SliderCrank d;
+  d.begin({0.3, -0.4, 0});
+  CHECK(d.app.ui.widgets.contains("tools/away"));
+  d.key(key_escape);
+  d.key('J');
+  d.begin(slider_crank_pin);
+  CHECK_FALSE(d.app.ui.widgets.contains("tools/away"));
+}
+
+TEST_CASE("a slide is offered from the one body to the other, not along a disc's axis") {
+  Mechanism m;
+  add_body(m, {.form = BodyForm::rod, .radius = 0.1, .from = {0, 0, -0.02}, .to = {0, 0, 0.02}}); // a drum
+  add_body(m, {.form = BodyForm::block, .at = {0.2, 0, 0}});
+  CHECK((guess_axis(m, JointType::prismatic, {"rod1", "block1"}, 2) - Vec3::UnitX()).norm() < 1e-12);
+  // A collar slides along its rod.
+  add_body(m, {.form = BodyForm::rod, .radius = 0.01, .from = {0, -1, 0}, .to = {0, 1, 0}});
+  CHECK((guess_axis(m, JointType::prismatic, {"rod2", "block1"}, 2) - Vec3::UnitY()).norm() < 1e-12);
+  CHECK(guess_axis(m, JointType::revolute, {"rod1", "block1"}, 2) == Vec3::UnitZ());
+}
+
+TEST_CASE("a bearing's card is no taller than what is in it") {
+  SliderCrank d;
+  d.begin(slider_crank_pin);
+  const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+  REQUIRE(card);
+  const float joint = card->Size.y;
+  d.key(key_escape);
+  set_tool(d.app.session, d.app.ui, d.app.tool, Tool::bearing);
+  d.frames(1);
+  d.begin(slider_crank_pin);
+  const ImGuiWindow* bearing = ImGui::FindWindowByName("bearing");
+  REQUIRE(bearing);
+  CHECK(bearing->Size.y < joint - 60);
 }

@@ -270,3 +270,20 @@ TEST_CASE("the frames of a run are evenly spaced and end with it") {
   CHECK(movie_times(run, {0, 10, 1e9, 1}).size() == most_movie_frames + 1); // refused as too many
   CHECK(movie_times(Run{}, {0, 10, 30, 1}).empty());
 }
+
+TEST_CASE("what was chosen for a film that was not made is forgotten") {
+  MovieRobot robot;
+  const double rate = robot.app.movie.rate;
+  robot.app.movie.rate = 12;
+  robot.app.movie.width = 320;
+  robot.frames(1);
+  SECTION("by the button") {
+    robot.click("movie/cancel");
+  }
+  SECTION("by Escape") {
+    robot.key(key_escape);
+  }
+  robot.frames(2);
+  CHECK(robot.app.movie.rate == rate);
+  CHECK(robot.app.movie.width == 160);
+}

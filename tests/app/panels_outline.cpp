@@ -173,3 +173,52 @@ TEST_CASE("deleting says what goes along though it was not selected") {
   undo(hand.app.session);
   CHECK(hand.app.session.selection().parts == std::vector{Part{PartKind::joint, "foot1"}});
 }
+
+TEST_CASE("the search is there whatever is listed: no row moves when a part is added") {
+  Hand hand;
+  REQUIRE(hand.app.ui.widgets.contains("outline/search"));
+  const float before = hand.widget("outline/bodies/spindle").from.y;
+  edit(hand.app.session, "Add", [](Mechanism& m, Selection&) {
+    for (int i = 0; i < 12; ++i)
+      add_body(m, {.form = BodyForm::ball, .at = {0.1 * i, 1, 0}});
+  });
+  hand.frames(2);
+  CHECK(hand.widget("outline/bodies/spindle").from.y == before);
+  hand.click("outline/search");
+  hand.type("spind");
+  hand.frames(2);
+  CHECK(hand.app.ui.widgets.contains("outline/bodies/spindle"));
+  CHECK_FALSE(hand.app.ui.widgets.contains("outline/bodies/ball1"));
+}
+
+TEST_CASE("the title of the results moves the line above it") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  const WidgetRect title = hand.widget("results/title");
+  hand.drag({title.center().x, title.center().y}, {title.center().x, title.center().y + 80});
+  hand.frames(2);
+  CHECK(hand.widget("results/title").from.y == Approx(title.from.y + 80).margin(2));
+}
+
+TEST_CASE("while numbers are typed no section opens above them") {
+  Hand hand;
+  edit(hand.app.session, "Add", [](Mechanism& m, Selection& s) {
+    s.set({PartKind::body,
+           add_body(m, {.form = BodyForm::rod, .radius = 0.05, .from = {0, 0.5, 0}, .to = {0, 0.6, 0}})});
+  });
+  hand.frames(3);
+  const std::string body = hand.app.session.selection().parts.back().name;
+  const float before = hand.widget("inspector/shapes section").from.y;
+  edit(hand.app.session, "Skew", [&](Mechanism& m, Selection&) {
+    Body& same = m.bodies[static_cast<std::size_t>(body_index(m, body))];
+    same.inertia = {1, 1, 1, 0.1, 0, 0};
+    same.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  });
+  hand.frames(3);
+  CHECK(hand.widget("inspector/shapes section").from.y == before);
+  // Looked at anew it is as it should be.
+  hand.choose(PartKind::body, "ball1");
+  hand.choose(PartKind::body, body.c_str());
+  hand.frames(2);
+  CHECK(hand.widget("inspector/shapes section").from.y > before);
+}

@@ -4,7 +4,9 @@
 #include "session_wait.hpp"
 
 #include "app/render/imgui_compat.hpp"
+#include "app/session/map.hpp"
 #include "app/session/response.hpp"
+#include "app/session/response_design.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
@@ -20,6 +22,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <thread>
 
 using namespace flyball;
@@ -550,7 +553,7 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   robot.click("response/find");
   CHECK(state.design.answer.found->result.solutions.empty());
   CHECK(app.ui.widgets.count("response/never") == 1);
-  CHECK_THAT(state.design.answer.found->result.message,
+  CHECK_THAT(design_words(app.session),
              ContainsSubstring("with speed of spin from 0 to") && ContainsSubstring(" rad/s:"));
 }
 
@@ -700,4 +703,80 @@ TEST_CASE("sensitivities below pinned sliders agree with two solves beside") {
   REQUIRE_FALSE(converged(app.session));
   CHECK(shown_rates(app.session, speed).empty());
   CHECK(app.ui.widgets.count("parameters/" + speed + "/rate") == 0);
+}
+
+TEST_CASE("the response varies every number that the map does, whether it has a slider or none") {
+  ResponseRobot robot;
+  Session& session = robot.app.session;
+  for (const std::string& address : map_addresses(session)) {
+    CAPTURE(address);
+    choose_response(session, address);
+    REQUIRE(robot.state().choice.address == address);
+    CHECK(robot.state().choice.from != robot.state().choice.to);
+  }
+  robot.click("response/parameter");
+  robot.frames(2);
+  robot.type("mass of ball1");
+  robot.frames(2);
+  robot.key(key_enter);
+  robot.frames(3);
+  CHECK(robot.state().choice.address == "bodies.ball1.mass");
+  CHECK(robot.drawn().plot.x.label == "mass of ball1");
+  CHECK_FALSE(robot.drawn().plot.curves.empty());
+  REQUIRE(robot.drawn().plot.marker);
+  CHECK_FALSE(robot.app.ui.widgets.contains("response/outside"));
+  // Where the present state is not in the plot that is told.
+  choose_response_end(session, &ResponseChoice::to, 0.5);
+  robot.frames(3);
+  CHECK(robot.app.ui.widgets.contains("response/outside"));
+}
+
+TEST_CASE("Find asks for torques and forces, too, and tells what it found in the units shown") {
+  ResponseRobot robot("pendulum");
+  App& app = robot.app;
+  choose_response(app.session, "joints.spin.drive.speed");
+  robot.frames(2);
+  for (const DesignGoal& goal : design_goals(app.session)) {
+    if (goal.expression.empty()) continue;
+    CAPTURE(goal.key);
+    REQUIRE(goal.value);
+    robot.state().design.coordinate = goal.key;
+    robot.state().design.value = *goal.value; // that of the present state is found at its speed
+    find_design(app.session);
+    REQUIRE(robot.state().design.answer.problem.empty());
+    REQUIRE(robot.state().design.answer.found);
+    const DesignAnswer& answer = robot.state().design.answer.found->result;
+    const double speed_now = get_parameter(app.session.mechanism(), "joints.spin.drive.speed");
+    const bool constant = answer.end == DesignEnd::constant;
+    CHECK((constant || std::ranges::any_of(answer.solutions, [&](const DesignSolution& s) {
+             return std::abs(s.parameter - speed_now) < 1e-6 * speed_now;
+           })));
+    CHECK_THAT(design_words(app.session), ContainsSubstring(constant ? goal.title : "solution"));
+  }
+  app.session.units = {AngleUnit::degree, LengthUnit::millimetre, SpeedUnit::rpm};
+  robot.state().design.coordinate = "reaction(spin)";
+  robot.state().design.value = 1e9;
+  find_design(app.session);
+  CHECK_THAT(design_words(app.session),
+             ContainsSubstring("force through spin never is 1e+09 N with speed of spin from 0 to") &&
+                 ContainsSubstring(" rpm: it covers"));
+}
+
+TEST_CASE("a number that several poses have is told once") {
+  ResponseRobot robot("governor_engine");
+  App& app = robot.app;
+  choose_response(app.session, "joints.spin.drive.load");
+  robot.state().design.coordinate = "spin.speed";
+  robot.state().design.value = 11.5;
+  robot.frames(2);
+  find_design(app.session);
+  robot.frames(2);
+  const DesignAnswer& answer = robot.state().design.answer.found->result;
+  std::set<std::pair<long, int>> different;
+  for (const DesignSolution& s : answer.solutions)
+    different.insert({std::lround(s.parameter * 1e6), s.at.stable ? *s.at.stable : 2});
+  std::size_t rows = 0;
+  while (app.ui.widgets.contains("response/solution/" + std::to_string(rows + 1)))
+    ++rows;
+  CHECK(rows == different.size());
 }

@@ -149,3 +149,53 @@ TEST_CASE("the lines below sliders change with the units at once") {
   CHECK(shown().unit == "°/rpm");
   CHECK(shown().value == Approx(value * 6));
 }
+
+TEST_CASE("ends of sliders are round in the units shown, and so is a new drive") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  edit(app.session, "Unpin", [](Mechanism& m, Selection&) { m.sliders.clear(); });
+  const auto end = [&] {
+    for (const ParameterControl& control : app.session.parameters)
+      if (control.address == speed) return control.to;
+    return 0.;
+  };
+  CHECK(end() == 50);
+  choose_units(app.session, app.ui, app.view, workshop);
+  robot.frames(2);
+  CHECK(shown_unit("rad/s", workshop).shown(end()) == 500);
+  choose_units(app.session, app.ui, app.view, {.speed = SpeedUnit::degree});
+  CHECK(shown_unit("rad/s", app.session.units).shown(end()) == 2000);
+  CHECK(shown_unit("rad/s", workshop).shown(new_drive_speed(workshop)) == 100);
+  CHECK(new_drive_speed(si) == 10);
+  // A slider that is made for an angle of zero ends at half a turn.
+  const Slider slider = slider_for(app.session.mechanism(), "joints.spin.drawn", DisplayUnits{});
+  CHECK(shown_unit("rad", DisplayUnits{}).shown(slider.to) == 180);
+}
+
+TEST_CASE("the interface has sizes, by command and key, which are kept") {
+  const TemporaryFolder folder;
+  {
+    Robot robot;
+    App& app = robot.app;
+    app.session.options.state = folder.path();
+    robot.key('+', true);
+    CHECK(app.ui.zoom == 1.1);
+    robot.key('=', true, true); // as it is typed on an English keyboard
+    CHECK(app.ui.zoom == 1.25);
+    robot.key('-', true);
+    CHECK(app.ui.zoom == 1.1);
+    for (int i = 0; i < 20; ++i)
+      app.commands.run("view.larger");
+    CHECK(app.ui.zoom == most_zoom);
+    CHECK_FALSE(app.commands.enabled(command("view.larger")));
+    for (int i = 0; i < 20; ++i)
+      app.commands.run("view.smaller");
+    CHECK(app.ui.zoom == least_zoom);
+    robot.key('0', true);
+    CHECK(app.ui.zoom == 1);
+    app.commands.run("view.larger");
+  }
+  CHECK(read_settings(folder.path()).zoom == 1.1);
+  std::ofstream(folder / "settings.json") << "{\"zoom\": 100}";
+  CHECK(read_settings(folder.path()).zoom == most_zoom);
+}

@@ -277,3 +277,22 @@ TEST_CASE("the heat map's colours rise evenly in lightness", "[plot]") {
   for (int i = 0; i <= 20; ++i)
     CHECK(lightness(heat_color(i / 20.)) == Approx(first + (last - first) * i / 20.).margin(2.5));
 }
+
+TEST_CASE("a label that curves cross has a ground of its own") {
+  Plot plot;
+  PlotCurve fast; // fills everything
+  for (int i = 0; i <= 400; ++i)
+    fast.points.push_back({i * 0.01, i % 2 == 0 ? -1. : 1.});
+  plot.references.push_back({.axis = 1, .at = 0, .label = "steady"});
+  const auto label = [&] {
+    const PlotLayout layout = plot_layout(plot, {}, 400, 300, {});
+    REQUIRE(layout.references.size() == 1);
+    REQUIRE(layout.references[0].label);
+    return *layout.references[0].label;
+  };
+  plot.x.range = PlotRange{0, 4};
+  plot.y.range = PlotRange{-1, 1};
+  CHECK_FALSE(label().backed);
+  plot.curves.push_back(fast);
+  CHECK(label().backed);
+}
