@@ -36,6 +36,10 @@ class LiveSolver::Solver {
 
  private:
   Solution solve_nearest(SolveOptions options, bool& left_branch);
+  void forget() {
+    analysis_.reset();
+    settled_ = 0;
+  }
 
   std::mutex mutex_; // guards all below
   std::optional<Analysis> analysis_;
@@ -90,10 +94,10 @@ LiveAnswer LiveSolver::Solver::solve(std::uint64_t ticket, const LiveRequest& re
   out.ticket = ticket;
   out.mechanism = request.mechanism;
   out.time = request.time;
+  bool solved = false;
   try {
     if (wishes.another > answered_) {
-      analysis_.reset();
-      settled_ = 0;
+      forget();
       last_.clear();
     }
     if (analysis_)
@@ -108,6 +112,7 @@ LiveAnswer LiveSolver::Solver::solve(std::uint64_t ticket, const LiveRequest& re
     options.points = request.points;
     out.solution = solve_nearest(options, out.left_branch);
     settled_ = out.solution.status == Status::converged ? ticket : 0;
+    solved = true;
     out.summary = analysis_->summary();
     if (settled_) {
       last_ = start_values(out.solution.coordinates);
@@ -115,11 +120,13 @@ LiveAnswer LiveSolver::Solver::solve(std::uint64_t ticket, const LiveRequest& re
       out.poses = out.time == 0 ? out.solution.poses : analysis_->poses_at(out.time);
       out.turning = analysis_->turning_at(0);
     }
+  } catch (const Interrupted&) { // nobody waits for it; what comes after solving leaves the state as it is
+    out.solution = {};
+    if (!solved) forget();
   } catch (const std::exception& error) { // SceneError, or no memory
     out.error = error.what();
     out.solution = {};
-    analysis_.reset();
-    settled_ = 0;
+    forget();
   }
   if (!cancel) answered_ = ticket;
   return out;

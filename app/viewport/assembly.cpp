@@ -52,9 +52,14 @@ SceneScale scale_of(const Assembly& assembly) {
     reach.add(body.position);
     for (const Attachment& a : assembly.attachments[i])
       reach.add(a.at);
-    if (reach.radius() > 0) lengths.push_back(2 * reach.radius());
+    // A mass centre a little beside the only joint says nothing of how long it is: its shapes do.
+    constexpr double little = 0.1;
+    const Bounds shapes = shape_bounds(body);
+    const double held = reach.radius(), shaped = shapes.empty ? 0 : shapes.radius();
+    if (const double length = 2 * (held > 0 && held < little * shaped ? shaped : held); length > 0)
+      lengths.push_back(length);
     scale.bounds.add(reach);
-    scale.bounds.add(shape_bounds(body));
+    scale.bounds.add(shapes);
     all_shaped = all_shaped && !body.shapes.empty();
   }
   for (const Joint& joint : assembly.mechanism.joints) {

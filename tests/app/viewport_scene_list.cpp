@@ -387,3 +387,26 @@ TEST_CASE("unit solids are closed and face outwards") {
         CHECK(area.norm() < 0.04); // sharp rims, never drawn with a radius, open a little
     }
 }
+
+TEST_CASE("a mass centre a little beside the only joint makes no glyph vanish") {
+  Mechanism m;
+  for (const char* name : {"rotor", "sleeve"}) {
+    Body& body = m.bodies.emplace_back();
+    body.name = name;
+    body.mass = 1;
+    Shape& rod = body.shapes.emplace_back();
+    rod.type = ShapeType::cylinder;
+    rod.radius = 0.02;
+    rod.from = {-0.3, 0, 0};
+    rod.to = {0.3, 0, 0};
+  }
+  Joint& spin = m.joints.emplace_back();
+  spin.name = "spin";
+  spin.bodies = {"sleeve", "rotor"};
+  spin.axis = Vec3::UnitX();
+  spin.coordinates.resize(1);
+  const double balanced = build_scene(m, {}).scale.unit;
+  for (Body& body : m.bodies)
+    body.position.y() = 1e-4; // unbalance
+  CHECK(build_scene(m, {}).scale.unit > 0.5 * balanced);
+}
