@@ -8,7 +8,7 @@ namespace flyball {
 
 bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q) {
   return std::ranges::any_of(problem.system.links, [&](const Link& link) {
-    if (finds_speed(link)) return std::abs(q[link.q]) > 1e4 * problem.scaling.column[link.v];
+    if (finds_speed(link)) return std::abs(q[link.q]) > largest_found_speed(problem, link);
     return link.type == LinkType::prismatic && link.q >= 0 &&
            std::abs(q[link.q]) > 100 * problem.parameters.length;
   });

@@ -1,5 +1,6 @@
 #include "engine/kkt/coordinate_gradient.hpp"
 
+#include "engine/kkt/problem.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/rotation_vector.hpp"
@@ -64,9 +65,8 @@ Eigen::VectorXd found_gradient(const System& system, const Parameters& parameter
 }
 
 double found_scale(const System& system, const Parameters& parameters, const CoordinateInfo& coordinate) {
-  const auto l = static_cast<std::size_t>(coordinate.link);
-  if (finds_speed(system.links[l]))
-    return parameters.links[l].speed != 0 ? std::abs(parameters.links[l].speed) : 1;
+  const Link& link = system.links[static_cast<std::size_t>(coordinate.link)];
+  if (finds_speed(link)) return found_speed_unit(system, parameters, link);
   return coordinate.angle ? 1 : parameters.length;
 }
 

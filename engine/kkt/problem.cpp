@@ -8,7 +8,21 @@ namespace {
 constexpr double small_rate =
     1e-3; // of the fastest: what an implied rate begins with tells nothing of its size
 
+double given_speed(const System& system, const Parameters& p, const Link& link) {
+  return p.links[static_cast<std::size_t>(&link - system.links.data())].speed;
+}
+
 } // namespace
+
+double found_speed_unit(const System& system, const Parameters& p, const Link& link) {
+  const double given = std::abs(given_speed(system, p, link));
+  return given != 0 ? given : link.type == LinkType::prismatic ? p.length : 1;
+}
+
+double largest_found_speed(const Problem& problem, const Link& link) {
+  const bool from_rest = given_speed(problem.system, problem.parameters, link) == 0;
+  return (from_rest ? 1e7 : 1e4) * problem.scaling.column[link.v];
+}
 
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {
   out.column.resize(system.nv);
@@ -17,7 +31,7 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     if (finds_speed(link))
-      out.column[link.v] = p.links[l].speed != 0 ? std::abs(p.links[l].speed) : 1;
+      out.column[link.v] = found_speed_unit(system, p, link);
     else if (link.type == LinkType::spherical)
       out.column.segment<3>(link.v).setOnes();
     else

@@ -10,12 +10,16 @@ namespace flyball {
 
 // Unknowns are scaled to radians and characteristic lengths, constraint rows likewise; forces then have units
 // of energy in every equation, and a change of the unit of length changes nothing. Speeds that are found are
-// scaled to where their search begins, and their equations have units of power.
+// scaled by found_speed_unit(), and their equations have units of power.
 struct Scaling {
   Eigen::VectorXd column; // rad or m (or a second) per scaled unit, by coordinate of q_R
   Eigen::VectorXd row;    // scaled units per m, rad or 1, by constraint row
 };
 void set_scaling(const System& system, const Parameters& parameters, Scaling& scaling);
+
+// What a speed that is found is measured by, rad/s or m/s: that at which its search begins, or from rest a
+// radian or the reach a second.
+double found_speed_unit(const System& system, const Parameters& parameters, const Link& link);
 
 struct Problem {
   const System& system;
@@ -36,6 +40,10 @@ struct Problem {
   }
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
+
+// Up to which a speed that is found is followed, rad/s or m/s: ten thousand times what it is measured by.
+// From rest, of which that tells nothing, faster than anything turns.
+double largest_found_speed(const Problem& problem, const Link& link);
 
 // Pivots of the constraints below this, of the largest, belong to dependent rows: where the loops, whose rows
 // come to `phi` (m, rad or 1), are open, those of the size by which they are; closed, rounding.

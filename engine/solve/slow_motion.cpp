@@ -35,7 +35,7 @@ class SlowMotion {
 
   bool runs_away() const {
     return std::ranges::any_of(p_.system.links, [&](const Link& link) {
-      return finds_speed(link) && std::abs(z_.q[link.q]) > fastest_followed * p_.scaling.column[link.v];
+      return finds_speed(link) && std::abs(z_.q[link.q]) > largest_found_speed(p_, link);
     });
   }
 

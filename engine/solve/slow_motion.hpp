@@ -12,9 +12,6 @@
 
 namespace flyball {
 
-// Speeds that are found are followed up to so many times that at which they begin.
-constexpr double fastest_followed = 1e4;
-
 // Runs from z, in place, with its loops closed. Not converged where it goes on without end, or takes too
 // long. Appends the scaled residuals to `history`.
 NewtonOutcome follow_slow_motion(const Problem& problem, Unknowns& z, Workspace& w,
