@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -43,27 +44,29 @@ class PhaseSearch {
       units_.push_back(problem.system.links[l].type == LinkType::revolute ? 1 : p_.length);
   }
 
-  std::vector<TurnedState> run() {
-    std::vector<TurnedState> out;
-    if (!find_directions()) return out;
+  // Until one is `enough`, which is asked of each.
+  void run(const std::function<bool(const TurnedState&)>& enough) {
+    if (!find_directions()) return;
     const Eigen::Index count = directions_.cols();
-    const auto take = [&](Eigen::VectorXd along, Way way) {
+    std::vector<TurnedState> found;
+    const auto take = [&](Eigen::VectorXd along, Way way) { // whether to go on
       interruption_point();
-      auto found = solve_from(along, way);
-      if (!found || rests(found->z.q)) return;
-      if (std::ranges::none_of(out, [&](const TurnedState& other) { return same(other, *found); }))
-        out.push_back(std::move(*found));
+      auto state = solve_from(along, way);
+      if (!state || rests(state->z.q) ||
+          std::ranges::any_of(found, [&](const TurnedState& other) { return same(other, *state); }))
+        return true;
+      found.push_back(std::move(*state));
+      return !enough(found.back());
     };
-    take(Eigen::VectorXd::Zero(count), Way::slowly);
-    take(Eigen::VectorXd::Zero(count), Way::together);
+    const Eigen::VectorXd drawn = Eigen::VectorXd::Zero(count);
+    if (!take(drawn, Way::slowly) || !take(drawn, Way::together)) return;
     for (const double begin : {0., 0.15, -0.15, 0.5, -0.5, 1.2, -1.2, 2.1, -2.1, 3., 1.7})
-      take(begin * scattered(count, 7 * begin), Way::at_once);
+      if (!take(begin * scattered(count, 7 * begin), Way::at_once)) return;
     // What is not stable is left, to either side.
     constexpr double beside = 0.05;
-    for (std::size_t i = 0, first = out.size(); i < first; ++i)
+    for (std::size_t i = 0, first = found.size(); i < first; ++i)
       for (const double side : {beside, -beside})
-        take(along_of(out[i]) + side * scattered(count, 1), Way::slowly);
-    return out;
+        if (!take(along_of(found[i]) + side * scattered(count, 1), Way::slowly)) return;
   }
 
   std::optional<TurnedState> run_beside(const TurnedState& other) {
@@ -420,7 +423,7 @@ class PhaseSearch {
   // Of Newton-Raphson on the balance, in all: so many that a refusal takes a second or two.
   int most_iterations() const {
     const double n = given_.system.nv + given_.system.rows;
-    return static_cast<int>(std::clamp(2.5e8 / (n * n * n), 300., 20000.));
+    return static_cast<int>(std::clamp(2.5e8 / (n * n * n), 300., 6000.));
   }
 
   // Whether something of which the angle counts stands still.
@@ -468,22 +471,19 @@ Parameters at_angles_of(const Parameters& drawn, const TurnedState& state) {
   return out;
 }
 
-std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
-  if (!may_stand_turned(problem)) return {};
-  return PhaseSearch(problem, q, w).run();
-}
-
 std::optional<TurnedState> find_turned_state(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  if (!may_stand_turned(problem)) return {};
   std::optional<TurnedState> out;
-  for (TurnedState& state : find_turned_states(problem, q, w)) {
+  Workspace elsewhere;
+  PhaseSearch(problem, q, w).run([&](const TurnedState& state) {
     const Parameters turned = at_angles_of(problem.parameters, state);
     const Problem there{problem.system, turned, problem.scaling, problem.cancel};
-    if (!check_existence(there, state.z.q, sample_phases(problem.system, turned, state.z.q), w).holds)
-      continue;
-    const bool stable = find_stability(factor_at(there, state.z, w), false).stable == true;
-    if (stable || !out) out = std::move(state);
-    if (stable) break;
-  }
+    if (!check_existence(there, state.z.q, sample_phases(problem.system, turned, state.z.q), elsewhere).holds)
+      return false;
+    const bool stable = find_stability(factor_at(there, state.z, elsewhere), false).stable == true;
+    if (stable || !out) out = state;
+    return stable;
+  });
   return out;
 }
 

@@ -2,9 +2,9 @@
 // that a spring ties, or that close a loop through one, turn alike, the one some way behind the other.
 //
 // Angles along which the balance or the loops change cannot drift as the drives turn on. With V a basis of
-// these, along which gears and what else is tied by rates stay closed, and w the speeds, V^T w + h = 0, h what
-// drives at given speeds do; that is as many equations as there are angles along V, and Newton-Raphson solves
-// them by these, the speeds being those of the balance there.
+// these, along which gears and what else is tied by rates stay closed, and w the speeds, V^T w + h = 0, h
+// what drives at given speeds do; that is as many equations as there are angles along V, and Newton-Raphson
+// solves them by these, the speeds being those of the balance there.
 #pragma once
 
 #include "engine/solve/newton.hpp"
@@ -33,10 +33,8 @@ struct TurnedState {
 // With what turns at its angles.
 Parameters at_angles_of(const Parameters& drawn, const TurnedState& state);
 
-// From q, found from several angles, each once; those that come to rest are left out. Whether they hold and
-// are stable is not looked at. Of small problems with speeds that are found.
-std::vector<TurnedState> find_turned_states(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
-// Of these one that holds at every phase, a stable one before others.
+// From q, looked for from several angles, one that holds at every phase, a stable one before others; those
+// that come to rest are left out. Of small problems with speeds that are found.
 std::optional<TurnedState> find_turned_state(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 // The one beside another, that of numbers beside these. Whether it holds is not looked at. Nothing where
 // Newton-Raphson from there finds none.
