@@ -249,6 +249,13 @@ void update_map(Session& session) {
   MapState& map = session.study.map;
   map.cells.take("Computing the map was stopped.");
   map.curves.take();
+  // What is shown may be over numbers that are there no more, also while the document has mistakes.
+  const auto drop_lost = [&](auto& found) {
+    const auto there = [&](const MapAxis& axis) { return has_number(session.mechanism(), axis.address); };
+    if (found && !std::ranges::all_of(found->of.choice.axes, there)) found.reset();
+  };
+  drop_lost(map.cells.found);
+  drop_lost(map.curves.found);
   if (session.mode != Mode::explore || !session.mistakes.empty() || !session.answer.ticket) return;
   map.refusal.clear();
   if (!choose(session)) {
@@ -256,11 +263,6 @@ void update_map(Session& session) {
         "A map is over two numbers and shows a free coordinate or a measure, and there are not as many here.";
     return;
   }
-  // What is shown may be over numbers that are there no more.
-  if (map.cells.found && !std::ranges::all_of(map.cells.found->of.choice.axes, [&](const MapAxis& axis) {
-        return has_number(session.mechanism(), axis.address);
-      }))
-    map.cells.found.reset();
   if (!map.cells.asked || of_cells(map.choice) != map.cells.asked->choice) compute_cells(session);
   if (!map.curves.asked || of_curves(map.choice) != map.curves.asked->choice) compute_curves(session);
   if (computing_map(session)) return;

@@ -179,7 +179,7 @@ ResponsePoint rounded_point(const ResponseLine& line, double at, double step) {
   const auto in = [&](std::size_t k) -> std::optional<ResponsePoint> {
     if (k + 1 >= line.points.size()) return std::nullopt;
     const double from = line.points[k].parameter, to = line.points[k + 1].parameter;
-    if (from == to || (wanted - from) * (wanted - to) > 0) return std::nullopt;
+    if (from == to || !((wanted - from) * (wanted - to) <= 0)) return std::nullopt;
     return between(line.points[k], line.points[k + 1], (wanted - from) / (to - from));
   };
   for (const std::size_t k : {i, i + 1, std::max<std::size_t>(i, 1) - 1})
@@ -253,10 +253,13 @@ void update_response(Session& session) {
     state.curve = {};
     return;
   }
+  // Of a number that is there no more nothing can be taken up.
+  if (state.curve.found && !has_number(session.mechanism(), state.curve.found->of.address))
+    state.curve.found.reset();
   const bool asked = state.curve.asked == wanted;
   if (asked && !left_curves(session)) return;
   follow(session, *wanted);
-  if (!asked && state.design.answer.found) find_design(session);
+  if (!asked && state.design.answer.asked) find_design(session);
   take_curve(state.curve); // in immediate mode it is there
 }
 
@@ -286,7 +289,7 @@ void choose_response(Session& session, const std::string& address) {
   state.choice.from = control->from;
   state.choice.to = control->to;
   state.choice.logarithmic = control->log;
-  state.design.answer.found.reset();
+  state.design.answer = {};
 }
 
 void choose_response_end(Session& session, double ResponseChoice::*end, double value) {
@@ -329,6 +332,7 @@ void go_to_response(Session& session, std::size_t line_index, double at, double 
   if (line.points.size() < 2) return;
   const ResponsePoint point = rounded_point(line, at, step);
   const std::string& address = found->of.address;
+  if (!has_number(session.mechanism(), address)) return; // gone in this frame, by an undo
   // A hand that rests on the marker asks for nothing new.
   const bool there = session.on_branch && point.parameter == get_parameter(session.mechanism(), address);
   if (dragged && there && (solving(session) || near(session.answer.solution.coordinates, point.coordinates)))

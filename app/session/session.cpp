@@ -198,9 +198,9 @@ void select(Session& session, Selection selection) {
 
 namespace {
 
-// Sets the number as a step of the history.
-void set_parameter_from(Session& session, const std::string& address, double value, StartValues start) {
-  if (!std::isfinite(value)) return;
+// Sets the number as a step of the history. False where it is refused, and nothing has changed.
+bool set_parameter_from(Session& session, const std::string& address, double value, StartValues start) {
+  if (!std::isfinite(value)) return false;
   const std::uint64_t revision = session.document.revision();
   const std::string step = "Set " + parameter_phrase(address);
   try {
@@ -210,13 +210,15 @@ void set_parameter_from(Session& session, const std::string& address, double val
     else
       session.document.edit_number(step, address, value, session.gesture);
   } catch (const SceneError& error) {
-    return show_error(session, error.what());
+    show_error(session, error.what());
+    return false;
   }
   // What was solved last, or `start`, is where solving begins.
   if (session.document.revision() != revision)
     take_document(session, false, true, std::move(start), address);
   else if (!start.empty())
     ask(session, false, true, std::move(start));
+  return true;
 }
 
 // While exploring; `warm` solves from the last answer, or from `start` where there is one.
@@ -264,11 +266,11 @@ void go_to_numbers(Session& session, const std::string& step, const Explored& va
 
 void go_to_state(Session& session, const std::string& address, double value, StartValues start) {
   if (start.empty()) return change_parameter(session, address, value);
-  session.on_branch = true;
+  const bool before = std::exchange(session.on_branch, true);
   if (address.empty())
     ask(session, false, true, std::move(start));
-  else
-    set_parameter_from(session, address, value, std::move(start));
+  else if (!set_parameter_from(session, address, value, std::move(start)))
+    session.on_branch = before;
 }
 
 void keep_explored(Session& session) {

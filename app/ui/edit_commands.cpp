@@ -12,6 +12,7 @@
 #include "app/session/session.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/view_state.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <imgui.h>
@@ -247,9 +248,9 @@ std::string selected_in_bearings(const Session& session) {
   if (session.selection().parts.size() != 1) return {};
   const Part& part = session.selection().parts[0];
   for (const Force& force : session.mechanism().forces)
-    if (force.type == ForceType::bearing && ((part.kind == PartKind::body && force.bodies[1] == part.name) ||
+    if (force.type == ForceType::bearing && ((part.kind == PartKind::body && held_by(force) == part.name) ||
                                              (part.kind == PartKind::force && force.name == part.name)))
-      return force.bodies[1];
+      return held_by(force);
   return {};
 }
 
@@ -269,9 +270,13 @@ void drive_in_bearings(Session& session, const std::string& body) {
     return;
   }
   edit(session, "Drive " + body + " in its bearings", [&](Mechanism& mechanism, Selection& selection) {
-    selection.set({PartKind::joint, give_bearing_drive(mechanism, body, new_drive_speed(session.units))});
+    const std::string joint = give_bearing_drive(mechanism, body, new_drive_speed(session.units)),
+                      speed = "joints." + joint + ".drive.speed";
+    if (!is_pinned(mechanism, speed) && !expression_at(mechanism, speed))
+      mechanism.sliders.push_back(slider_for(mechanism, speed, session.units));
+    selection.set({PartKind::joint, joint});
   });
-  session.notice = "Its bearings hold a sleeve without mass now, in which the drive turns " + body + ".";
+  session.notice = "The bearings hold a sleeve without mass now, in which " + body + " turns.";
 }
 
 } // namespace flyball

@@ -1,4 +1,4 @@
-// What a person can do at once where there is no steady state.
+// What a person can do at once where there is no steady state, or where what stands in bearings is not turned.
 #include "app/ui/remedies.hpp"
 
 #include "app/document/bearing_drive.hpp"
@@ -11,9 +11,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
-#include <set>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -28,7 +27,7 @@ class Buttons {
   void add(const std::string& name, const char* text, const char* help, std::function<void()> act,
            bool primary = false) {
     const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
-    if (!first_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
+    if (beside_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
       ImGui::SameLine();
     first_ = false;
     if (text_button(ui_, "results/remedy/" + name, text, primary)) later(ui_, std::move(act));
@@ -89,39 +88,8 @@ void holding_buttons(Buttons& buttons, Session& session) {
               });
 }
 
-} // namespace
-
-namespace {
-
-// Bodies that stand in elastic bearings, free to turn, which nothing turns.
-void bearing_buttons(Session& session, Ui& ui) {
-  const Mechanism& mechanism = session.mechanism();
-  std::set<std::string> seen;
-  std::optional<Buttons> buttons;
-  for (const Force& force : mechanism.forces) {
-    if (force.type != ForceType::bearing || !seen.insert(force.bodies[1]).second) continue;
-    const std::string& body = force.bodies[1];
-    if (!bearing_drive_refused(mechanism, body).empty()) continue;
-    if (!buttons) {
-      paragraph("Nothing turns what stands in bearings.", colors_of(ui).dim);
-      buttons.emplace(ui);
-    }
-    buttons->add(
-        "drive/" + body, ("Drive " + body + " in its bearings").c_str(), command("edit.bearing_drive").help,
-        [&session, body] { drive_in_bearings(session, body); }, true);
-  }
-  if (buttons) ImGui::Dummy({0, 2 * ui.scale});
-}
-
-} // namespace
-
-void remedies(Session& session, Ui& ui) {
+void steady_state_buttons(Buttons& buttons, Session& session) {
   const Solution& solution = session.answer.solution;
-  if (solution.status == Status::converged && solution.stability_reason == StabilityReason::neutral)
-    return bearing_buttons(session, ui);
-  if (solution.status != Status::not_converged && solution.status != Status::no_steady_state) return;
-  ImGui::Dummy({0, 2 * ui.scale});
-  Buttons buttons(ui);
   holding_buttons(buttons, session);
   if (solution.weight_turns)
     if (const auto along = gravity_along_drives(session.mechanism()))
@@ -136,6 +104,33 @@ void remedies(Session& session, Ui& ui) {
   buttons.add(
       "motion", "Show the motion", "How it moves from the drawn pose, which needs no steady state.",
       [&session] { show_how_it_moves(session); }, alone);
+}
+
+// A drive for what stands in elastic bearings and nothing turns, or nothing but a hinge that makes these idle.
+void bearing_buttons(Buttons& buttons, Session& session, Ui& ui, const std::vector<BodyInBearings>& bodies) {
+  for (const auto& [body, hinge] : bodies) {
+    paragraph(hinge.empty() ? "Nothing turns " + body + " in its bearings."
+                            : hinge + " holds " + body + " rigidly: its bearings bear nothing.",
+              colors_of(ui).dim);
+    buttons.add(
+        "drive/" + body,
+        (hinge.empty() ? "Drive " + body + " in its bearings" : "Let " + body + " move in its bearings").c_str(),
+        command("edit.bearing_drive").help, [&session, name = body] { drive_in_bearings(session, name); },
+        true);
+  }
+}
+
+} // namespace
+
+void remedies(Session& session, Ui& ui) {
+  const Solution& solution = session.answer.solution;
+  const bool none = solution.status == Status::not_converged || solution.status == Status::no_steady_state;
+  const std::vector<BodyInBearings> in_bearings = bodies_in_bearings(session.mechanism());
+  if (!none && in_bearings.empty()) return;
+  ImGui::Dummy({0, 2 * ui.scale});
+  Buttons buttons(ui);
+  bearing_buttons(buttons, session, ui, in_bearings);
+  if (none) steady_state_buttons(buttons, session);
   ImGui::Dummy({0, 2 * ui.scale});
 }
 

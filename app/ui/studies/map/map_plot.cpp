@@ -39,8 +39,9 @@ PlotCurve hatching(const MapCells& cells, const std::vector<double>& x, const st
   return hatch;
 }
 
-std::string axis_unit(const Session& session, const MapAxis& axis) {
-  return parameter_unit(session.mechanism(), axis.address);
+// As the map's own mechanism has it: the number may be gone since, by an undo.
+std::string axis_unit(const MapState& map, const MapAxis& axis) {
+  return parameter_unit(*map.cells.found->of.mechanism, axis.address);
 }
 
 void add_curves(Plot& plot, const PlaneCurves& curves, const std::string& level) {
@@ -117,7 +118,7 @@ void draw_map(const Session& session, MapView& drawn) {
   Plot plot;
   const auto axis_for = [&](const MapAxis& axis) {
     return PlotAxis{.label = parameter_phrase(axis.address),
-                    .unit = axis_unit(session, axis),
+                    .unit = axis_unit(map, axis),
                     .range = PlotRange{axis.from, axis.to},
                     .room = 0};
   };
@@ -145,8 +146,8 @@ void draw_map(const Session& session, MapView& drawn) {
   if (curves && curves->result.level && map.choice.level)
     add_curves(plot, *curves->result.level,
                choice.shown + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
-  show_axis(plot, 0, axis_unit(session, axes[0]), session.units);
-  show_axis(plot, 1, axis_unit(session, axes[1]), session.units);
+  show_axis(plot, 0, axis_unit(map, axes[0]), session.units);
+  show_axis(plot, 1, axis_unit(map, axes[1]), session.units);
   plot.marker = drawn.plot.marker;
   replace_plot(drawn.plot, std::move(plot));
   show_marker();

@@ -44,7 +44,7 @@ void draw_campbell(const Session& session, CampbellView& drawn) {
   if (!campbell.diagram.found || solving(session)) return; // the answer belongs to other numbers
   drawn.of = shown;
   const CampbellRequest& of = campbell.diagram.found->of;
-  const std::string unit = parameter_unit(session.mechanism(), of.drive);
+  const std::string unit = parameter_unit(*of.mechanism, of.drive);
   const PlotRange speeds{std::min(of.from, of.to), std::max(of.from, of.to)};
   Plot plot;
   if (const std::optional<std::size_t> branch = campbell_branch(session)) {
@@ -82,7 +82,7 @@ std::string campbell_problem(const Session& session) {
   std::string text = diagram.problem;
   if (!diagram.found) return text;
   const CampbellRequest& of = diagram.found->of;
-  const std::string si = parameter_unit(session.mechanism(), of.drive);
+  const std::string si = parameter_unit(*of.mechanism, of.drive);
   const ShownUnit unit = shown_unit(si, session.units);
   const std::string value = " = " + rounded_text(of.from, 6) + " " + si;
   if (const std::size_t at = text.find(value); at != std::string::npos)

@@ -210,13 +210,26 @@ void transport(Session& session, Ui& ui, const CommandRunner& commands) {
   note_widget(ui.widgets, "modes/speed");
 }
 
+bool turns_with_drives(const Session& session) {
+  return session.answer.ticket && !session.answer.error &&
+         session.answer.solution.status == Status::no_steady_state;
+}
+
+std::string without_modes(const Session& session) {
+  const std::string none = "Modes are of a steady state, and there is none now";
+  if (!turns_with_drives(session)) return none + ".";
+  return none +
+         ": the balance turns with the drives, by weight or by a mass centre beside the axis. With mass "
+         "centres on it, and gravity along it or turned off, there is one; its modes and critical speeds "
+         "are those that unbalance excites. How far it swings with it, Response shows over the speed.";
+}
+
 void modes_list(Session& session, Ui& ui, const CommandRunner& commands) {
   ModesState& modes = session.study.modes;
   const UiColors& colors = colors_of(ui);
   auto& search = modes.list;
   if (!search.problem.empty()) return paragraph(search.problem, colors.bad);
-  if (!converged(session))
-    return paragraph("Modes are of a steady state, and there is none now.", colors.dim);
+  if (!converged(session)) return paragraph(without_modes(session), colors.dim);
   const bool finding = search.running();
   if (finding && (!search.found || search.seconds() > modes_patience)) {
     if (text_button(ui, "modes/cancel", "Cancel")) search.stop();
@@ -317,6 +330,11 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
+  if (turns_with_drives(session)) { // there is none at any speed, and axes without lines say nothing
+    paragraph(without_modes(session), colors.dim);
+    note_widget(ui.widgets, "campbell/turns");
+    return;
+  }
   campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
   if (const std::string problem = campbell_problem(session); !problem.empty()) {
