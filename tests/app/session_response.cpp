@@ -39,3 +39,82 @@ TEST_CASE("Session: the point of a response goes to a branch's very beginning") 
   }
   CHECK(begun_between > 0);
 }
+
+namespace {
+
+// The governor with a parameter that nothing rests on.
+struct SpareSession : Session {
+  SpareSession() : Session({.mode = LiveSolver::Mode::immediate}) {
+    open_scene(*this, shipped_file("governor"));
+    frames();
+    edit(*this, "Spare", [](Mechanism& m, Selection&) {
+      NamedParameter spare;
+      spare.name = "spare";
+      spare.value = 3;
+      m.parameters.push_back(std::move(spare));
+    });
+    frames();
+  }
+  void frames() {
+    for (int i = 0; i < 3; ++i)
+      update(*this, 0);
+  }
+};
+
+} // namespace
+
+TEST_CASE("Session: a curve over a number that an undo has taken away is not gone along") {
+  SpareSession session;
+  open_study(session, StudyKind::response);
+  choose_response(session, "parameters.spare");
+  session.frames();
+  REQUIRE(session.study.response.curve.found);
+  undo(session);
+  // In the same frame, before the session is updated, and while the hand goes on.
+  go_to_response(session, 0, 1, 1e-3, true);
+  go_to_response(session, 0, 1.5, 1e-3, true);
+  CHECK_FALSE(session.on_branch);
+  CHECK_FALSE(is_error(session));
+  session.frames();
+  REQUIRE(session.study.response.curve.found);
+  CHECK(session.study.response.curve.found->of.address == "joints.spin.drive.speed");
+}
+
+TEST_CASE("Session: a map over a number that is gone goes with it, also while the document has mistakes") {
+  SpareSession session;
+  open_study(session, StudyKind::map);
+  session.study.map.choice.axes = {map_axis(session, "joints.spin.drive.speed"),
+                                   map_axis(session, "parameters.spare")};
+  for (MapAxis& axis : session.study.map.choice.axes)
+    axis.count = 3;
+  session.study.map.choice.folds = true;
+  session.frames();
+  REQUIRE(session.study.map.cells.found);
+  REQUIRE(session.study.map.cells.found->of.choice.axes[1].address == "parameters.spare");
+  edit(session, "Lost", [](Mechanism& m, Selection&) {
+    m.parameters.clear();
+    m.bodies.front().mass = -1;
+  });
+  REQUIRE_FALSE(session.mistakes.empty());
+  session.frames();
+  CHECK_FALSE(session.study.map.cells.found);
+  CHECK_FALSE(session.study.map.curves.found);
+}
+
+TEST_CASE("Session: a state that is refused puts nothing on a branch") {
+  SpareSession session;
+  edit(session, "Inverse", [](Mechanism& m, Selection&) {
+    NamedParameter inverse;
+    inverse.name = "inverse";
+    inverse.formulas = {{"value", "1/spare"}};
+    m.parameters.push_back(std::move(inverse));
+  });
+  session.frames();
+  REQUIRE(converged(session));
+  go_to_state(session, "parameters.spare", 0, start_values(session.answer.solution.coordinates));
+  CHECK(is_error(session));
+  CHECK_FALSE(session.on_branch);
+  CHECK(get_parameter(session.mechanism(), "parameters.spare") == 3);
+  go_to_state(session, "parameters.spare", 4, start_values(session.answer.solution.coordinates));
+  CHECK(session.on_branch);
+}
