@@ -4,6 +4,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/study/sweep.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -12,9 +13,7 @@
 namespace flyball {
 namespace {
 
-// Of a point from which no steady state is found, as sweep() looks for others (see SolveOptions::search).
-constexpr double point_search = 0.05; // s
-constexpr double finest = 1. / 1024;  // of the range: points are no nearer
+constexpr double finest = 1. / 1024; // of the range: points are no nearer
 
 using Outputs = std::vector<ResonanceOutput>;
 

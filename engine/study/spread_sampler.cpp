@@ -3,6 +3,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/study/sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,6 @@ namespace flyball {
 namespace {
 
 constexpr std::size_t most_coordinates = 64; // that are told; of more the measures alone
-constexpr double other_states = 0.05;        // s, as of a sweep's points
 
 std::vector<FreeNumber> free_numbers(const Mechanism& mechanism, std::span<const Tolerance> tolerances) {
   std::vector<FreeNumber> free;
@@ -95,7 +95,7 @@ SampleFate SpreadSampler::solve(const std::vector<double>& numbers, std::span<do
   }
   SolveOptions solve;
   solve.details = false;
-  solve.search = other_states;
+  solve.search = point_search;
   solve.friction = false; // which holds samples as drawn
   solve.cancel = options_.cancel;
   const Solution solution = Analysis(there).solve(solve);

@@ -9,9 +9,6 @@
 
 namespace flyball {
 
-// Of a point from which no steady state is found, see SolveOptions::search: a map has thousands.
-constexpr double search = 0.05; // s
-
 double Variation::value(int i) const {
   if (count < 2 || i == 0) return from;
   if (i == count - 1) return to;
@@ -69,7 +66,7 @@ SweepPoint GridSolver::solve(std::size_t i, const std::atomic<bool>* cancel) {
   if (!set(i, point)) return point;
   SolveOptions options;
   options.details = false;
-  options.search = search;
+  options.search = point_search;
   options.cancel = cancel;
   point.solution = analysis_.solve(options);
   return point;

@@ -10,6 +10,9 @@
 
 namespace flyball {
 
+// s, SolveOptions::search of each of the points of a study, of which there may be thousands.
+inline constexpr double point_search = 0.05;
+
 struct Variation {
   std::string address;
   double from = 0, to = 0;
