@@ -335,13 +335,14 @@ class PhaseSearch {
   Eigen::VectorXd speeds_of(const Eigen::VectorXd& q) const {
     Eigen::VectorXd out(found_);
     for (Eigen::Index i = 0; i < found_; ++i)
-      out[i] = speed(i, q) / units_[static_cast<std::size_t>(i)];
+      out[i] = speed(i, q);
     return out;
   }
 
-  // That is found, rad/s or m/s.
+  // That is found, over its unit: 1/s.
   double speed(Eigen::Index i, const Eigen::VectorXd& q) const {
-    return q[given_.system.links[links_[static_cast<std::size_t>(i)]].q];
+    const auto k = static_cast<std::size_t>(i);
+    return q[given_.system.links[links_[k]].q] / units_[k];
   }
 
   // What the same balance is with the first of what turns where it was drawn: all may turn on together. Loops
@@ -429,9 +430,10 @@ class PhaseSearch {
   // Whether something of which the angle counts stands still.
   bool rests(const Eigen::VectorXd& q) const {
     double fastest = 0;
-    for (const std::size_t l : links_)
-      fastest = std::max(fastest, std::abs(finds_speed(given_.system.links[l]) ? q[given_.system.links[l].q]
-                                                                               : p_.links[l].speed));
+    for (Eigen::Index i = 0; i < found_; ++i)
+      fastest = std::max(fastest, std::abs(speed(i, q)));
+    for (std::size_t k = static_cast<std::size_t>(found_); k < links_.size(); ++k)
+      fastest = std::max(fastest, std::abs(p_.links[links_[k]].speed) / units_[k]);
     for (Eigen::Index i = 0; i < found_; ++i)
       if (directions_.row(i).norm() > counts && !(std::abs(speed(i, q)) > 1e-6 * fastest)) return true;
     return false;

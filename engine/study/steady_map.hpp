@@ -48,12 +48,11 @@ class SteadyMap {
   // or where that is empty what a solve answers. Nothing where there is none: `first` says why.
   std::optional<State> begin(const std::vector<std::pair<std::string, double>>& start, Solution& first);
 
-  // At a state that was found: state_rates() of the coordinates (rad or m, as a step; (nv, numbers)) and
-  // rates() of what is asked for ((wanted, numbers)), per unit of the numbers; not numbers in the rows of
-  // measures that have none. False where the state is singular, or at an end of what mechanisms can be made
-  // of. By differences of the balance in the numbers (sensitivity.hpp).
+  // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
+  // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
+  // where the state is singular, or at an end of what mechanisms can be made of. By the balance's exact rates
+  // in the numbers (sensitivity.hpp).
   bool find_rates(const State& state);
-  const Eigen::MatrixXd& state_rates() const { return state_rates_; }
   const Eigen::MatrixXd& rates() const { return rates_; }
   // How far the state would go with a step of the numbers: the largest coordinate, in rad or reaches.
   double way(const Eigen::VectorXd& step) const;
