@@ -1,5 +1,6 @@
 #include "engine/search/find_equilibrium.hpp"
 
+#include "engine/kkt/configuration_difference.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/uniform_random.hpp"
 #include "engine/solve/eigenvector_descent.hpp"
@@ -368,16 +369,7 @@ class EquilibriumSearch {
   }
 
   bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
-    for (const Link& link : p_.system.links) {
-      if (link.v < 0) continue;
-      if (link.type == LinkType::spherical) {
-        if (std::abs(a.segment<4>(link.q).dot(b.segment<4>(link.q))) < 1 - tolerance::same_quaternion)
-          return false;
-      } else if (std::abs(a[link.q] - b[link.q]) > tolerance::same_state * p_.scaling.column[link.v]) {
-        return false;
-      }
-    }
-    return true;
+    return same_pose(p_, a, b, tolerance::same_state);
   }
 
   // Nothing better was found: an unstable answer is an answer, said to be one.

@@ -56,8 +56,7 @@ constexpr double newton_leads_step = 1e-3;   // scaled; Newton-Raphson may take 
 constexpr double least_radius = 1e-12;       // of the mechanism's size: no step is taken any more
 
 // Verdicts on states.
-constexpr double same_state = 1e-6;       // scaled distance; states nearer are one
-constexpr double same_quaternion = 1e-12; // 1 - |a.b|: the square of such a distance in an angle
+constexpr double same_state = 1e-6; // scaled distance; states nearer are one
 constexpr double known = 1e-6; // of the reach, or of the distance where longer: what is known worse is none
 constexpr double proximal_shift = 1e-3;  // of the potential's curvature: stills null directions, little else
 constexpr double inertia_shift = 1e-5;   // the same, where it is to outweigh rounding alone
