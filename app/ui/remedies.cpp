@@ -1,4 +1,5 @@
-// What a person can do at once where there is no steady state, or where what stands in bearings is not turned.
+// What a person can do at once where there is no steady state, or where what stands in bearings is not
+// turned.
 #include "app/ui/remedies.hpp"
 
 #include "app/document/bearing_drive.hpp"
@@ -27,11 +28,16 @@ class Buttons {
   void add(const std::string& name, const char* text, const char* help, std::function<void()> act,
            bool primary = false) {
     const float width = ImGui::CalcTextSize(text).x + 2 * ImGui::GetStyle().FramePadding.x;
-    if (beside_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
+    if (!first_ && ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width < right_)
       ImGui::SameLine();
     first_ = false;
     if (text_button(ui_, "results/remedy/" + name, text, primary)) later(ui_, std::move(act));
     help_on_hover(help);
+  }
+  // What those that follow mend, in words above them.
+  void about(const std::string& words) {
+    paragraph(words, colors_of(ui_).dim);
+    first_ = true;
   }
 
  private:
@@ -106,15 +112,16 @@ void steady_state_buttons(Buttons& buttons, Session& session) {
       [&session] { show_how_it_moves(session); }, alone);
 }
 
-// A drive for what stands in elastic bearings and nothing turns, or nothing but a hinge that makes these idle.
-void bearing_buttons(Buttons& buttons, Session& session, Ui& ui, const std::vector<BodyInBearings>& bodies) {
+// A drive for what stands in elastic bearings and nothing turns, or nothing but a hinge that makes these
+// idle.
+void bearing_buttons(Buttons& buttons, Session& session, const std::vector<BodyInBearings>& bodies) {
   for (const auto& [body, hinge] : bodies) {
-    paragraph(hinge.empty() ? "Nothing turns " + body + " in its bearings."
-                            : hinge + " holds " + body + " rigidly: its bearings bear nothing.",
-              colors_of(ui).dim);
+    buttons.about(hinge.empty() ? "Nothing turns " + body + " in its bearings."
+                                : hinge + " holds " + body + " rigidly: its bearings bear nothing.");
     buttons.add(
         "drive/" + body,
-        (hinge.empty() ? "Drive " + body + " in its bearings" : "Let " + body + " move in its bearings").c_str(),
+        (hinge.empty() ? "Drive " + body + " in its bearings" : "Let " + body + " move in its bearings")
+            .c_str(),
         command("edit.bearing_drive").help, [&session, name = body] { drive_in_bearings(session, name); },
         true);
   }
@@ -129,7 +136,7 @@ void remedies(Session& session, Ui& ui) {
   if (!none && in_bearings.empty()) return;
   ImGui::Dummy({0, 2 * ui.scale});
   Buttons buttons(ui);
-  bearing_buttons(buttons, session, ui, in_bearings);
+  bearing_buttons(buttons, session, in_bearings);
   if (none) steady_state_buttons(buttons, session);
   ImGui::Dummy({0, 2 * ui.scale});
 }
