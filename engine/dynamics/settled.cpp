@@ -32,7 +32,6 @@ bool is_held(const Run& run) {
 double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return infinity;
-  const double reach = run.segments.back().model->parameters.length;
   double worst = 0;
   for (std::size_t i = 0; i < run.coordinates.size(); ++i) {
     const CoordinateTrack& track = run.coordinates[i];
@@ -58,7 +57,7 @@ double distance_from(const Run& run, std::size_t sample, const Solution& steady)
     }
     double away = track.value[sample] - there.value;
     if (track.turns) away = std::remainder(away, 2 * std::numbers::pi);
-    worst = std::max(worst, std::abs(away) / (track.angle ? 1 : reach));
+    worst = std::max(worst, std::abs(away) / track.scale);
   }
   return worst;
 }

@@ -2,6 +2,8 @@
 #include "tests/engine/dynamics_runs.hpp"
 
 #include "engine/mechanism/text.hpp"
+#include "engine/periodic/limit_cycle.hpp"
+#include "engine/periodic/orbit_ranges.hpp"
 #include "engine/periodic/periodic_state.hpp"
 #include "tests/catch.hpp"
 
@@ -266,4 +268,51 @@ TEST_CASE("An even wheel that another torque turns fast has no part in when a cy
     CHECK_THAT(of(s, "beside").rate.mean, WithinRel(speed, 1e-8));
     CHECK(s.stable == true);
   }
+}
+
+namespace {
+
+// Rayleigh's oscillator at 1 rad/s, a sprung slide whose damper feeds it while it is slow, beside an even
+// wheel that a torque drives. By the energy of a cycle it swings by half the size to either side.
+Mechanism rayleigh(double size) {
+  Mechanism m;
+  m.gravity.setZero();
+  m.bodies = {body("wheel", 1, {0, 0, 0}, {1, 1, 1}), body("block", 1, {size, 0, 0}, {1, 1, 1})};
+  m.joints = {dampened(revolute("turn", "ground", "wheel", {0, 0, 0}), 0.1),
+              sprung(prismatic("slide", "ground", "block", {size, 0, 0}, {1, 0, 0}), 1, size / 2)};
+  m.joints[0].coordinates[0].drive = Drive{.speed = 10, .torque = 1};
+  Joint& slide = m.joints[1];
+  slide.coordinates[0].damping_force = 0;
+  slide.formulas = {
+      {"damping_force", "-0.2 N s/m*rate + " + number_text(3.2 / 3 / (size * size)) + " N s^3/m^3*rate^3"}};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("The limit cycle of a slide is found in any size") {
+  const double size = GENERATE(0.8e-6, 1., 100.);
+  const PeriodicState s = find_limit_cycle(rayleigh(size));
+  CAPTURE(size, s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK_THAT(s.period, WithinRel(2 * pi, 1e-2));
+  const PeriodicRange& slide = of(s, "slide").range;
+  CHECK_THAT(slide.most - slide.least, WithinRel(size, 0.02));
+  CHECK_THAT(slide.mean, WithinRel(size / 2, 0.02));
+}
+
+TEST_CASE("A slide that goes on by little every period goes on") {
+  const double size = GENERATE(1e-7, 1.);
+  CAPTURE(size);
+  Run run;
+  CoordinateTrack track;
+  track.joint = "slide";
+  track.scale = size;
+  track.value = {0, 1e-2 * size, 3e-2 * size, 4e-2 * size};
+  track.rate = {1e-2 * size, 2e-2 * size, 2e-2 * size, 1e-2 * size};
+  run.coordinates = {track};
+  PeriodicState told;
+  fill_ranges(run, told);
+  REQUIRE(told.coordinates.size() == 1);
+  CHECK(told.coordinates[0].goes_on());
 }
