@@ -139,7 +139,7 @@ std::string first_address(const Session& session, std::size_t axis) {
 bool choose(Session& session) {
   MapChoice& choice = session.study.map.choice;
   for (std::size_t i = 0; i < 2; ++i) {
-    if (has_number(session.mechanism(), choice.axes[i].address)) continue;
+    if (control_of(session, choice.axes[i].address)) continue; // an expression may have come to give it
     choice.axes[i].address.clear();
     const std::string address = first_address(session, i);
     if (address.empty()) return false;

@@ -101,6 +101,23 @@ TEST_CASE("Session: a map over a number that is gone goes with it, also while th
   CHECK_FALSE(session.study.map.curves.found);
 }
 
+TEST_CASE("Session: a map takes another number where an expression has come to give the one it was over") {
+  SpareSession session;
+  open_study(session, StudyKind::map);
+  session.study.map.choice.axes = {map_axis(session, "joints.spin.drive.speed"),
+                                   map_axis(session, "parameters.spare")};
+  for (MapAxis& axis : session.study.map.choice.axes)
+    axis.count = 3;
+  session.frames();
+  edit(session, "Given", [](Mechanism& m, Selection&) {
+    m.parameters.front().formulas = {{"value", "2+2"}};
+  });
+  session.frames();
+  CHECK(session.study.map.choice.axes[0].address == "joints.spin.drive.speed");
+  CHECK(session.study.map.choice.axes[1].address == "joints.slide.spring.stiffness");
+  CHECK(map_problem(session).empty());
+}
+
 TEST_CASE("Session: a state that is refused puts nothing on a branch") {
   SpareSession session;
   edit(session, "Inverse", [](Mechanism& m, Selection&) {
