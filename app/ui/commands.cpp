@@ -39,6 +39,12 @@ std::string CommandRunner::label(const Command& command) const {
   return command.label ? command.label(*app_) : command.title;
 }
 
+std::string CommandRunner::about(const Command& command) const {
+  constexpr const char* selection = "there is nothing selected that it applies to.";
+  return enabled(command) ? command.help
+                          : std::string("Not now: ") + (command.lacks ? command.lacks : selection);
+}
+
 void CommandRunner::run(const Command& command) const {
   command.run(*app_);
 }

@@ -38,6 +38,7 @@ class CommandRunner {
   bool enabled(const Command& command) const;
   bool checked(const Command& command) const;
   std::string label(const Command& command) const;
+  std::string about(const Command& command) const;    // what it does, or why it cannot now
   void run(const Command& command) const;             // whether or not it is enabled
   void run(std::string_view id) const;                // where it is enabled
   void open(const std::filesystem::path& file) const; // asks first

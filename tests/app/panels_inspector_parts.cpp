@@ -155,7 +155,7 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
   };
   const Part arm1{PartKind::joint, "arm1"}, arm2{PartKind::joint, "arm2"}, slide{PartKind::joint, "slide"};
   SECTION("a gear that becomes a belt of its ratio") {
-    const std::string gear = join({arm1, arm2}, "edit.gear");
+    const std::string gear = join({arm1, arm2}, "insert.gear");
     CHECK(gear == "gear1");
     hand.one_step([&] { hand.fill("inspector/ratio", "-1/2"); });
     hand.one_step([&] { hand.choose_from("inspector/kind", "belt"); });
@@ -168,7 +168,7 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     CHECK(gear_ratio(hand.joint("gear1")) == Approx(1.25));
   }
   SECTION("a rack whose pinion is the one that turns, and the screw of its ratio") {
-    CHECK(join({slide, arm1}, "edit.rack") == "rack1");
+    CHECK(join({slide, arm1}, "insert.rack") == "rack1");
     CHECK(hand.joint("rack1").joints == std::array<std::string, 2>{"arm1", "slide"});
     hand.one_step([&] { hand.fill("inspector/radius", "-30 mm"); });
     CHECK(hand.joint("rack1").radii[0] == -0.03);
@@ -184,7 +184,7 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     });
     select(hand.app.session, {{arm1, arm2, {PartKind::joint, "revolute1"}}});
     hand.frames(2);
-    hand.app.commands.run("edit.belt");
+    hand.app.commands.run("insert.belt");
     hand.frames(2);
     CHECK(hand.last_step() == "Belt of arm1, arm2 and revolute1");
     CHECK(hand.joint("belt1").joints == std::array<std::string, 2>{"arm1", "arm2"});
@@ -198,7 +198,7 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
     select(hand.app.session, {{arm1, arm2}});
     hand.frames(2);
     CHECK_FALSE(hand.app.commands.enabled(command("edit.backlash")));
-    hand.app.commands.run("edit.gear");
+    hand.app.commands.run("insert.gear");
     hand.frames(2);
     REQUIRE(hand.app.commands.enabled(command("edit.backlash")));
     hand.press_widget("inspector/edit.backlash");
@@ -217,11 +217,11 @@ TEST_CASE("two hinges become wheels of a belt, a hinge and a slide pinion and ra
   }
   SECTION("only what suits them is offered") {
     select(hand.app.session, {{arm1, arm2}});
-    CHECK(hand.app.commands.enabled(command("edit.belt")));
-    CHECK_FALSE(hand.app.commands.enabled(command("edit.rack")));
+    CHECK(hand.app.commands.enabled(command("insert.belt")));
+    CHECK_FALSE(hand.app.commands.enabled(command("insert.rack")));
     select(hand.app.session, {{slide}});
-    CHECK_FALSE(hand.app.commands.enabled(command("edit.gear")));
-    CHECK_FALSE(hand.app.commands.enabled(command("edit.screw")));
+    CHECK_FALSE(hand.app.commands.enabled(command("insert.gear")));
+    CHECK_FALSE(hand.app.commands.enabled(command("insert.screw")));
   }
 }
 

@@ -195,9 +195,9 @@ TEST_CASE("the title of the results moves the line above it") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");
   const WidgetRect title = hand.widget("results/title");
-  hand.drag({title.center().x, title.center().y}, {title.center().x, title.center().y + 80});
+  hand.drag({title.center().x, title.center().y}, {title.center().x, title.center().y - 80});
   hand.frames(2);
-  CHECK(hand.widget("results/title").from.y == Approx(title.from.y + 80).margin(2));
+  CHECK(hand.widget("results/title").from.y == Approx(title.from.y - 80).margin(2));
 }
 
 TEST_CASE("while numbers are typed no section opens above them") {

@@ -240,3 +240,13 @@ TEST_CASE("what was used last comes first, and all commands without a word") {
   CHECK(robot.entry(0).name == "part/body/ball1");
   CHECK(robot.entry(1).name == "view.ghost");
 }
+
+TEST_CASE("gears are among what can be inserted, and say what to select for them") {
+  Robot robot;
+  for (const char* id : {"insert.gear", "insert.belt", "insert.rack", "insert.screw"}) {
+    const Command& gear = command(id);
+    CHECK_FALSE(robot.app.commands.enabled(gear));
+    CHECK_THAT(robot.app.commands.about(gear), StartsWith("Not now: select "));
+  }
+  CHECK(robot.app.commands.about(command("insert.ball")) == command("insert.ball").help);
+}

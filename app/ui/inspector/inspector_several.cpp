@@ -95,8 +95,8 @@ void common_number(Session& session, Ui& ui, InspectorState& inspector, PartKind
 }
 
 void actions(Ui& ui, const CommandRunner& commands) {
-  constexpr std::array ids{"edit.duplicate", "edit.mirror", "edit.circular", "edit.gear",
-                           "edit.belt",      "edit.rack",   "edit.screw",    "edit.delete"};
+  constexpr std::array ids{"edit.duplicate", "edit.mirror", "edit.circular", "insert.gear",
+                           "insert.belt",    "insert.rack", "insert.screw",  "edit.delete"};
   const float right = ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x;
   bool first = true;
   for (const char* id : ids) {

@@ -14,15 +14,6 @@ namespace flyball::menus {
 
 namespace {
 
-template <GearKind kind>
-void gear(App& app) {
-  gear_selected(app.session, kind);
-}
-template <GearKind kind>
-bool can_gear(const App& app) {
-  return can_gear_selected(app.session, kind);
-}
-
 bool can_delete(const Session& session, const ToolState& tool) {
   return any_selected(session) || selected_point(session, tool);
 }
@@ -109,28 +100,6 @@ const std::array edit_commands{
             .key = ctrl_shift('M'),
             .run = [](App& app) { app.panels->copies.open_circular(app.session, app.dialog); },
             .enabled = of_session<any_selected>},
-    Command{.id = "edit.gear",
-            .title = "Join by a gear",
-            .help = "Couple the selected joints: each turns as the one chosen before it does.",
-            .run = gear<GearKind::gear>,
-            .enabled = can_gear<GearKind::gear>},
-    Command{.id = "edit.belt",
-            .title = "Join by a belt",
-            .help =
-                "A belt or chain over wheels on the selected joints, from one to the next in the order of "
-                "their choice.",
-            .run = gear<GearKind::belt>,
-            .enabled = can_gear<GearKind::belt>},
-    Command{.id = "edit.rack",
-            .title = "Join by a rack",
-            .help = "A pinion on the selected joint that turns moves a rack along the one that slides.",
-            .run = gear<GearKind::rack>,
-            .enabled = can_gear<GearKind::rack>},
-    Command{.id = "edit.screw",
-            .title = "Join by a screw",
-            .help = "A thread: the selected joint that slides moves by the lead as the other makes a turn.",
-            .run = gear<GearKind::screw>,
-            .enabled = can_gear<GearKind::screw>},
     Command{.id = "edit.backlash",
             .title = "Give backlash",
             .help =

@@ -1,10 +1,21 @@
 #include "app/ui/menus/menu_commands.hpp"
 
+#include "app/ui/edit_commands.hpp"
+
 #include <array>
 
 namespace flyball::menus {
 
 namespace {
+
+template <GearKind kind>
+void gear(App& app) {
+  gear_selected(app.session, kind);
+}
+template <GearKind kind>
+bool can_gear(const App& app) {
+  return can_gear_selected(app.session, kind);
+}
 
 const std::array insert_commands{
     Command{.id = "insert.ball",
@@ -31,6 +42,14 @@ const std::array insert_commands{
             .key = shift('P'),
             .run = choose_tool<Tool::plate>,
             .checked = tool_chosen<Tool::plate>},
+    Command{.id = "insert.disc",
+            .title = "Disc",
+            .help =
+                "A solid disc, across the view: click where its centre is, or drag from there to its rim.",
+            .key = shift('D'),
+            .run = choose_tool<Tool::disc>,
+            .checked = tool_chosen<Tool::disc>,
+            .words = "flywheel wheel drum rotor cylinder"},
     Command{.id = "insert.joint",
             .title = "Joint",
             .help = "Join two bodies, or a body and the ground: click the point where they meet.",
@@ -44,6 +63,37 @@ const std::array insert_commands{
             .key = plain('L'),
             .run = choose_tool<Tool::distance>,
             .checked = tool_chosen<Tool::distance>},
+    Command{.id = "insert.gear",
+            .title = "Join by a gear",
+            .help = "Couple the selected joints: each turns as the one chosen before it does.",
+            .run = gear<GearKind::gear>,
+            .enabled = can_gear<GearKind::gear>,
+            .separated = true,
+            .words = "wheel planetary ratio coupling",
+            .lacks = "select two joints that turn, with Ctrl: the second will turn as the first does."},
+    Command{.id = "insert.belt",
+            .title = "Join by a belt",
+            .help =
+                "A belt or chain over wheels on the selected joints, from one to the next in the order of "
+                "their choice.",
+            .run = gear<GearKind::belt>,
+            .enabled = can_gear<GearKind::belt>,
+            .words = "chain pulley",
+            .lacks = "select two or more joints that turn, with Ctrl, in the belt's order."},
+    Command{.id = "insert.rack",
+            .title = "Join by a rack",
+            .help = "A pinion on the selected joint that turns moves a rack along the one that slides.",
+            .run = gear<GearKind::rack>,
+            .enabled = can_gear<GearKind::rack>,
+            .words = "pinion",
+            .lacks = "select a joint that turns and one that slides, with Ctrl."},
+    Command{.id = "insert.screw",
+            .title = "Join by a screw",
+            .help = "A thread: the selected joint that slides moves by the lead as the other makes a turn.",
+            .run = gear<GearKind::screw>,
+            .enabled = can_gear<GearKind::screw>,
+            .words = "thread spindle lead",
+            .lacks = "select a joint that turns and one that slides with Ctrl, or a cylindrical one."},
     Command{.id = "insert.spring",
             .title = "Spring",
             .help = "A spring between two points.",

@@ -129,10 +129,10 @@ void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& 
   if (alone) command_item(ui, commands, "edit.rename");
   command_items(ui, commands, {"edit.duplicate", "edit.copy", "edit.delete"});
   if (selection.has(PartKind::body)) command_items(ui, commands, {"edit.mirror", "edit.circular"});
-  if (selection.names(PartKind::joint).size() >= 2) command_item(ui, commands, "edit.gear");
-  for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "edit.belt"),
-                                         {GearKind::rack, "edit.rack"},
-                                         {GearKind::screw, "edit.screw"}})
+  if (selection.names(PartKind::joint).size() >= 2) command_item(ui, commands, "insert.gear");
+  for (const auto& [kind, command_id] : {std::pair(GearKind::belt, "insert.belt"),
+                                         {GearKind::rack, "insert.rack"},
+                                         {GearKind::screw, "insert.screw"}})
     if (can_gear_selected(session, kind)) command_item(ui, commands, command_id);
   if (can_give_backlash(session)) command_item(ui, commands, "edit.backlash");
   if (can_drive_in_bearings(session)) command_item(ui, commands, "edit.bearing_drive");

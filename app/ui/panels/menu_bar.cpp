@@ -46,7 +46,7 @@ void items(const Session& session, Ui& ui, const CommandRunner& commands, const 
       commands.run(command);
     ImGui::PopID();
     note_widget(ui.widgets, std::string("menu/") + command.id);
-    help_on_hover(command.help);
+    help_on_hover(commands.about(command).c_str());
     if (command.id == std::string_view("file.open")) recent_menu(session, ui, commands);
   }
 }

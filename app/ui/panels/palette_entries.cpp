@@ -61,9 +61,7 @@ PaletteEntry command_entry(const CommandRunner& commands, const Command& command
   entry.name = command.id;
   entry.title = commands.label(command);
   entry.enabled = commands.enabled(command);
-  constexpr const char* selection = "there is nothing selected that it applies to.";
-  entry.about =
-      entry.enabled ? command.help : std::string("Not now: ") + (command.lacks ? command.lacks : selection);
+  entry.about = commands.about(command);
   entry.more = command.help + (command.words ? std::string(" ") + command.words : std::string());
   entry.right = key_text(command.key);
   entry.command = &command;
