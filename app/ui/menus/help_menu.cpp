@@ -1,10 +1,19 @@
 #include "app/ui/menus/menu_commands.hpp"
 
+#include "app/report/versions.hpp"
+
 #include <array>
 
 namespace flyball::menus {
 
 namespace {
+
+void tell_about(App& app) {
+  app.session.notice =
+      "Flyball " + program_versions().front().second +
+      ", under the MIT license. Its README has a first mechanism step by step, and the manual "
+      "page of each command tells the rest: man flyball. Shipped scenes are in File, Examples.";
+}
 
 const std::array help_commands{
     Command{.id = "help.palette",
@@ -25,6 +34,11 @@ const std::array help_commands{
             .run = [](App& app) { app.panels->shortcuts.open = !app.panels->shortcuts.open; },
             .checked = [](const App& app) { return app.panels->shortcuts.open; },
             .words = "keyboard"},
+    Command{.id = "help.about",
+            .title = "About",
+            .help = "Version and license, and where more is told.",
+            .run = tell_about,
+            .words = "version license manual tutorial documentation"},
 };
 
 } // namespace
