@@ -111,17 +111,37 @@ void matrix_rows(Session& session, Ui& ui, const Force& force, const std::string
       for (std::size_t i = 0; i < entries.size() && i / size < 2; i += size + 1)
         entries[i] = usual;
     });
-  constexpr std::array<const char*, 6> names{"x", "y", "z", "turn x", "turn y", "turn z"};
   const std::size_t size = matrix.size() > 4 ? 6 : 2;
-  for (std::size_t i = 0; i < matrix.size(); ++i) {
-    const std::string entry = std::to_string(i / size) + "." + std::to_string(i % size);
-    quantity_row(
-        session, ui, std::string(names[i / size]) + " by " + names[i % size],
-        {.name = "inspector/" + key + "/" + std::to_string(i / size) + "/" + std::to_string(i % size),
-         .value = matrix[i],
-         .unit = std::string(fields::bearing_unit(unit, size, i / size, i % size)),
-         .help = "What resists along the first, by what happens along the second.",
-         .address = address_of(force, key + "." + entry)});
+  const auto field = [&](std::size_t row, std::size_t column) {
+    return QuantityField{
+        .name = "inspector/" + key + "/" + std::to_string(row) + "/" + std::to_string(column),
+        .value = matrix[row * size + column],
+        .unit = std::string(fields::bearing_unit(unit, size, row, column)),
+        .help = "What resists along the first, by what happens along the second.",
+        .address = address_of(force, key + "." + std::to_string(row) + "." + std::to_string(column))};
+  };
+  constexpr std::array<const char*, 6> names{"x", "y", "z", "turn x", "turn y", "turn z"};
+  if (matrix.size() == 4)
+    for (std::size_t i = 0; i < 4; ++i)
+      quantity_row(session, ui, std::string(names[i / 2]) + " by " + names[i % 2], field(i / 2, i % 2));
+  if (matrix.size() != 36) return;
+  // Three columns at a time: six would have no room for their numbers.
+  const float label = 52 * ui.scale, gap = 4 * ui.scale;
+  for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
+    const float start = ImGui::GetCursorPosX();
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - label - 3 * gap) / 3);
+    for (std::size_t row = 0; row <= size; ++row) { // the first has the columns' names
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextColored(colors_of(ui).dim, "%s", row == 0 ? "by" : names[row - 1]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        ImGui::SameLine(0, 0);
+        ImGui::SetCursorPosX(start + label + static_cast<float>(k) * (width + gap));
+        if (row == 0)
+          ImGui::TextColored(colors_of(ui).dim, "%s", names[first + k]);
+        else
+          quantity_field(session, ui, field(row - 1, first + k), width);
+      }
+    }
   }
 }
 
