@@ -1,6 +1,7 @@
 #include "app/document/create.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
+#include "app/ui/widgets/widgets.hpp"
 
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/force_law.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace flyball {
 
