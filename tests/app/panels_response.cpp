@@ -426,6 +426,21 @@ TEST_CASE("another parameter, its own range, and a logarithmic axis") {
       CHECK(point[0] <= 5000 * (1 + 1e-12));
 }
 
+TEST_CASE("another range has an axis of its own, also while a key is held") {
+  ResponseRobot robot("governor");
+  choose_response_end(robot.app.session, &ResponseChoice::to, 30);
+  robot.frames(3);
+  REQUIRE(robot.drawn().plot.y.range);
+  const PlotRange all = *robot.drawn().plot.y.range;
+  const std::uint64_t gesture = robot.app.session.gesture;
+  choose_response_end(robot.app.session, &ResponseChoice::to, 9);
+  robot.frames(3);
+  REQUIRE(robot.app.session.gesture == gesture);
+  REQUIRE(robot.drawn().plot.y.range);
+  const PlotRange part = *robot.drawn().plot.y.range;
+  CHECK(part[1] - part[0] < 0.7 * (all[1] - all[0]));
+}
+
 TEST_CASE("a mechanism whose balance turns has periodic motions for a curve, and steady states again") {
   ResponseRobot robot("conical_pendulum");
   App& app = robot.app;

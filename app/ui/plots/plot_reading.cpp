@@ -110,9 +110,9 @@ std::vector<PlotReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& 
   for (const BandReading& r : bands) {
     const PlotBand& band = frame.plot.bands[r.band];
     const std::string upper = value_at(layout.y, r.upper, frame.plot.y.whole);
-    // Bars stand on nothing.
+    const bool bars = std::ranges::all_of(band.points, [](const auto& point) { return point[1] == 0; });
     lines.push_back({band.name,
-                     r.lower == 0 ? upper : value_at(layout.y, r.lower, frame.plot.y.whole) + " … " + upper,
+                     bars ? upper : value_at(layout.y, r.lower, frame.plot.y.whole) + " … " + upper,
                      frame.plot.y.unit, packed_color(curve_color(band.color, frame.pen.ground))});
   }
   const double y = layout.y.value(at[1]);

@@ -234,8 +234,6 @@ void draw_response(const Session& session, ResponseView& drawn) {
       session.units, pulled};
   if (drawn.of != of && told) {
     const std::optional<PlotRange> before = drawn.plot.y.range;
-    const bool same =
-        drawn.plot.y.label == quantity.title && drawn.plot.x.label == parameter_phrase(curve->of.address);
     Plot plot = response_plot(*curve, quantity, session.units, drawn.pieces);
     if (design && design->of.goal.quantity == state.choice.quantity &&
         design->of.of.address == curve->of.address) {
@@ -251,6 +249,8 @@ void draw_response(const Session& session, ResponseView& drawn) {
     add_friction(session, plot);
     show_axis(plot, 0, plot.x.unit, session.units);
     show_axis(plot, 1, quantity.unit, session.units);
+    const bool same = drawn.plot.y.label == plot.y.label && drawn.plot.x.label == plot.x.label &&
+                      drawn.plot.x.range == plot.x.range;
     // While one slider is dragged the axis only grows: a curve that moves is seen against it.
     PlotRange range = axis_range(plot, {}, 1);
     // While its point is pulled the axis stays, or the place under the hand would run away.
