@@ -135,3 +135,24 @@ TEST_CASE("Session: a state that is refused puts nothing on a branch") {
   go_to_state(session, "parameters.spare", 4, start_values(session.answer.solution.coordinates));
   CHECK(session.on_branch);
 }
+
+TEST_CASE("Session: what friction holds is one band past a kink, at which stability is open") {
+  ResponseCurve::Found curve;
+  curve.of.from = 0;
+  curve.of.to = 1;
+  ResponseLine line;
+  for (int i = 0; i <= 4; ++i) {
+    ResponsePoint point;
+    point.parameter = i / 4.;
+    if (i != 2) point.stable = true; // on the kink it is not known
+    line.points.push_back(std::move(point));
+  }
+  line.special.assign(line.points.size(), 0);
+  curve.result.lines = {line};
+  std::vector<BandStretch> stretches;
+  CHECK(band_places(curve, BandOf::not_unstable, stretches).size() == 5);
+  REQUIRE(stretches.size() == 1); // or the slow rise and fall would jump from one to the next
+  CHECK(stretches[0].count == 5);
+  CHECK(band_places(curve, BandOf::stable, stretches).size() == 4);
+  CHECK(stretches.size() == 2);
+}
