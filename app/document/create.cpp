@@ -15,6 +15,7 @@ std::string_view stem_of(BodyForm form) {
   case BodyForm::block: return "block";
   case BodyForm::rod: return "rod";
   case BodyForm::plate: return "plate";
+  case BodyForm::disc: return "disc";
   }
   return "body";
 }
@@ -69,6 +70,7 @@ std::string add_body(Mechanism& mechanism, const NewBody& wanted) {
     shape.size = wanted.size;
     break;
   case BodyForm::rod:
+  case BodyForm::disc:
     shape.type = ShapeType::cylinder;
     shape.radius = wanted.radius;
     shape.from = wanted.from;

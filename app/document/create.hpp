@@ -10,20 +10,20 @@
 
 namespace flyball {
 
-enum class BodyForm { ball, block, rod, plate };
+enum class BodyForm { ball, block, rod, plate, disc };
 
 inline constexpr double steel = 7850; // kg/m^3
 
 struct NewBody {
   BodyForm form = BodyForm::ball;
   Vec3 at = Vec3::Zero();                       // m; ball, block, plate: the mass centre
-  double radius = 0.05;                         // m; ball, rod
+  double radius = 0.05;                         // m; ball, rod, disc
   Vec3 size = Vec3(0.1, 0.1, 0.1);              // m; block and plate: full edges along x, y, z
-  Vec3 from = Vec3::Zero(), to = Vec3::UnitX(); // m; rod: ends of the centre line
+  Vec3 from = Vec3::Zero(), to = Vec3::UnitX(); // m; rod, disc: ends of the centre line
   double density = steel;                       // kg/m^3, of which mass and inertia follow
 };
-// The body's only shape is its form (a rod is a cylinder); its mass and inertia are those of the solid. A rod
-// has one of its body axes along it, the one that needs the least turn from the world's.
+// The body's only shape is its form (rods and discs are cylinders); its mass and inertia are those of the
+// solid. A rod or disc has one of its body axes along it, the one that needs the least turn from the world's.
 std::string add_body(Mechanism& mechanism, const NewBody& body);
 
 // Joints of every type but distance and gear. `axis2` counts for universal and planar joints; one that is

@@ -26,6 +26,7 @@ enum class Tool {
   block,
   rod,
   plate,
+  disc,
   joint,    // of any type but distance and gear
   distance, // between two points, as springs and dampers
   spring,

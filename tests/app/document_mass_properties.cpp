@@ -84,7 +84,7 @@ MassProperties counted(const Body& body, double density, double half, int steps)
 
 } // namespace
 
-TEST_CASE("a ball, a block, a rod and a plate have their closed forms") {
+TEST_CASE("a ball, a block, a rod, a plate and a disc have their closed forms") {
   Mechanism m;
   add_body(m, {.form = BodyForm::ball, .at = {1, 2, 3}, .radius = 0.1, .density = 1000});
   const Body& ball = m.bodies[0];
@@ -109,6 +109,12 @@ TEST_CASE("a ball, a block, a rod and a plate have their closed forms") {
   add_body(m, {.form = BodyForm::plate, .size = {0.3, 0.01, 0.3}, .density = 1000});
   CHECK(m.bodies[3].inertia[1] == Approx(m.bodies[3].mass * 0.18 / 12).epsilon(1e-14));
   CHECK(m.bodies[3].name == "plate1");
+
+  add_body(m, {.form = BodyForm::disc, .radius = 0.3, .from = {0, 0, 0.02}, .to = {0, 0, -0.02}});
+  CHECK(m.bodies[4].name == "disc1");
+  CHECK(m.bodies[4].mass == Approx(steel * pi * 0.09 * 0.04).epsilon(1e-14));
+  CHECK(m.bodies[4].inertia[2] == Approx(m.bodies[4].mass * 0.045).epsilon(1e-14));
+  CHECK(m.bodies[4].position == Vec3::Zero());
 }
 
 TEST_CASE("a slanted rod lies along one of its body axes, and has no products of inertia") {

@@ -122,6 +122,14 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
     CHECK(ball().shapes[0].size.y() == 0.4);
     hand.one_step([&] { hand.choose_from("inspector/shapes/0/type", "cylinder"); });
     CHECK((ball().shapes[0].to - ball().shapes[0].from).norm() == Approx(0.4));
+    // A disc about z by two numbers and a letter, where it is.
+    const Vec3 middle = (ball().shapes[0].from + ball().shapes[0].to) / 2;
+    hand.one_step([&] { hand.fill("inspector/shapes/0/length", "0.05"); });
+    hand.one_step([&] { hand.press_widget("inspector/shapes/0/along/z"); });
+    hand.one_step([&] { hand.fill("inspector/shapes/0/radius", "0.3"); });
+    CHECK(ball().shapes[0].radius == 0.3);
+    CHECK((ball().shapes[0].from - middle + Vec3(0, 0, 0.025)).norm() < 1e-15);
+    CHECK((ball().shapes[0].to - middle - Vec3(0, 0, 0.025)).norm() < 1e-15);
     hand.one_step([&] { hand.press_widget("inspector/shapes/0/color/2"); });
     REQUIRE(ball().shapes[0].color);
     CHECK((*ball().shapes[0].color)[1] == Approx(158 / 255.0)); // Okabe and Ito's green

@@ -57,6 +57,19 @@ TEST_CASE("a drag draws the size of a body") {
     REQUIRE(d.m().bodies.size() == 1);
     CHECK(d.m().bodies[0].shapes[0].size == Vec3(0.4, 0.2, 0.02));
   }
+  SECTION("a disc's radius, its axis towards the eye") {
+    d.click("tools/disc");
+    d.drag(d.pixel({0.1, 0, 0}), d.pixel({0.1, 0.21, 0}));
+    REQUIRE(d.m().bodies.size() == 1);
+    const Body& disc = d.m().bodies[0];
+    CHECK(disc.name == "disc1");
+    CHECK(disc.position == Vec3(0.1, 0, 0));
+    CHECK(disc.shapes[0].type == ShapeType::cylinder);
+    CHECK(disc.shapes[0].radius == 0.2);
+    CHECK(disc.shapes[0].from == Vec3(0.1, 0, -0.025));
+    CHECK(disc.shapes[0].to == Vec3(0.1, 0, 0.025));
+    CHECK(disc.inertia[2] == Approx(disc.mass * 0.02).epsilon(1e-12));
+  }
   CHECK(d.app.view.camera.azimuth == 0);
   CHECK(d.steps() == 1);
 }

@@ -141,7 +141,7 @@ TEST_CASE("the length of links, springs and dampers is typed as well") {
   CHECK((points[1] - points[0]).norm() == Approx(0.3));
 }
 
-TEST_CASE("the size of balls, blocks and plates is typed before or while they are placed") {
+TEST_CASE("the size of balls, discs, blocks and plates is typed before or while they are placed") {
   Drawing d;
   SECTION("a ball's radius, then a click") {
     d.click("tools/ball");
@@ -159,6 +159,15 @@ TEST_CASE("the size of balls, blocks and plates is typed before or while they ar
     d.key(key_enter);
     REQUIRE(d.m().bodies.size() == 1);
     CHECK(d.m().bodies[0].shapes[0].size == Vec3(0.3, 0.3, 0.3));
+  }
+  SECTION("a disc's radius, chosen by its key") {
+    d.key('D', false, true);
+    d.point_at({0.1, 0.1, 0});
+    d.strike("80 mm");
+    d.click_at({0.1, 0.1, 0});
+    REQUIRE(d.m().bodies.size() == 1);
+    CHECK(d.m().bodies[0].shapes[0].radius == Approx(0.08));
+    CHECK((d.m().bodies[0].shapes[0].to - d.m().bodies[0].shapes[0].from - Vec3(0, 0, 0.02)).norm() < 1e-15);
   }
   SECTION("while a ball is drawn out") {
     d.click("tools/ball");

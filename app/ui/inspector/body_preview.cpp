@@ -76,6 +76,7 @@ void draw_body_outline(const Ui& ui, const ViewInput& input, const NewBody& body
   switch (body.form) {
   case BodyForm::ball: points = rim(input.camera, body.at, body.radius); break;
   case BodyForm::rod:
+  case BodyForm::disc:
     if (!(axis.norm() > 0)) return;
     for (const Vec3& end : {body.from, body.to}) {
       edges.push_back(circle(end, axis, body.radius));

@@ -114,6 +114,41 @@ struct ShapeRows {
                  .follow = follow()});
   }
 
+  // Of a cylinder or capsule: about its middle, along its centre line.
+  void length_and_axis() const {
+    const Vec3 line = shape().to - shape().from;
+    quantity_row(session, ui, "Length",
+                 {.name = name + "/length",
+                  .value = line.norm(),
+                  .unit = "m",
+                  .help = "Length of the centre line; its middle stays where it is.",
+                  .least = Least::above_zero,
+                  .set = [&session = session, &ui = ui, &inspector = inspector, body = body.name,
+                          index = index](double typed) {
+                    edit_shape(session, ui, inspector, body, index, "Size", [typed](Body&, Shape& s) {
+                      lay_along(s, (s.to - s.from).stableNormalized(), typed);
+                    });
+                  }});
+    row_label(ui, "Axis");
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (i > 0) ImGui::SameLine(0, 3 * ui.scale);
+      const bool along = line.norm() > 0 && line == Vec3(line[i] * Vec3::Unit(i));
+      if (text_button(ui, name + "/along/" + axis_letters[at], axis_letters[at], along))
+        edit_shape(session, ui, inspector, body.name, index, "Shape",
+                   [i](Body&, Shape& s) { lay_along(s, Vec3::Unit(i), (s.to - s.from).norm()); });
+      help_on_hover((std::string("Along the world's ") + axis_letters[at] + " axis, as drawn.").c_str());
+    }
+  }
+
+  // About the middle of its centre line; one without length along x.
+  static void lay_along(Shape& s, const Vec3& direction, double length) {
+    const Vec3 middle = (s.from + s.to) / 2,
+               half = length / 2 * (direction.norm() > 0 ? direction : Vec3(Vec3::UnitX()));
+    s.from = middle - half;
+    s.to = middle + half;
+  }
+
   void sizes() const {
     if (shape().type == ShapeType::box) {
       constexpr std::array helps{"Edge along the body's x axis.", "Edge along the body's y axis.",
@@ -137,6 +172,7 @@ struct ShapeRows {
           },
           !shape().at);
     } else {
+      length_and_axis();
       point("From", "from", shape().from, "One end of the centre line in the world, as drawn.",
             [](Body&, Shape& s) -> Vec3& { return s.from; });
       point("To", "to", shape().to, "The other end of the centre line in the world, as drawn.",

@@ -27,7 +27,8 @@ void use_tool(const ViewContext& context, const ViewInput& input) {
   case Tool::box: return;
   case Tool::ball:
   case Tool::block:
-  case Tool::plate: return use_placing(context, input);
+  case Tool::plate:
+  case Tool::disc: return use_placing(context, input);
   case Tool::rod:
   case Tool::distance:
   case Tool::spring:

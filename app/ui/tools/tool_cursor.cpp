@@ -78,6 +78,7 @@ Vec2 first_place(const ViewContext& context, ViewSize view) {
   case Tool::ball:
   case Tool::block:
   case Tool::plate:
+  case Tool::disc:
   case Tool::rod: {
     const double step = aside * static_cast<double>(context.ui.scale);
     for (Vec2 place = middle; place.x() < view.width - step; place.x() += step)

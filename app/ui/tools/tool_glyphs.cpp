@@ -92,6 +92,13 @@ void draw_block(const GlyphPen& pen) {
   pen.line({{0, -0.05f}, {0, 0.95f}});
 }
 
+// A disc with its shaft's hole.
+void draw_wheel(const GlyphPen& pen) {
+  pen.disc({0, 0}, 0.85f, 0.22f);
+  pen.circle({0, 0}, 0.85f);
+  pen.circle({0, 0}, 0.25f);
+}
+
 void draw_rod(const GlyphPen& pen) {
   pen.fill({{-0.92f, 0.6f}, {0.6f, -0.92f}, {0.92f, -0.6f}, {-0.6f, 0.92f}}, 0.25f);
   pen.line({{-0.92f, 0.6f}, {0.6f, -0.92f}, {0.92f, -0.6f}, {-0.6f, 0.92f}}, true);
@@ -209,6 +216,7 @@ void draw_tool_glyph(ImDrawList& list, Tool tool, ImVec2 center, float half, ImU
   case Tool::block: return draw_block(pen);
   case Tool::rod: return draw_rod(pen);
   case Tool::plate: return draw_plate(pen);
+  case Tool::disc: return draw_wheel(pen);
   case Tool::joint: return draw_hinge(pen);
   case Tool::distance: return draw_link(pen);
   case Tool::spring: return draw_spring(pen);

@@ -27,6 +27,7 @@ constexpr std::array buttons{
     ToolButton{Tool::block, "tools/block", "insert.block"},
     ToolButton{Tool::rod, "tools/rod", "insert.rod"},
     ToolButton{Tool::plate, "tools/plate", "insert.plate"},
+    ToolButton{Tool::disc, "tools/disc", "insert.disc"},
     ToolButton{Tool::joint, "tools/joint", "insert.joint", true},
     ToolButton{Tool::distance, "tools/distance", "insert.distance"},
     ToolButton{Tool::spring, "tools/spring", "insert.spring"},

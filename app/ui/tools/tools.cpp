@@ -49,7 +49,8 @@ bool takes_size(const Session& session, const Ui& ui, const ToolState& tool) {
   case Tool::damper: return tool.first.has_value();
   case Tool::ball:
   case Tool::block:
-  case Tool::plate: return tool.first || !ui.keyboard.focus.in_panel;
+  case Tool::plate:
+  case Tool::disc: return tool.first || !ui.keyboard.focus.in_panel;
   default: return false;
   }
 }
@@ -88,6 +89,7 @@ bool drags(Tool tool) {
   case Tool::block:
   case Tool::rod:
   case Tool::plate:
+  case Tool::disc:
   case Tool::distance:
   case Tool::spring:
   case Tool::damper: return true;
@@ -206,6 +208,7 @@ std::string hint_of_tool(const Session& session, const ToolState& tool) {
                : "Drag a body: a spring pulls it; with Shift sliders bring it there. Esc ends.";
   case Tool::box: return "Drag a frame round the parts; Shift adds. Esc ends.";
   case Tool::ball:
+  case Tool::disc:
     return "Click where the centre is, or drag from there to the radius; it can be typed. Esc ends.";
   case Tool::block:
   case Tool::plate:

@@ -1,4 +1,5 @@
-// Placing balls, blocks and plates: a click takes a size that suits the view, a drag draws it out.
+// Placing balls, discs, blocks and plates: a click takes a size that suits the view, a drag draws it out.
+#include "app/document/formula_edits.hpp"
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -7,6 +8,7 @@
 #include "app/ui/tools/typed_size.hpp"
 #include "app/ui/view_context.hpp"
 #include "app/viewport/snapping.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +19,7 @@ namespace flyball {
 namespace {
 
 // Points of the picture that a size given by a click is near to.
-constexpr double ball_size = 22, block_size = 56, plate_size = 110;
+constexpr double ball_size = 22, block_size = 56, plate_size = 110, disc_size = 55;
 
 std::string form_name(BodyForm form) {
   switch (form) {
@@ -25,8 +27,32 @@ std::string form_name(BodyForm form) {
   case BodyForm::block: return "block";
   case BodyForm::rod: return "rod";
   case BodyForm::plate: return "plate";
+  case BodyForm::disc: return "disc";
   }
   return "";
+}
+
+bool is_round(BodyForm form) {
+  return form == BodyForm::ball || form == BodyForm::disc;
+}
+
+// Across the plane that it is placed in, a quarter of its radius thick.
+void lay_disc(NewBody& body, int normal) {
+  const Vec3 half = nearest_step(body.radius / 4) / 2 * Vec3::Unit(normal);
+  body.from = body.at - half;
+  body.to = body.at + half;
+}
+
+// At a named point both ends of its centre line go as that is moved, and its mass centre with them.
+void stand_disc_at(Mechanism& mechanism, const std::string& name, const NewBody& disc, int normal,
+                   const std::string& point) {
+  if (point.empty()) return;
+  mechanism.bodies.back().density = disc.density;
+  const std::string half = number_text((disc.to - disc.from)[normal] / 2) + " m";
+  for (const auto& [end, sign] : {std::pair(".from.", " - "), std::pair(".to.", " + ")})
+    for (int i = 0; i < 3; ++i)
+      set_expression(mechanism, "bodies." + name + ".shapes.0" + end + std::to_string(i),
+                     point + "." + "xyz"[i] + (i == normal ? sign + half : ""));
 }
 
 NewBody of_round_size(const ViewInput& input, BodyForm form, const Aim& at) {
@@ -34,7 +60,7 @@ NewBody of_round_size(const ViewInput& input, BodyForm form, const Aim& at) {
   NewBody body;
   body.form = form;
   body.at = at.point;
-  body.radius = nearest_step(ball_size * point);
+  body.radius = nearest_step((form == BodyForm::disc ? disc_size : ball_size) * point);
   body.size = Vec3::Constant(nearest_step((form == BodyForm::plate ? plate_size : block_size) * point));
   if (form == BodyForm::plate) body.size[at.plane.normal] = round_to(body.size.x() / 10, body.size.x() / 100);
   return body;
@@ -53,7 +79,7 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
   Vec3 reach = corner - from.point;
   reach[normal] = 0;
   const auto rounded = [&](double x) { return from.step > 0 ? round_to(x, from.step) : x; };
-  if (form == BodyForm::ball) {
+  if (is_round(form)) {
     body.radius = std::max(to.what.empty() ? rounded(reach.norm()) : reach.norm(), least);
     return body;
   }
@@ -67,7 +93,7 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
   return body;
 }
 
-// The radius, or the edges of a block; a plate is as thin as ever.
+// The radius, or the edges of a block; plates and discs are as thin as ever.
 void take_typed_size(NewBody& body, double size, int normal) {
   body.radius = size;
   body.size = Vec3::Constant(size);
@@ -76,7 +102,7 @@ void take_typed_size(NewBody& body, double size, int normal) {
 
 std::string size_text(const NewBody& body, double step, const DisplayUnits& units) {
   const ShownUnit unit = shown_unit("m", units);
-  if (body.form == BodyForm::ball) return "radius " + length_text(body.radius, step, units) + " " + unit.text;
+  if (is_round(body.form)) return "radius " + length_text(body.radius, step, units) + " " + unit.text;
   const auto edge = [&](double length) { return short_text(unit.shown(length), 4); };
   return edge(body.size.x()) + " × " + edge(body.size.y()) + " × " + edge(body.size.z()) + " " + unit.text;
 }
@@ -86,6 +112,7 @@ std::string size_text(const NewBody& body, double step, const DisplayUnits& unit
 void use_placing(const ViewContext& context, const ViewInput& input) {
   ToolState& tool = context.tool;
   const BodyForm form = tool.tool == Tool::ball    ? BodyForm::ball
+                        : tool.tool == Tool::disc  ? BodyForm::disc
                         : tool.tool == Tool::block ? BodyForm::block
                                                    : BodyForm::plate;
   const bool entered = std::exchange(tool.place_now, false);
@@ -98,10 +125,11 @@ void use_placing(const ViewContext& context, const ViewInput& input) {
   const bool typing = !tool.typed.empty();
   if (const auto size = typing ? typed_length(tool.typed, context.session.units, &mistake) : std::nullopt)
     take_typed_size(body, *size, from.plane.normal);
+  if (form == BodyForm::disc) lay_disc(body, from.plane.normal);
   draw_body_outline(context.ui, input, body);
   if (typing)
     draw_tag(context.ui, input, input.cursor, from.what,
-             (form == BodyForm::ball ? "radius " : "edge ") +
+             (is_round(form) ? "radius " : "edge ") +
                  typed_text(tool.typed, shown_unit("m", context.session.units).text));
   else if (drawing)
     draw_tag(context.ui, input, input.cursor, aim.what, size_text(body, from.step, context.session.units));
@@ -117,7 +145,10 @@ void use_placing(const ViewContext& context, const ViewInput& input) {
   }
   edit(context.session, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
     const Part part{PartKind::body, add_body(mechanism, body)};
-    stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
+    if (form == BodyForm::disc)
+      stand_disc_at(mechanism, part.name, body, from.plane.normal, from.named);
+    else
+      stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
     selection.set(part);
   });
   tool.last_point = from.point;

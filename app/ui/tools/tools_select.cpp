@@ -50,7 +50,7 @@ void point_at_parts(const ViewContext& context, const ViewInput& input) {
 void point_at_body(const ViewContext& context, const ViewInput& input) {
   const Tool tool = context.tool.tool;
   const bool attaches = tool != Tool::ball && tool != Tool::block && tool != Tool::rod &&
-                        tool != Tool::plate && tool != Tool::point;
+                        tool != Tool::plate && tool != Tool::disc && tool != Tool::point;
   context.view.hovered = {};
   context.view.pointed_at = Vec2::Constant(-1);
   if (attaches && input.hovered)
