@@ -44,6 +44,7 @@ void draw_panels(App& app, const Layout& layout) {
   toolbar_panel(app.session, app.ui, app.view, app.commands, layout.toolbar);
   panels.history.draw(app.session, app.ui, layout.view);
   messages_panel(app.ui, app.notice_log, layout.view);
+  panels.tutorial.draw(app.ui, layout.view);
 }
 
 // Before anything is drawn: each key goes to the first that has a use for it.

@@ -17,6 +17,7 @@
 #include "app/ui/panels/parameters_panel.hpp"
 #include "app/ui/panels/results_panel.hpp"
 #include "app/ui/panels/shortcut_sheet.hpp"
+#include "app/ui/panels/tutorial_panel.hpp"
 #include "app/ui/panels/viewport_panel.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/studies/motion/movie_dialog.hpp"
@@ -33,6 +34,7 @@ struct Panels {
   StudyPanel studies;
   HistoryPanel history;
   ShortcutSheet shortcuts;
+  TutorialPanel tutorial;
   CommandPalette palette;
 
   OpenDialog open;

@@ -5,7 +5,9 @@
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+
 #include "tests/support/solutions.hpp"
+#include <algorithm>
 
 #include <cmath>
 #include <fstream>
@@ -219,4 +221,20 @@ TEST_CASE("nothing is drawn outside a tiny or a huge window") {
     const Image image = robot.picture();
     CHECK(image.width == size.width);
   }
+}
+
+TEST_CASE("the tutorial of the README is in Help, without its marks") {
+  Robot robot({1280, 800});
+  robot.app.commands.run("help.tutorial");
+  robot.frames(3);
+  CHECK(robot.app.ui.widgets.contains("tutorial"));
+  const std::string text(tutorial_text());
+  CHECK(text.starts_with("1. Ctrl+N begins an empty document"));
+  CHECK(std::ranges::count(text, '\n') == 6); // six steps and a word on undoing
+  CHECK_THAT(text, ContainsSubstring("=2*L + 5 mm") && !ContainsSubstring("`") && !ContainsSubstring("**"));
+  robot.app.commands.run("help.tutorial");
+  robot.frames(2);
+  CHECK_FALSE(robot.app.ui.widgets.contains("tutorial"));
+  robot.app.commands.run("help.about");
+  CHECK_THAT(robot.app.session.notice, ContainsSubstring("Flyball ") && ContainsSubstring("MIT license"));
 }

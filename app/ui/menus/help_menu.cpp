@@ -9,10 +9,8 @@ namespace flyball::menus {
 namespace {
 
 void tell_about(App& app) {
-  app.session.notice =
-      "Flyball " + program_versions().front().second +
-      ", under the MIT license. Its README has a first mechanism step by step, and the manual "
-      "page of each command tells the rest: man flyball. Shipped scenes are in File, Examples.";
+  app.session.notice = "Flyball " + program_versions().front().second +
+                       ", under the MIT license. The manual page of each command tells more: man flyball.";
 }
 
 const std::array help_commands{
@@ -34,11 +32,17 @@ const std::array help_commands{
             .run = [](App& app) { app.panels->shortcuts.open = !app.panels->shortcuts.open; },
             .checked = [](const App& app) { return app.panels->shortcuts.open; },
             .words = "keyboard"},
+    Command{.id = "help.tutorial",
+            .title = "A governor from nothing",
+            .help = "The tutorial: a first mechanism step by step, beside the view.",
+            .run = [](App& app) { app.panels->tutorial.open = !app.panels->tutorial.open; },
+            .checked = [](const App& app) { return app.panels->tutorial.open; },
+            .words = "tutorial first steps learn"},
     Command{.id = "help.about",
             .title = "About",
             .help = "Version and license, and where more is told.",
             .run = tell_about,
-            .words = "version license manual tutorial documentation"},
+            .words = "version license manual documentation"},
 };
 
 } // namespace
