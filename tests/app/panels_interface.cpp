@@ -5,10 +5,9 @@
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
-
 #include "tests/support/solutions.hpp"
-#include <algorithm>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <utility>
