@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -418,4 +419,48 @@ TEST_CASE("the shipped rotor whips at half its speed, beyond twice its first fre
   REQUIRE(d.special.size() == 1);
   CHECK(d.special[0].type == SpecialPointType::hopf);
   CHECK_THAT(d.special[0].at.parameter, WithinRel(2 * frequency, 1e-9));
+}
+
+TEST_CASE("a rotor without places has the same eigenvalues whatever its size", "[scale]") {
+  // An overhung disc: its shaft's end held by a matrix, all at one point.
+  const auto rotor = [](double size) {
+    const double turns = size * size;
+    Mechanism m;
+    m.bodies = {body("hub", 0), body("disc", 3, {0, 0, 0}, turns * Vec3(0.012, 0.012, 0.017))};
+    m.joints = {driven(revolute("spin", "hub", "disc", {0, 0, 0}), 50)};
+    BearingMatrix stiffness(36, 0), damping(36, 0);
+    const auto set = [](BearingMatrix& to, int i, int j, double value) {
+      to[static_cast<std::size_t>(6 * i + j)] = value;
+    };
+    for (const int i : {0, 1}) {
+      set(stiffness, i, i, 6e4);
+      set(stiffness, 3 + i, 3 + i, 3.7e3 * turns);
+      set(damping, i, i, 1.2);
+      set(damping, 3 + i, 3 + i, 0.012 * turns);
+    }
+    set(stiffness, 2, 2, 1e6);
+    set(stiffness, 5, 5, 1e5 * turns);
+    set(damping, 2, 2, 10);
+    set(damping, 5, 5, turns);
+    set(stiffness, 0, 4, -1.3e4 * size);
+    set(stiffness, 4, 0, -1.3e4 * size);
+    set(stiffness, 1, 3, 1.3e4 * size);
+    set(stiffness, 3, 1, 1.3e4 * size);
+    m.forces = {bearing("ground", "hub", {0, 0, 0}, stiffness, damping)};
+    return solved(m);
+  };
+  const Solution usual = rotor(1);
+  REQUIRE(usual.eigenvalues);
+  for (const double size : {1e-6, 1e9}) {
+    CAPTURE(size);
+    const Solution s = rotor(size);
+    REQUIRE(s.eigenvalues);
+    REQUIRE(s.eigenvalues->size() == usual.eigenvalues->size());
+    for (const Complex x : *usual.eigenvalues) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Complex y : *s.eigenvalues)
+        nearest = std::min(nearest, std::abs(x - y));
+      CHECK(nearest < 1e-8 * std::abs(x));
+    }
+  }
 }
