@@ -13,6 +13,7 @@
 #include "engine/study/input_effect.hpp"
 #include "engine/study/motion_outputs.hpp"
 #include "engine/system/balance_rate.hpp"
+#include "engine/system/drive_rates.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -178,8 +179,9 @@ class Builder {
     Matrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
-    for (const double t : phases())
-      compare(here, matrices(MotionAt(model_, at_phase(t)), t));
+    const std::vector<DriveRate> rates = drive_rates(steady_system_, steady_parameters_, balance_q_);
+    for (const double t : phase_times(rates))
+      compare(here, matrices(MotionAt(model_, at_phase(t)), t), 4 * angle_rounding(rates, t));
     fill(drawn, here, out);
     out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
@@ -316,14 +318,6 @@ class Builder {
       out.q[link.q] += u_[link.v] * t;
     }
     return out;
-  }
-
-  // Times at which inputs and outputs are looked at again: a few radians on, of the fastest drive.
-  std::vector<double> phases() const {
-    const MotionOfAll drawn = at_phase(0);
-    const double fastest = drawn.u.size() > 0 ? drawn.u.lpNorm<Eigen::Infinity>() : 0;
-    if (!(fastest > 0)) return {};
-    return {0.83 / fastest, 2.31 / fastest, 4.17 / fastest};
   }
 
   // Whether a number that changes is the speed with which something left to itself begins.
@@ -577,13 +571,14 @@ class Builder {
 
   // That inputs and outputs are the same at another phase. What is nothing beside the stiffness, or the
   // speeds, is rounding.
-  void compare(const Matrices& a, const Matrices& b) const {
+  void compare(const Matrices& a, const Matrices& b, double rounding_of_angles) const {
+    const double alike = same_phase + rounding_of_angles;
     for (Eigen::Index j = 0; j < a.b0.cols() && a.b0.rows() > 0; ++j) {
       const auto differs = [&](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, double size) {
         const double value = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
         const double floor = value > 0 ? rounding * size / value : 0;
         return (x.col(j) - y.col(j)).lpNorm<Eigen::Infinity>() >
-               std::max(same_phase * x.col(j).lpNorm<Eigen::Infinity>(), floor);
+               std::max(alike * x.col(j).lpNorm<Eigen::Infinity>(), floor);
       };
       if (differs(a.scaled_b0, b.scaled_b0, a.stiffness_size) ||
           differs(a.scaled_shift, b.scaled_shift, a.speed_size))
@@ -592,9 +587,9 @@ class Builder {
     }
     const bool turn = phases_ && !steady_system_.torques.empty(); // the angles themselves are states
     for (Eigen::Index i = 0; i < a.values.size(); ++i) {
-      const double size = same_phase * a.most[i];
+      const double size = alike * a.most[i];
       bool same =
-          turn || std::abs(a.values[i] - b.values[i]) <= std::max(size, same_phase * std::abs(a.values[i]));
+          turn || std::abs(a.values[i] - b.values[i]) <= std::max(size, alike * std::abs(a.values[i]));
       for (Eigen::Index s = 0; s < a.normalised.cols(); ++s)
         same = same && std::abs(a.normalised(i, s) - b.normalised(i, s)) <= size;
       if (!same)
