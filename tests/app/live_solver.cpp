@@ -228,14 +228,23 @@ TEST_CASE("a pull that is given up while its grip is found leaves the state wher
   const auto other =
       answer_to(live.ask({.mechanism = conical_pendulum(6), .nearest = true, .start = {{"swing", -bent}}}));
   REQUIRE(value(other.solution, "swing") == Approx(-bent));
-  answer_to(live.ask({.mechanism = conical_pendulum(6)}));
-  for (int round = 0; round < 300; ++round) {
-    const double speed = 6 + 1e-3 * (round % 7);
-    live.ask({.mechanism = conical_pendulum(speed), .grip = BodyPoint{"ball"}});
-    const auto later = std::chrono::steady_clock::now() + std::chrono::microseconds(5 * (round % 100));
-    while (std::chrono::steady_clock::now() < later)
+  // How long it takes undisturbed, so that it is given up at every part of it, also while it looks for a
+  // grip.
+  using Clock = std::chrono::steady_clock;
+  const auto pull = [](int round) {
+    return LiveRequest{.mechanism = conical_pendulum(6 + 1e-3 * (round % 7)), .grip = BodyPoint{"ball"}};
+  };
+  const auto begin = Clock::now();
+  answer_to(live.ask(pull(1)));
+  const auto whole = Clock::now() - begin;
+  constexpr int parts = 100;
+  for (int round = 0; round < 5 * parts; ++round) {
+    const LiveRequest first = pull(round), second{.mechanism = conical_pendulum(6 + 1e-3 * (round % 5))};
+    const auto later = Clock::now() + whole * (round % parts) / parts;
+    live.ask(first);
+    while (Clock::now() < later)
       ;
-    const LiveAnswer answer = answer_to(live.ask({.mechanism = conical_pendulum(speed)}));
+    const LiveAnswer answer = answer_to(live.ask(second));
     INFO(round);
     REQUIRE(value(answer.solution, "swing") < -1);
   }
