@@ -270,10 +270,6 @@ double law_input_size(const System& system, const Parameters& p, const DriveLaw&
     return value + std::abs(slope) * (c.angle ? 1 : p.length);
   }
   if (asked == Result::angle) return std::max(value, 1.);
-  if (input.coordinate >= 0) {
-    const CoordinateInfo& c = system.coordinates[static_cast<std::size_t>(input.coordinate)];
-    return std::max(value, c.angle ? 1. : p.length);
-  }
   if (is_spring_force(asked)) {
     const auto s = static_cast<std::size_t>(input.spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
