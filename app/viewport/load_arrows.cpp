@@ -9,7 +9,8 @@ namespace {
 
 constexpr double load_rounding = 1e-9; // beside the largest
 
-constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
+constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring,
+                               LoadKind::damper,   LoadKind::gear,  LoadKind::weight,
                                LoadKind::applied,  LoadKind::air,   LoadKind::inertia};
 
 // Across a line, to the side that is to the front.
@@ -32,7 +33,7 @@ Vec3 beside_part(const Assembly& assembly, const Load& load, const Vec3& along, 
     const Vec3 out = 0.7 * (0.5 * a + 0.5 * b - load.at), aside = out + 0.9 * u * across(along);
     return along.dot(out) < 0 ? Vec3(aside - length * along) : aside;
   }
-  if (load.kind != LoadKind::spring && load.kind != LoadKind::drive) return Vec3::Zero();
+  if (load.kind == LoadKind::reaction) return Vec3::Zero();
   double reach = 2 * u; // of what slides, across
   if (second >= 0) {
     const Bounds bounds = shape_bounds(assembly.mechanism.bodies[static_cast<std::size_t>(second)]);
@@ -121,6 +122,8 @@ Color load_color(LoadKind kind, const Palette& colors) {
   case LoadKind::reaction: return colors.reaction;
   case LoadKind::drive: return colors.accent;
   case LoadKind::spring: return okabe_ito::green;
+  case LoadKind::damper: return okabe_ito::vermillion;
+  case LoadKind::gear: return okabe_ito::purple;
   case LoadKind::weight: return colors.slack;
   case LoadKind::applied: return colors.force;
   case LoadKind::air: return okabe_ito::sky_blue;

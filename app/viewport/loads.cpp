@@ -41,8 +41,10 @@ class Collector {
       const Vec3 at = joint.type == JointType::distance
                           ? assembly_.point(on_parent ? parent : child, joint.points[on_parent ? 0 : 1])
                           : assembly_.point(child, joint.at);
-      add(LoadKind::reaction, false, at, turn_ * (sign * r.force), part_at(PartKind::joint, j));
-      add(LoadKind::reaction, true, at, turn_ * (sign * r.torque), part_at(PartKind::joint, j));
+      Vec3 force = turn_ * (sign * r.force), torque = turn_ * (sign * r.torque);
+      split(j, at, sign, force, torque);
+      add(LoadKind::reaction, false, at, force, part_at(PartKind::joint, j));
+      add(LoadKind::reaction, true, at, torque, part_at(PartKind::joint, j));
     }
   }
 
@@ -68,22 +70,9 @@ class Collector {
 
   // What springs and stops of joints exert along their coordinates.
   void joint_springs() {
-    for (const CoordinateSolution& c : solution_.coordinates) {
-      const auto found = joints_.find(c.joint);
-      if (found == joints_.end()) continue;
-      const Joint& joint = mechanism_.joints[found->second];
-      const auto i = static_cast<std::size_t>(c.index);
-      if (i >= joint.coordinates.size()) continue;
-      const Coordinate& coordinate = joint.coordinates[i];
-      double force = 0;
-      if (const auto& spring = coordinate.spring)
-        force -= elastic_force(mechanism_, joint, c.index, c.value - spring->free).force;
-      if (const auto& stop = coordinate.stop) {
-        if (stop->lower) force += stop->stiffness * std::max(*stop->lower - c.value, 0.);
-        if (stop->upper) force -= stop->stiffness * std::max(c.value - *stop->upper, 0.);
-      }
-      if (force != 0) along_coordinate(LoadKind::spring, c.joint, c.index, c.angle, force);
-    }
+    for (const CoordinateSolution& c : solution_.coordinates)
+      if (const double force = spring_force(c); force != 0)
+        along_coordinate(LoadKind::spring, c.joint, c.index, c.angle, force);
   }
 
   void springs() {
@@ -182,6 +171,82 @@ class Collector {
     if (body < 0 || !has_motion(b)) return Vec3::Zero();
     return turn_ * solution_.centres[b].velocity +
            (turn_ * turning_[b].velocity).cross(at - assembly_.poses[b].position);
+  }
+
+  // Of the spring and the stop of a joint's coordinate, along it.
+  double spring_force(const CoordinateSolution& c) const {
+    const auto found = joints_.find(c.joint);
+    if (found == joints_.end()) return 0;
+    const Joint& joint = mechanism_.joints[found->second];
+    const auto i = static_cast<std::size_t>(c.index);
+    if (i >= joint.coordinates.size()) return 0;
+    const Coordinate& coordinate = joint.coordinates[i];
+    double force = 0;
+    if (const auto& spring = coordinate.spring)
+      force -= elastic_force(mechanism_, joint, c.index, c.value - spring->free).force;
+    if (const auto& stop = coordinate.stop) {
+      if (stop->lower) force += stop->stiffness * std::max(*stop->lower - c.value, 0.);
+      if (stop->upper) force -= stop->stiffness * std::max(c.value - *stop->upper, 0.);
+    }
+    return force;
+  }
+
+  // What acts along a coordinate of a hinge or slide, whose guide itself does nothing there.
+  struct Acting {
+    LoadKind kind = LoadKind::drive;
+    double value = 0; // along it, on the child
+    PartId part;
+  };
+  // `whole`: of the reaction along it. What drive, spring and gears leave of that is a damper's or
+  // friction's.
+  std::vector<Acting> acting_along(std::size_t j, int index, double whole) const {
+    constexpr double rounding = 1e-9; // of the largest
+    const std::string& name = mechanism_.joints[j].name;
+    const PartId own = part_at(PartKind::joint, j);
+    std::vector<Acting> all;
+    for (const DriveTorque& t : solution_.drive_torques)
+      if (t.joint == name && t.index == index) all.push_back({LoadKind::drive, t.value, own});
+    for (const CoordinateSolution& c : solution_.coordinates)
+      if (c.joint == name && c.index == index) all.push_back({LoadKind::spring, spring_force(c), own});
+    for (const GearReaction& g : solution_.gears) {
+      const auto gear = joints_.find(g.joint);
+      if (gear == joints_.end()) continue;
+      for (const std::size_t end : {0, 1}) {
+        const CoordinateReference at =
+            find_coordinate(mechanism_, mechanism_.joints[gear->second].joints[end]);
+        if (at.joint == static_cast<int>(j) && at.coordinate == index)
+          all.push_back({LoadKind::gear, end == 0 ? g.a : g.b, part_at(PartKind::joint, gear->second)});
+      }
+    }
+    double rest = whole, largest = std::abs(whole);
+    for (const Acting& each : all) {
+      rest -= each.value;
+      largest = std::max(largest, std::abs(each.value));
+    }
+    if (std::abs(rest) > rounding * largest) all.push_back({LoadKind::damper, rest, own});
+    return all;
+  }
+
+  // Takes out of a body's reaction what acts along the joint's coordinates, which is added by itself; of the
+  // mechanism it stays in, beside gears and dampers by themselves (drives and springs are added for all
+  // joints).
+  void split(std::size_t j, const Vec3& at, double sign, Vec3& force, Vec3& torque) {
+    const Joint& joint = mechanism_.joints[j];
+    if (joint.type != JointType::revolute && joint.type != JointType::prismatic &&
+        joint.type != JointType::cylindrical)
+      return; // there the directions of coordinates are not those of the guide's own loads
+    const auto [parent, child] = assembly_.joint_bodies[j];
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const CoordinateAxis along = coordinate_axis(joint, i);
+      const Vec3 axis = assembly_.vector(along.end == 0 ? parent : child, along.axis);
+      Vec3& vector = along.angle ? torque : force;
+      const double whole = vector.dot(axis) * sign;
+      for (const Acting& each : acting_along(j, static_cast<int>(i), whole)) {
+        if (body_ < 0 && (each.kind == LoadKind::drive || each.kind == LoadKind::spring)) continue;
+        add(each.kind, along.angle, at, sign * each.value * axis, each.part);
+      }
+      if (body_ >= 0) vector -= sign * whole * axis;
+    }
   }
 
   // On the joint's child.

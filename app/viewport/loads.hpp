@@ -11,15 +11,16 @@
 
 namespace flyball {
 
-enum class LoadKind { reaction, drive, spring, weight, applied, air, inertia };
-inline constexpr std::size_t load_kinds = 7;
+// damper: dry friction, too.
+enum class LoadKind { reaction, drive, spring, damper, gear, weight, applied, air, inertia };
+inline constexpr std::size_t load_kinds = 9;
 
 struct Load {
   LoadKind kind = LoadKind::reaction;
   bool moment = false;        // N m rather than N
   Vec3 at = Vec3::Zero();     // m, world
   Vec3 vector = Vec3::Zero(); // N or N m, world
-  PartId part;                // the joint, spring, bearing, force or body that it comes from
+  PartId part;                // the joint, gear, spring, bearing, force or body that it comes from
 };
 
 // The rotation that carries the loads at the drawn phase of the drives to the phase with these poses, where
@@ -30,10 +31,11 @@ std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solu
 // Of a steady state and how its bodies turn (both at the drawn phase); the assembly has its poses, turned by
 // `turn` since then.
 //   body < 0: of the mechanism. What each joint's parent exerts on its child, and each bearing on its second
-//     body; of the former, what drives, springs and stops exert along the joints' coordinates; springs
-//     between bodies, on both; the air; inertial loads.
+//     body; of the former, what drives, springs and stops, dampers, friction and gears exert along the
+//     joints' coordinates; springs between bodies, on both; the air; inertial loads.
 //   a body: its free-body diagram, which is complete: its forces, -m a of the mass centre included, add up to
-//     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert).
+//     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert). What acts along the
+//     coordinates of hinges and slides is told by itself there, and is no part of their reactions.
 std::vector<Load> loads_of(const Assembly& assembly, const Solution& solution,
                            std::span<const AngularMotion> turning, int body,
                            const Quat& turn = Quat::Identity());

@@ -39,6 +39,8 @@ std::string long_load_name(const Mechanism& mechanism, const Load& load) {
   case LoadKind::reaction: return "Reaction in " + name;
   case LoadKind::drive: return "Drive of " + name;
   case LoadKind::spring: return "Spring of " + name;
+  case LoadKind::damper: return "Damper or friction of " + name;
+  case LoadKind::gear: return "Mesh of " + name;
   case LoadKind::weight: return "Weight of " + name;
   case LoadKind::applied: return name;
   case LoadKind::air: return "Air on " + name;
@@ -51,6 +53,11 @@ std::string long_load_name(const Mechanism& mechanism, const Load& load) {
 std::string short_load_name(const Mechanism& mechanism, const Load& load) {
   if (load.kind == LoadKind::weight) return "weight";
   if (load.kind == LoadKind::inertia) return load.moment ? "inertia" : "inertial load";
+  if (load.part.kind == PartKind::joint) {
+    if (load.kind == LoadKind::drive) return "drive of " + load_part_name(mechanism, load);
+    if (load.kind == LoadKind::spring) return "spring of " + load_part_name(mechanism, load);
+    if (load.kind == LoadKind::damper) return "damper of " + load_part_name(mechanism, load);
+  }
   return load_part_name(mechanism, load);
 }
 

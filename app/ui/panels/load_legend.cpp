@@ -27,13 +27,23 @@ const char* load_help(LoadKind kind, bool moment, bool diagram) {
   switch (kind) {
   case LoadKind::reaction:
     return diagram
-               ? "What joints, with their springs, dampers and drives, and bearings exert on the body"
+               ? "What the guides of joints, and bearings, exert on the body"
                : "What each joint's parent exerts on its child, springs, dampers and drives included, and "
                  "each bearing on its second body";
-  case LoadKind::drive: return "What drives exert on their joint's child; part of the reactions";
+  case LoadKind::drive:
+    return diagram ? "What drives exert on the body"
+                   : "What drives exert on their joint's child; part of the reactions";
   case LoadKind::spring:
-    return diagram ? "What springs between bodies exert on the body"
+    return diagram ? "What springs and stops exert on the body"
                    : "Springs between bodies, and springs and stops of joints (part of the reactions)";
+  case LoadKind::damper:
+    return diagram ? "What dampers and friction of joints exert on the body"
+                   : "Dampers and friction of joints, on their child; part of the reactions";
+  case LoadKind::gear:
+    return diagram
+               ? "What gears, belts, racks and screws exert along the coordinates of the body's joints"
+               : "What gears, belts, racks and screws exert along coordinates, on the joint's child; part of "
+                 "the reactions";
   case LoadKind::weight: return "Mass times gravity, at the mass centre";
   case LoadKind::applied: return "Forces and torques that are given";
   case LoadKind::air: return "What the air exerts";
@@ -75,6 +85,8 @@ const char* load_name(LoadKind kind) {
   case LoadKind::reaction: return "reactions";
   case LoadKind::drive: return "drives";
   case LoadKind::spring: return "springs";
+  case LoadKind::damper: return "dampers, friction";
+  case LoadKind::gear: return "gears";
   case LoadKind::weight: return "weight";
   case LoadKind::applied: return "applied";
   case LoadKind::air: return "air";
@@ -99,8 +111,9 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
          ", adds up to zero");
   const std::size_t before = rows.size();
-  for (const LoadKind kind : {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::weight,
-                              LoadKind::applied, LoadKind::air, LoadKind::inertia})
+  for (const LoadKind kind :
+       {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::damper, LoadKind::gear,
+        LoadKind::weight, LoadKind::applied, LoadKind::air, LoadKind::inertia})
     for (const bool moment : {false, true})
       if (scene.arrows.scales.largest(kind, moment) > 0)
         rows.push_back(load_row(context.ui, scene.arrows.scales, kind, moment, pixel, diagram));
