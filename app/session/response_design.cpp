@@ -1,5 +1,6 @@
 #include "app/session/response_design.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
 #include "app/session/units.hpp"
 #include "engine/mechanism/address.hpp"
@@ -18,12 +19,12 @@ namespace {
 
 // What the drive gives by a law, or else all that it gives.
 void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector<DesignGoal>& goals) {
-  const std::string name = coordinate_label(drive), unit = drive.angle ? "N m" : "N",
-                    kind = drive.angle ? "torque" : "force";
+  const std::string name = coordinate_label(drive), words = coordinate_words(drive),
+                    unit = drive.angle ? "N m" : "N", kind = drive.angle ? "torque" : "force";
   if (!drive.given) {
     if (!drive.varying)
       goals.push_back({.key = "torque(" + coordinate_argument(name) + ")",
-                       .title = "drive " + kind + " of " + name,
+                       .title = "drive " + kind + " of " + words,
                        .quantity = "drive " + name,
                        .unit = unit,
                        .value = drive.value,
@@ -34,14 +35,14 @@ void add_drive(const Mechanism& mechanism, const DriveTorque& drive, std::vector
   if (joint == mechanism.joints.end()) return;
   if (const Formula* law = drive_law(mechanism, *joint, drive.index, "torque"))
     goals.push_back({.key = "given " + name,
-                     .title = "drive " + kind + " of " + name,
+                     .title = "drive " + kind + " of " + words,
                      .quantity = "given " + name,
                      .unit = unit,
                      .value = drive.given->torque,
                      .expression = law->text});
   if (const Formula* law = drive_law(mechanism, *joint, drive.index, "load"))
     goals.push_back({.key = "load " + name,
-                     .title = "load on " + name,
+                     .title = "load on " + words,
                      .quantity = "load " + name,
                      .unit = unit,
                      .value = drive.given->load,
@@ -92,7 +93,7 @@ std::vector<DesignGoal> design_goals(const Session& session) {
   for (const CoordinateSolution& c : solved ? solution.coordinates : session.answer.summary.coordinates)
     if (const auto found = found_number(c); found && !c.dependent)
       goals.push_back({.key = found->name,
-                       .title = found->name,
+                       .title = found_words(c),
                        .quantity = "value " + found->name,
                        .unit = std::string(found->unit),
                        .value = solved ? std::optional(found->value) : std::nullopt,

@@ -1,4 +1,5 @@
 #include "app/session/response_quantity.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -35,18 +36,18 @@ std::vector<ResponseQuantity> response_quantities(const ResponsePoint& point) {
   std::vector<ResponseQuantity> out;
   for (const CoordinateSolution& c : point.coordinates)
     if (const auto found = found_number(c))
-      out.push_back({"value " + found->name, found->name, "Coordinates", std::string(found->unit), 1});
+      out.push_back({"value " + found->name, found_words(c), "Coordinates", std::string(found->unit), 1});
   for (const MeasureSolution& m : point.measures)
     out.push_back({"measure " + m.name, m.name, "Measures", m.unit, 1});
   for (const DriveTorque& d : point.drive_torques) {
-    const std::string name = coordinate_label(d), unit = d.angle ? "N m" : "N",
+    const std::string name = coordinate_label(d), words = coordinate_words(d), unit = d.angle ? "N m" : "N",
                       kind = d.angle ? "torque" : "force";
     if (d.given) {
-      out.push_back({"given " + name, "drive " + kind + " of " + name, "Drives", unit, 1});
-      out.push_back({"load " + name, "load on " + name, "Drives", unit, 1});
+      out.push_back({"given " + name, "drive " + kind + " of " + words, "Drives", unit, 1});
+      out.push_back({"load " + name, "load on " + words, "Drives", unit, 1});
     }
     if (!d.varying)
-      out.push_back({"drive " + name, (d.given ? kind + " less load of " : "drive " + kind + " of ") + name,
+      out.push_back({"drive " + name, (d.given ? kind + " less load of " : "drive " + kind + " of ") + words,
                      "Drives", unit, 1});
   }
   for (const Reaction& r : point.reactions)

@@ -4,6 +4,7 @@
 
 #include "app/document/bearing_drive.hpp"
 #include "app/document/remedies.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -144,7 +145,8 @@ void remedies(Session& session, Ui& ui) {
 std::string unheld_words(const Solution& solution) {
   std::vector<std::string> names;
   for (const UnheldCoordinate& c : solution.unheld)
-    if (std::ranges::find(names, c.joint) == names.end()) names.push_back(c.joint);
+    if (std::string name = joint_words(c.joint); std::ranges::find(names, name) == names.end())
+      names.push_back(std::move(name));
   return names.empty() ? "" : "Nothing holds " + name_list(names);
 }
 

@@ -1,5 +1,6 @@
 // What dry friction makes of the steady state: how far it may stand away, whether the drawn pose holds, and
 // the speeds between which it does not move.
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -46,7 +47,7 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
   std::string help = drawn.message;
   for (const HeldJoint& joint : drawn.joints) {
     const ShownUnit unit = shown_unit(joint.angle ? "N m" : "N", session.units);
-    help += "\n" + coordinate_label(joint) + ": at most " +
+    help += "\n" + coordinate_words(joint) + ": at most " +
             short_text(unit.shown(joint.limit), extent_digits) + " " + unit.text;
     if (joint.force)
       help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
@@ -61,7 +62,7 @@ void speed_rows(const Session& session, Ui& ui, const std::vector<HeldSpeeds>& a
     const ShownUnit unit = rate_unit(held.angle, session.units);
     const std::string low = held.lower ? short_text(unit.shown(*held.lower), extent_digits) : "rest",
                       high = held.upper ? short_text(unit.shown(*held.upper), extent_digits) : "any";
-    row(ui, "Unmoved by " + coordinate_label(held), low + " … " + high, unit.text.c_str(),
+    row(ui, "Unmoved by " + coordinate_words(held), low + " … " + high, unit.text.c_str(),
         "Between these speeds friction holds it where it stands.");
     if (const auto part = held.insensitivity())
       row(ui, "Insensitivity", percent_words(*part), "%",

@@ -1,7 +1,7 @@
 // What the drives and joints bear.
+#include "app/session/coordinate_words.hpp"
 #include "app/ui/panels/result_sections.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,7 @@ void drive_torques(const Session& session, Ui& ui, ResultSections& open) {
     const char* unit = t.angle ? "N m" : "N";
     const auto text = [&](double value) { return force_text(value, largest, session.options.numbers); };
     if (rows[i].part == Part::torque)
-      return row(ui, coordinate_label(t), text(t.given->torque), unit,
+      return row(ui, coordinate_words(t), text(t.given->torque), unit,
                  "What the drive gives, positive along its coordinate.");
     if (rows[i].part == Part::load)
       return row(ui, "   load", text(t.given->load), unit, "What acts against it.");
@@ -64,7 +64,7 @@ void drive_torques(const Session& session, Ui& ui, ResultSections& open) {
     if (t.varying)
       help += "\nChanges as the drives turn; at the drawn phase " + text(t.value) + " " + unit + ".";
     if (t.nonunique) help += "\nThe loops share it among several drives: the smallest that do it.";
-    const std::string name = t.given ? "   torque less load" : coordinate_label(t);
+    const std::string name = t.given ? "   torque less load" : coordinate_words(t);
     row(ui,
         !t.varying ? name
         : t.range  ? name + " (mean)"

@@ -1,5 +1,6 @@
 // What a periodic motion runs through in a period: the one in the steady state's place where a drive makes
 // the balance turn, and the limit cycle beside a steady state that hunts.
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/result_sections.hpp"
@@ -17,24 +18,25 @@ constexpr int digits = 6; // of ends, which are looked at rather than copied
 
 struct RangeWords {
   std::string prefix; // of the widgets' names
-  std::string name, help;
+  std::string name;   // of the widget
+  std::string title, help;
   std::string less;       // what the numbers leave out, "less -1 turns a period"
   bool amplitude = false; // is told, too
 };
 
 void range_row(Session& session, Ui& ui, const RangeWords& words, const PeriodicRange& range,
                const ShownUnit& unit) {
-  const auto& [prefix, name, help, less, amplitude] = words;
+  const auto& [prefix, name, title, help, less, amplitude] = words;
   const NumberStyle& numbers = session.options.numbers;
   if (!std::isfinite(range.mean))
-    return row(ui, name, "-", "", "It is not defined throughout the period, or does not come back.");
+    return row(ui, title, "-", "", "It is not defined throughout the period, or does not come back.");
   const double error = std::isfinite(range.error) ? range.error : 1e-6 * std::abs(range.most - range.least);
   const std::string about =
       (help.empty() ? "" : help + "\n") + "Mean over a period; below it the ends between which it moves.\n" +
       (std::isfinite(range.error)
            ? "± " + magnitude_text(std::max(error * unit.factor, numbers.noise), numbers) + " " + unit.text
            : std::string("Its error is not known."));
-  row(ui, name, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
+  row(ui, title, value_text(unit.shown(range.mean), std::max(error, numbers.noise) * unit.factor, numbers),
       unit.text.c_str(), about.c_str());
   note_widget(ui.widgets, prefix + "/" + name);
   if (!less.empty()) {
@@ -88,21 +90,25 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
       : state.drive_periods == 1
           ? "That of the drives."
           : (std::to_string(state.drive_periods) + " times that of the drives.").c_str());
-  const auto range = [&](const std::string& name, const PeriodicRange& of, const ShownUnit& unit,
-                         const std::string& help = {}, const std::string& less = {}) {
-    range_row(session, ui, {prefix, name, help, less, own}, of, unit);
+  const auto range = [&](const std::string& name, const std::string& title, const PeriodicRange& of,
+                         const ShownUnit& unit, const std::string& help = {}, const std::string& less = {}) {
+    range_row(session, ui, {prefix, name, title, help, less, own}, of, unit);
   };
   for (const PeriodicCoordinate& c : state.coordinates) {
     const ShownUnit unit = shown_unit(c.angle ? "rad" : "m", session.units);
-    range(coordinate_label(c), c.range, unit, advance_help(c, unit), advance_words(c, unit));
+    const std::string name = coordinate_label(c), title = coordinate_words(c);
+    range(name, title, c.range, unit, advance_help(c, unit), advance_words(c, unit));
     if (c.goes_on())
-      range(coordinate_label(c) + ", its rate", c.rate, shown_unit(c.angle ? "rad/s" : "m/s", session.units));
+      range(name + ", its rate", title + ", its rate", c.rate,
+            shown_unit(c.angle ? "rad/s" : "m/s", session.units));
   }
   for (const PeriodicMeasure& m : state.measures)
-    range(m.name, m.range, shown_unit(m.unit, session.units));
-  for (const PeriodicTorque& t : state.drive_torques)
-    range("Drive of " + coordinate_label(t) + (by_torque(session.mechanism(), t) ? " less load" : ""),
-          t.range, shown_unit(t.angle ? "N m" : "N", session.units));
+    range(m.name, m.name, m.range, shown_unit(m.unit, session.units));
+  for (const PeriodicTorque& t : state.drive_torques) {
+    const std::string less = by_torque(session.mechanism(), t) ? " less load" : "";
+    range("Drive of " + coordinate_label(t) + less, "Drive of " + coordinate_words(t) + less, t.range,
+          shown_unit(t.angle ? "N m" : "N", session.units));
+  }
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);

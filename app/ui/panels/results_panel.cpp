@@ -1,6 +1,7 @@
 #include "app/ui/panels/results_panel.hpp"
 
 #include "app/render/icons.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
 #include "app/ui/layout.hpp"
@@ -83,8 +84,9 @@ void verdict(const Session& session, Ui& ui) {
 
 // Directions that nothing resists.
 void neutral_joints(const Session& session, const Ui& ui) {
-  const std::vector<std::string>& neutral = session.answer.solution.neutral;
+  std::vector<std::string> neutral = session.answer.solution.neutral;
   if (neutral.empty()) return;
+  std::ranges::transform(neutral, neutral.begin(), joint_words);
   row(ui, "Nothing resists", name_list(neutral), "",
       "Joints that take part in a direction in which the mechanism stands anywhere.");
 }

@@ -1,8 +1,8 @@
 #include "app/ui/widgets/sensitivity_line.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +79,7 @@ std::vector<ShownRate> shown_rates(const Session& session, const std::string& ad
     if (c == solution.coordinates.end() || c->driven) continue;
     from = c;
     ShownRate shown;
-    shown.name = coordinate_label(rate);
+    shown.name = coordinate_words(*c);
     const ShownUnit of = coordinate_unit(c->angle, session.units),
                     by = shown_unit(control->unit, session.units);
     shown.value = rate.value * of.factor / by.factor;

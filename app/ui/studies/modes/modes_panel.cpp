@@ -1,5 +1,6 @@
 // The modes of the state that is shown: a list, what moves in the view, and the Campbell diagram beside it.
 #include "app/render/icons.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -11,7 +12,6 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -163,7 +163,7 @@ std::string largest_movement(const Session& session, const VibrationMode& mode) 
   if (!most) return {};
   const double movement = session.study.modes.amplitude * std::abs(most->value);
   const ShownUnit unit = coordinate_unit(most->angle, session.units);
-  return coordinate_label(*most) + " ± " + short_text(unit.shown(movement), 3) +
+  return coordinate_words(*most) + " ± " + short_text(unit.shown(movement), 3) +
          (unit.text == "°" ? "" : " ") + unit.text;
 }
 

@@ -1,5 +1,6 @@
 // The motion's choices, its transport and its plots.
 #include "app/render/icons.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
@@ -46,14 +47,22 @@ void start_choice(Session& session, Ui& ui) {
   if (names.empty()) return;
   const bool known = std::ranges::find(names, motion.kicked) != names.end();
   const std::string& kicked = known ? motion.kicked : names.front();
-  if (const auto chosen =
-          name_choice_row(ui, "motion/kicked", "Kick", names, kicked, "The coordinate that gets a speed.")) {
-    motion.kicked = *chosen;
+  bool angle = true;
+  std::vector<std::string> words; // as `names`
+  std::size_t present = 0;
+  for (const CoordinateSolution& c : session.answer.summary.coordinates) {
+    if (c.driven || c.dependent) continue;
+    if (names[words.size()] == kicked) {
+      angle = c.angle;
+      present = words.size();
+    }
+    words.push_back(coordinate_words(c));
+  }
+  if (const auto chosen = name_choice_row(ui, "motion/kicked", "Kick", words, words[present],
+                                          "The coordinate that gets a speed.")) {
+    motion.kicked = names[static_cast<std::size_t>(std::ranges::find(words, *chosen) - words.begin())];
     anew(session, ui);
   }
-  bool angle = true;
-  for (const CoordinateSolution& c : session.answer.summary.coordinates)
-    if (coordinate_label(c) == kicked) angle = c.angle;
   if (plain_quantity_field(session, ui, "motion/kick", "Speed", angle ? "rad/s" : "m/s", "The speed it gets.",
                            motion.kick))
     anew(session, ui);

@@ -1,4 +1,5 @@
 // What plots over time can show, and how it becomes one.
+#include "app/session/coordinate_words.hpp"
 #include "app/ui/plots/shown_plot.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/text.hpp"
@@ -75,15 +76,15 @@ std::vector<double> changes(std::vector<double> values) {
 ShownRun shown_quantity(const Run& run, const std::string& key) {
   ShownRun out;
   for (const CoordinateTrack& c : run.coordinates) {
-    const std::string name = coordinate_label(c);
-    if (key == "value " + name) return {name, c.angle ? "rad" : "m", {{"", c.value}}};
-    if (key == "rate " + name) return {"rate of " + name, c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
+    const std::string name = coordinate_label(c), words = coordinate_words(c);
+    if (key == "value " + name) return {words, c.angle ? "rad" : "m", {{"", c.value}}};
+    if (key == "rate " + name) return {"rate of " + words, c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
   }
   for (const DriveTrack& d : run.drives) {
-    const std::string name = coordinate_label(d);
-    if (key == "drive " + name)
-      return {
-          (d.angle ? "drive torque of " : "drive force of ") + name, d.angle ? "N m" : "N", {{"", d.torque}}};
+    if (key == "drive " + coordinate_label(d))
+      return {(d.angle ? "drive torque of " : "drive force of ") + coordinate_words(d),
+              d.angle ? "N m" : "N",
+              {{"", d.torque}}};
   }
   for (const MeasureTrack& m : run.measures)
     if (key == "measure " + m.name) return {m.name, m.unit, {{"", m.value}}};

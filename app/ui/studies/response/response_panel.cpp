@@ -1,4 +1,5 @@
 // The response curve's choices, design mode, and the plot.
+#include "app/session/coordinate_words.hpp"
 #include "app/session/resonance.hpp"
 #include "app/session/response_design.hpp"
 #include "app/session/response_pull.hpp"
@@ -333,7 +334,7 @@ void solution_row(Session& session, Ui& ui, const DesignRequest& of, const Share
     if (c.driven) continue;
     const ShownUnit coordinate = coordinate_unit(c.angle, session.units);
     help +=
-        "\n" + coordinate_label(c) + "  " + short_text(coordinate.shown(c.value), 6) + " " + coordinate.text;
+        "\n" + coordinate_words(c) + "  " + short_text(coordinate.shown(c.value), 6) + " " + coordinate.text;
   }
   help_on_hover(help.c_str());
   if (clicked) later(ui, [&session, solution = s] { go_to_design(session, solution); });

@@ -1,12 +1,12 @@
 // All equilibria: how they were searched, and a table of them.
 #include "app/render/icons.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -70,7 +70,7 @@ void search_bounds(Session& session, Ui& ui, const StatesStudy::Found& search) {
   note_widget(ui.widgets, "states/search");
   for (const AllSolutions::Bound& b : found.bounds) {
     const ShownUnit unit = coordinate_unit(b.angle, session.units);
-    row(ui, coordinate_label(b),
+    row(ui, coordinate_words(b),
         short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
         "Where starts lay. What was found a range's width further out was kept, too.");
   }
@@ -128,7 +128,7 @@ std::vector<StateNumber> numbers_of(const Solution& solution) {
   std::vector<StateNumber> all;
   for (const CoordinateSolution& c : solution.coordinates)
     if (const auto found = found_number(c))
-      all.push_back({found->name, std::string(found->unit), found->value, found->error, ""});
+      all.push_back({found_words(c), std::string(found->unit), found->value, found->error, ""});
   for (const MeasureSolution& m : solution.measures)
     all.push_back({m.name, m.unit, m.value, m.error.value_or(0), m.reason});
   all.resize(std::min(all.size(), most_numbers));
