@@ -144,36 +144,33 @@ TEST_CASE("of a geared wheel drive, mesh and damper are told one by one") {
       {"name": "w2", "mass": 1, "position": [0.12, 0, 0], "inertia": [0.01, 0.01, 0.01]}],
     "joints": [
       {"name": "s1", "type": "revolute", "bodies": ["ground", "w1"], "at": [-0.16, 0, 0], "axis": [0, 0, 1],
-       "drive": {"torque": "=10 N m - 0.1 N m s*rate(s1)", "speed": 10
-}
-},
+       "drive": {"torque": "=10 N m - 0.1 N m s*rate(s1)", "speed": 10}},
       {"name": "s2", "type": "revolute", "bodies": ["ground", "w2"], "at": [0.12, 0, 0], "axis": [0, 0, 1],
        "damping": 0.1},
-      {"name": "mesh", "type": "gear", "joints": ["s1", "s2"], "ratio": -2}]
-})"));
+      {"name": "mesh", "type": "gear", "joints": ["s1", "s2"], "ratio": -2}]})json"));
   const Mechanism& mechanism = steady.mechanism;
-const Assembly assembly(mechanism, steady.solution.poses);
-const auto moment = [&](int body, LoadKind kind, const char* joint) {
-  for (const Load& load : loads_of(assembly, steady.solution, steady.turning, body))
-    if (load.kind == kind && load.moment && load.part == find_part(mechanism, {PartKind::joint, joint}))
-      return load.vector.z();
-  return 0.;
-};
-// s2 = -2 s1 or s1 = -2 s2; either way power is kept: 10 - 0.1 w is what the damper takes.
-const double w1 = *steady.solution.coordinates[0].speed, w2 = *steady.solution.coordinates[1].speed;
-const double drive = 10 - 0.1 * w1, damper = -0.1 * w2;
-CHECK(drive* w1 + damper * w2 == Approx(0).margin(1e-9));
-for (const int body : {0, 1}) {
-  CHECK(moment(body, LoadKind::drive, "s1") == Approx(body == 0 ? drive : 0));
-  CHECK(moment(body, LoadKind::gear, "mesh") == Approx(body == 0 ? -drive : -damper));
-  CHECK(moment(body, LoadKind::damper, "s2") == Approx(body == 1 ? damper : 0));
-  CHECK(std::abs(moment(body, LoadKind::reaction, body == 0 ? "s1" : "s2")) < 1e-9);
-}
-// Of the mechanism they are seen, too.
-CHECK(moment(-1, LoadKind::drive, "s1") == Approx(drive));
-CHECK(moment(-1, LoadKind::gear, "mesh") != 0);
-CHECK(moment(-1, LoadKind::damper, "s2") == Approx(damper));
-CHECK(worst_of(steady, steady.solution.poses, Quat::Identity()) < 1e-9);
+  const Assembly assembly(mechanism, steady.solution.poses);
+  const auto moment = [&](int body, LoadKind kind, const char* joint) {
+    for (const Load& load : loads_of(assembly, steady.solution, steady.turning, body))
+      if (load.kind == kind && load.moment && load.part == find_part(mechanism, {PartKind::joint, joint}))
+        return load.vector.z();
+    return 0.;
+  };
+  // s2 = -2 s1 or s1 = -2 s2; either way power is kept: 10 - 0.1 w is what the damper takes.
+  const double w1 = *steady.solution.coordinates[0].speed, w2 = *steady.solution.coordinates[1].speed;
+  const double drive = 10 - 0.1 * w1, damper = -0.1 * w2;
+  CHECK(drive * w1 + damper * w2 == Approx(0).margin(1e-9));
+  for (const int body : {0, 1}) {
+    CHECK(moment(body, LoadKind::drive, "s1") == Approx(body == 0 ? drive : 0));
+    CHECK(moment(body, LoadKind::gear, "mesh") == Approx(body == 0 ? -drive : -damper));
+    CHECK(moment(body, LoadKind::damper, "s2") == Approx(body == 1 ? damper : 0));
+    CHECK(std::abs(moment(body, LoadKind::reaction, body == 0 ? "s1" : "s2")) < 1e-9);
+  }
+  // Of the mechanism they are seen, too.
+  CHECK(moment(-1, LoadKind::drive, "s1") == Approx(drive));
+  CHECK(moment(-1, LoadKind::gear, "mesh") != 0);
+  CHECK(moment(-1, LoadKind::damper, "s2") == Approx(damper));
+  CHECK(worst_of(steady, steady.solution.poses, Quat::Identity()) < 1e-9);
 }
 
 TEST_CASE("bearings are parts of the diagram, of what they hold and of what holds them") {
