@@ -8,7 +8,7 @@ namespace flyball {
 
 namespace {
 
-constexpr int whole = 60, at_front = 100, at_word = 80, within = 40, spread = 20; // in the name
+constexpr int whole = 60, at_front = 100, at_word = 80, within = 40, spread = 4; // in the name
 constexpr int of_word_start = 4, more_at_word = 12, more_within = 6;
 
 char lower_letter(char c) {

@@ -250,3 +250,11 @@ TEST_CASE("gears are among what can be inserted, and say what to select for them
   }
   CHECK(robot.app.commands.about(command("insert.ball")) == command("insert.ball").help);
 }
+
+TEST_CASE("a whole word of what a command does goes before letters that are scattered over a name") {
+  const int word = fuzzy_match("free", "Forces", "with one body chosen, its free-body diagram").score,
+            scattered = fuzzy_match("free", "From the side", "Look from the right.").score;
+  CHECK(word > scattered);
+  // First letters of words are no scattered ones.
+  CHECK(fuzzy_match("sos", "speed of spin", "").score > word);
+}

@@ -199,3 +199,31 @@ TEST_CASE("the interface has sizes, by command and key, which are kept") {
   std::ofstream(folder / "settings.json") << "{\"zoom\": 100}";
   CHECK(read_settings(folder.path()).zoom == most_zoom);
 }
+
+TEST_CASE("an expression of numbers alone is in the unit of its field") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  choose_units(app.session, app.ui, app.view, workshop);
+  set_mode(app.session, Mode::build);
+  const auto enter = [&](const char* field, const char* text) {
+    robot.frames(60); // no double click
+    robot.click(field);
+    robot.key('A', true);
+    robot.type(text);
+    robot.key(key_enter);
+    robot.frames(2);
+  };
+  const auto collar = [&] { return app.session.document.stored().bodies.back(); };
+  select(app.session, {{{PartKind::body, "collar"}}});
+  robot.frames(3);
+  enter("inspector/position/x", "=60");
+  CHECK(collar().position.x() == Approx(0.06).epsilon(1e-14));
+  enter("inspector/position/x", "=2*(30 - 5)");
+  CHECK(collar().position.x() == Approx(0.05).epsilon(1e-14));
+  enter("inspector/position/x", "=0.02 m");
+  CHECK(collar().position.x() == 0.02);
+  select(app.session, {{{PartKind::joint, "spin"}}});
+  robot.frames(3);
+  enter("inspector/drive/speed", "=60");
+  CHECK(get_parameter(app.session.document.stored(), speed) == Approx(2 * std::numbers::pi).epsilon(1e-14));
+}

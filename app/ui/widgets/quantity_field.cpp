@@ -78,6 +78,22 @@ bool is_expression(const QuantityField& field, std::string_view text) {
   return !place_of(field).empty() && text.starts_with('=');
 }
 
+// An expression of numbers alone is in the field's unit, as a number by itself is: "=60" is 60 mm where these
+// are shown.
+std::string with_field_unit(const Session& session, const QuantityField& field, const std::string& text) {
+  const std::string shown = shown_unit(field.unit, session.units).text;
+  const bool numbers = text.find_first_not_of("0123456789.eE+-*/^() ") == std::string::npos &&
+                       text.find_first_of("0123456789") != std::string::npos;
+  if (!numbers || field.unit.empty() || (shown == written_unit(field.unit) && field.unit != "deg"))
+    return text;
+  std::string unit = shown;
+  if (unit.starts_with("°")) unit.replace(0, std::string("°").size(), "deg");
+  const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ') + 1;
+  const std::string trimmed = text.substr(begin, end - begin);
+  const bool single = trimmed.find_first_not_of("0123456789.") == std::string::npos;
+  return (single ? trimmed : "(" + trimmed + ")*1") + " " + unit;
+}
+
 // What a typed expression does; a point's name alone gives all three numbers of a vector.
 void set_typed_expression(Mechanism& mechanism, const QuantityField& field, const std::string& text) {
   const std::string vector = vector_of(field);
@@ -92,7 +108,7 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
     if (text.find_first_not_of(' ', 1) == std::string::npos) return "Expected an expression after the \"=\".";
     try {
       Mechanism copy = session.document.stored();
-      set_typed_expression(copy, field, text.substr(1));
+      set_typed_expression(copy, field, with_field_unit(session, field, text.substr(1)));
       if (field.least == Least::any) return {}; // a law may stand in the number's place
       return too_small(expressed_value(copy, place_of(field)), field.least);
     } catch (const SceneError& error) {
@@ -103,6 +119,8 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
   const Quantity typed = typed_quantity(session, text, field);
   if (!typed && field.set_with_unit)
     return "Expected a number, by itself or with an SI unit, e.g. 2, 1/3 or 3 N m s.";
+  constexpr double largest = 1e30; // as in a scene
+  if (typed && std::abs(typed.value) > largest) return "Expected no more than 1e30 in size.";
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
 
@@ -119,7 +137,7 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
   };
   if (is_expression(field, typed))
     return edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
-      set_typed_expression(mechanism, field, typed.substr(1));
+      set_typed_expression(mechanism, field, with_field_unit(session, field, typed.substr(1)));
       follow(mechanism);
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
