@@ -22,6 +22,7 @@ struct ShaftInBearings : Drawing {
       frames(2);
       key(key_enter);
     }
+    choose_nothing();
     frames(3);
   }
   const Solution& solution() const { return app.session.answer.solution; }
@@ -44,6 +45,12 @@ TEST_CASE("a shaft that two bearings hold is given a drive by a button, in one s
   const std::size_t steps = d.steps();
   SECTION("in the results") {
     d.click("results/remedy/drive/rod1");
+  }
+  SECTION("in the inspector of the body or a bearing") {
+    select(d.app.session, {{GENERATE(body_part("rod1"), Part{PartKind::force, "bearing1"})}});
+    d.app.sizes.inspector_share = 0.95f;
+    d.frames(2);
+    d.click("inspector/edit.bearing_drive");
   }
   SECTION("by the command, with the body selected") {
     select(d.app.session, {{body_part("rod1")}});

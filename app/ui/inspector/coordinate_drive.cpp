@@ -7,7 +7,8 @@ namespace flyball {
 const char* drive_refused(const Joint& joint, int coordinate) {
   const Coordinate& c = joint.coordinates[static_cast<std::size_t>(coordinate)];
   if (is_rotation_vector(joint.type, coordinate))
-    return "A component of a rotation vector cannot be driven; use revolute joints.";
+    return "A component of a rotation vector cannot be driven; use revolute joints, or, for what stands in "
+           "bearings, Drive in its bearings (Edit).";
   if (joint.cut == true) return "A joint that is cut has no coordinate to drive.";
   if (c.spring || c.stop) return "Not beside a spring or stop, which would never settle; take it away first.";
   if (c.friction) return "Not beside friction, which would hold nothing there; take it away first.";

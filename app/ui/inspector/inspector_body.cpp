@@ -1,5 +1,8 @@
+#include "app/document/bearing_drive.hpp"
 #include "app/document/transform.hpp"
 #include "app/document/turns.hpp"
+#include "app/ui/commands.hpp"
+#include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/tools/joints_along.hpp"
@@ -274,6 +277,14 @@ void rotation_section(Session& session, Ui& ui, InspectorState& inspector, const
   if (is_rotation_given(body) && !given_turns(session.mechanism(), body)) quaternion_rows(session, ui, body);
 }
 
+void bearing_drive_row(Session& session, Ui& ui, const std::string& body) {
+  if (!bearing_drive_refused(session.mechanism(), body).empty()) return;
+  const Command& drive = command("edit.bearing_drive");
+  if (text_button(ui, "inspector/edit.bearing_drive", drive.title))
+    later(ui, [&session, body] { drive_in_bearings(session, body); });
+  help_on_hover(drive.help);
+}
+
 void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool, const Body& body) {
   name_row(session, ui, {PartKind::body, body.name});
   text_row(session, ui, "inspector/description", "Note", body.description,
@@ -303,6 +314,7 @@ void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolSta
           "world; otherwise they go with it. In the view Shift does the opposite.",
           inspector.mass_alone ? "A mass centre that moves alone leaves everything." : nullptr))
     tool.leave_joints = !tool.leave_joints;
+  bearing_drive_row(session, ui, body.name);
   mass_section(session, ui, inspector, body);
   rotation_section(session, ui, inspector, tool, body);
   shapes_section(session, ui, inspector, body);

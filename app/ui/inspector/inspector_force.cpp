@@ -1,3 +1,4 @@
+#include "app/document/bearing_drive.hpp"
 #include "app/document/create.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -152,6 +153,7 @@ void bearing_rows(Session& session, Ui& ui, const Force& force) {
   for (std::size_t end = 0; end < 2; ++end)
     body_end_row(session, ui, part, force.bodies, end, end == 0 ? "In" : "Holds",
                  end == 0 ? bearing_in_help : bearing_holds_help);
+  bearing_drive_row(session, ui, held_by(force));
   vector_rows(session, ui, "Point",
               {.name = "inspector/at",
                .value = force.at.value_or(Vec3::Zero()),

@@ -26,6 +26,8 @@ void shapes_section(Session& session, Ui& ui, InspectorState& inspector, const B
 void coordinate_sections(Session& session, Ui& ui, const Joint& joint);
 void distance_rows(Session& session, Ui& ui, const Joint& joint);
 void gear_rows(Session& session, Ui& ui, const Joint& joint);
+// A button that gives a body in elastic bearings a drive; nothing where it cannot have one.
+void bearing_drive_row(Session& session, Ui& ui, const std::string& body);
 
 // Whether mass, mass centre and inertia are those of the body's shapes as a solid of one density.
 bool is_uniform_solid(const Body& body);
