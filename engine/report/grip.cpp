@@ -15,7 +15,7 @@ namespace {
 
 constexpr double share = 3;      // of the hand's spring, beside the mechanism's own stiffness
 constexpr double softest = 1e-3; // of the stiffness that weights, speeds and springs suggest
-constexpr double stiffest = 1e6; // likewise
+constexpr double rigid = 1e4; // likewise: what gives way by less does not, as where an engine's law holds it
 
 // The body that turns with this link as one, where there is one.
 int body_with(const System& system, int frame) {
@@ -104,8 +104,8 @@ Grip find_grip(const Mechanism& mechanism, const Solution& solution, const BodyP
     SymmetricEigen eigen;
     if (eigen.compute((c + c.transpose()) / 2, false)) most = eigen.values().cwiseAbs().maxCoeff();
   }
-  out.stiffness = std::isfinite(most) && most > 0 ? share / most : usual;
-  out.stiffness = std::clamp(out.stiffness, softest * usual, stiffest * usual);
+  const bool gives_way = std::isfinite(most) && share < rigid * usual * most;
+  out.stiffness = gives_way ? std::max(share / most, softest * usual) : usual;
   return out;
 }
 

@@ -6,8 +6,11 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/tools_hand.hpp"
 #include "app/ui/view_frame.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/grip.hpp"
 #include "engine/solve/assembly_drag.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <numbers>
@@ -388,4 +391,28 @@ TEST_CASE("whatever is pulled in whatever way, the mechanism stays whole") {
   }
   for (std::size_t i = 0; i < first.bodies.size(); ++i)
     CHECK(hand.app.session.mechanism().bodies[i].mass == first.bodies[i].mass);
+}
+
+TEST_CASE("a hand pulls no harder where an engine's law holds what is pulled") {
+  const Mechanism engine = shipped("governor_engine");
+  const Solution state = Analysis(engine).solve({});
+  REQUIRE(state.status == Status::converged);
+  const int ball = body_index(engine, "ball1");
+  const BodyPoint point{"ball1", engine.bodies[static_cast<std::size_t>(ball)].position};
+  const Grip held = find_grip(engine, state, point);
+  // The same governor at a given speed, which gives way to the hand.
+  Mechanism given = engine;
+  for (Joint& joint : given.joints)
+    for (Coordinate& c : joint.coordinates)
+      if (c.drive && c.drive->torque) {
+        c.drive->torque.reset();
+        c.drive->load.reset();
+        c.drive->speed = *coordinate(state, joint.name).speed;
+        joint.formulas.clear();
+      }
+  const Solution steady = Analysis(given).solve({});
+  REQUIRE(steady.status == Status::converged);
+  const Grip free = find_grip(given, steady, point);
+  CHECK(held.stiffness < 1000 * free.stiffness);
+  CHECK(held.stiffness > 0);
 }
