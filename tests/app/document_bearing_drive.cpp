@@ -126,6 +126,28 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("held still by its drive, a body swings as it did in its bearings") {
+  Mechanism m = rotor();
+  m.gravity.setZero();
+  m.bodies[0].position = {0.1, 0, 0};
+  m.forces[0].bearing_stiffness = {8e4, 5e3, -3e3, 2e5};
+  m.forces[0].bearing_damping = {900, 100, 50, 300};
+  m.forces[1].x_axis = Vec3(0, 3, 4);
+  m.forces[1].bearing_stiffness = {4e4, 0, 2e3, 9e4};
+  const Solution before = settled(m), after = settled(driven(m, 0));
+  REQUIRE(before.eigenvalues);
+  REQUIRE(after.eigenvalues);
+  CHECK(before.eigenvalues->size() == 12); // with the turn and the shift along the axis
+  CHECK(after.eigenvalues->size() == 8);
+  for (const auto& e : *after.eigenvalues) {
+    double nearest = 1e300;
+    for (const auto& same : *before.eigenvalues)
+      nearest = std::min(nearest, std::abs(same - e));
+    CAPTURE(e);
+    CHECK(nearest < 1e-7 * std::abs(e));
+  }
+}
+
 TEST_CASE("an unbalanced rotor that is given a drive whirls as Jeffcott's") {
   const double e = 1e-3, natural = std::sqrt(2 * film / mass), zeta = film_damping / (mass * natural);
   for (const double n : {0.3, 1., 2.5}) {
