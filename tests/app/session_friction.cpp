@@ -1,0 +1,80 @@
+// What friction makes of the response curve, without a window.
+#include "app/session/session.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "tests/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace flyball;
+
+namespace {
+
+// A centrifugal clutch: two shoes of 0.2 kg, 0.1 m off the axis of a hub at a given speed, each held back by
+// 20 kN/m and 50 N of friction, meet a drum at 0.02 m, which a load proportional to its speed holds.
+const char* const clutch = R"~({
+  "flyball": 2, "name": "Clutch", "gravity": [0, -9.80665, 0],
+  "bodies": [
+    {"name": "hub", "mass": 1, "position": [0, 0, 0], "inertia": [4e-4, 4e-4, 4e-4]},
+    {"name": "shoe1", "mass": 0.2, "position": [0.1, 0, 0], "inertia": [8e-5, 8e-5, 8e-5]},
+    {"name": "shoe2", "mass": 0.2, "position": [-0.1, 0, 0], "inertia": [8e-5, 8e-5, 8e-5]},
+    {"name": "drum", "mass": 31, "position": [0, -0.06, 0], "inertia": [0.2, 0.4, 0.2]}
+  ],
+  "joints": [
+    {"name": "input", "type": "revolute", "bodies": ["ground", "hub"], "at": [0, 0, 0], "axis": [0, 1, 0],
+     "drive": {"speed": 150}},
+    {"name": "slide1", "type": "prismatic", "bodies": ["hub", "shoe1"], "at": [0.1, 0, 0], "axis": [1, 0, 0],
+     "spring": {"stiffness": 20000}, "damping": 10, "stop": {"lower": -0.01, "upper": 0.02, "stiffness": 1e7},
+     "friction": {"limit": 50}},
+    {"name": "slide2", "type": "prismatic", "bodies": ["hub", "shoe2"], "at": [-0.1, 0, 0], "axis": [-1, 0, 0],
+     "spring": {"stiffness": 20000}, "damping": 10, "stop": {"lower": -0.01, "upper": 0.02, "stiffness": 1e7},
+     "friction": {"limit": 50}},
+    {"name": "output", "type": "revolute", "bodies": ["ground", "drum"], "at": [0, -0.06, 0], "axis": [0, 1, 0],
+     "drive": {"torque": "=2*0.3*0.12 m*max(0 N, 1e7 N/m*(coordinate(slide1)-0.02 m))*tanh((rate(input)-rate(output))/(1 rad/s))",
+               "load": "=0.05 N m s*rate(output)", "speed": 10}}
+  ]
+})~";
+
+} // namespace
+
+TEST_CASE("Session: a clutch engages along the edge of what friction holds, past the kink of the law") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_document(session, Document(parse_scene(clutch)));
+  open_study(session, StudyKind::response);
+  update(session, 0);
+  choose_response(session, "joints.input.drive.speed");
+  choose_response_end(session, &ResponseChoice::from, 110);
+  choose_response_end(session, &ResponseChoice::to, 160);
+  for (int i = 0; i < 4; ++i)
+    update(session, 0);
+  const auto ribbon = shown_ribbon(session);
+  REQUIRE(ribbon);
+  const std::vector<RibbonPoint>& points = ribbon->result.points;
+  REQUIRE(ribbon->result.stretches.size() == 1); // the kink without friction, at 129.1 rad/s, ends none
+  CHECK(ribbon->result.stretches[0].count == points.size());
+  // By hand: a shoe slides out where 0.2 w^2 (0.1 + s) is 20000 s + 50, and back where it is 20000 s - 50.
+  const auto edge = [](double w, double friction) {
+    return std::min(0.02, (0.02 * w * w - friction) / (20000 - 0.2 * w * w));
+  };
+  const std::vector<HysteresisPoint> slide = hysteresis(points, "slide1"),
+                                     drum = hysteresis(points, "output.speed");
+  REQUIRE(slide.size() == points.size());
+  REQUIRE(drum.size() == points.size());
+  int before = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double w = points[i].number;
+    CAPTURE(w);
+    const BandExtent* extent = find_extent(points[i], "slide1");
+    REQUIRE(extent);
+    CHECK(extent->low == Approx(edge(w, 50)).margin(2e-5));
+    CHECK(extent->high == Approx(edge(w, -50)).margin(3e-5));
+    CHECK(slide[i].back == Approx(edge(w, -50)).margin(3e-5));
+    // It has come down to where it stands at 110 rad/s, and stays until the lower edge comes to it.
+    CHECK(slide[i].forth == Approx(std::max(edge(110, -50), edge(w, 50))).margin(3e-5));
+    if (w < std::sqrt(450 / 0.024) - 0.1) {
+      CHECK(std::abs(drum[i].forth) < 1e-6);
+      ++before;
+    }
+  }
+  CHECK(before > 10);
+}
