@@ -138,7 +138,12 @@ void update_campbell(Session& session) {
   if (!diagram.asked) return follow_campbell(session);
   const CampbellRequest wanted = wanted_now(session);
   campbell.current = diagram.is_of(wanted);
-  if (diagram.running()) return;
+  const bool same_axis = diagram.asked->drive == wanted.drive && diagram.asked->from == wanted.from &&
+                         diagram.asked->to == wanted.to;
+  if (diagram.running()) { // over another axis it is of no use any more
+    if (!same_axis) follow_campbell(session);
+    return;
+  }
   // The state was put on a branch that was not followed.
   if (campbell.current && !campbell.on_branch && campbell.asked_ticket != session.answer.ticket) {
     const State state = present(session, wanted.drive);
@@ -146,8 +151,6 @@ void update_campbell(Session& session) {
     if (inside && !state.coordinates.empty() && diagram.quick()) return follow_campbell(session);
   }
   if (campbell.current || diagram.asked == wanted) return;
-  const bool same_axis = diagram.asked->drive == wanted.drive && diagram.asked->from == wanted.from &&
-                         diagram.asked->to == wanted.to;
   if (!same_axis || !diagram.found || diagram.quick()) follow_campbell(session);
 }
 

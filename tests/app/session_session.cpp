@@ -58,6 +58,22 @@ TEST_CASE("Session: solves and studies in the background") {
   CHECK_FALSE(session.study.states.found); // gone with its tab
 }
 
+TEST_CASE("Session: a Campbell diagram over another range does not wait for the one before") {
+  Session session({.mode = LiveSolver::Mode::background});
+  open_scene(session, test::shipped_file("chain20"));
+  REQUIRE(test::wait_until(session, [&] { return converged(session) && !solving(session); }));
+  open_study(session, StudyKind::modes);
+  CampbellState& campbell = session.study.modes.campbell;
+  REQUIRE(test::wait_until(session, [&] { return campbell.diagram.running(); }));
+  const double before = campbell.diagram.asked->to;
+  campbell.from = 0;
+  campbell.to = before / 8;
+  update(session, 0);
+  CHECK(campbell.diagram.asked->to == before / 8);
+  REQUIRE(test::wait_until(session, [&] { return campbell.diagram.found && !campbell.diagram.running(); }));
+  CHECK(campbell.diagram.found->of.to == before / 8);
+}
+
 TEST_CASE("Session: a slider's move hands one mechanism on, from the document to the answer") {
   Session session({.mode = LiveSolver::Mode::immediate});
   open_scene(session, governor);
