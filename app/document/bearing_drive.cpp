@@ -19,12 +19,13 @@ namespace {
 constexpr double off_axis = 1e-6; // rad, or parts of a distance: drawn on one line
 
 struct Held {
-  std::string in;            // the body that the bearings are in
-  Vec3 axis = Vec3::UnitZ(); // unit vector
-  Vec3 at = Vec3::Zero();    // m, on the axis, beside the mass centre
-  bool along = false;        // they act along the axis, too
-  std::string hinge;         // about the axis, beside them; empty: none
-  std::string why;           // there can be no drive, a sentence
+  std::string in;             // the body that the bearings are in
+  Vec3 axis = Vec3::UnitZ();  // unit vector
+  Vec3 at = Vec3::Zero();     // m, on the axis, beside the mass centre
+  Vec3 beyond = Vec3::Zero(); // m, on the axis, beyond the first bearing as seen from there
+  bool along = false;         // they act along the axis, too
+  std::string hinge;          // about the axis, beside them; empty: none
+  std::string why;            // there can be no drive, a sentence
 };
 
 // Whether a coordinate of the bearing's matrices, by its row, moves or feels anything.
@@ -125,6 +126,7 @@ Held held_in_bearings(const Mechanism& mechanism, const std::string& name) {
     held.along = held.along || acts_on(*bearing, 2);
   }
   held.at = at + held.axis * held.axis.dot(centre - at);
+  held.beyond = at + 0.4 * (at - held.at);
   for (const Joint& joint : mechanism.joints)
     if (joint.type == JointType::revolute && joins(joint, name, held.in) && on_axis(joint.axis, joint.at))
       held.hinge = joint.name;
@@ -180,24 +182,29 @@ std::string give_bearing_drive(Mechanism& mechanism, const std::string& body, do
   bool upwards = false;
   const auto [first, second] = across(held.axis, next.gravity, upwards);
   std::string last = held.in;
-  const auto massless = [&](const char* stem) {
+  // Where slides are drawn changes nothing; where the sleeve tilts is the place whose shifts are told.
+  const auto massless = [&](const char* stem, const Vec3& at) {
     Body made;
     made.name = unused_name(next, PartKind::body, stem);
-    made.position = held.at;
+    made.position = at;
     next.bodies.push_back(made);
     return made.name;
   };
-  const auto join = [&](const char* stem, JointType type, const std::string& child, const Vec3& axis) {
+  const auto join = [&](const char* stem, JointType type, const std::string& child, const Vec3& at,
+                        const Vec3& axis) {
     const std::string name = unused_name(next, PartKind::joint, stem);
-    add_joint(next, type, {last, child}, held.at, axis, second);
+    add_joint(next, type, {last, child}, at, axis, second);
     next.joints.back().name = name;
     last = child;
   };
-  if (held.along) join("along", JointType::prismatic, massless("slide"), held.axis);
-  join(upwards ? "up" : "across", JointType::prismatic, massless("slide"), first);
-  join("across", JointType::prismatic, massless("yoke"), second);
-  const std::string sleeve = massless("sleeve");
-  join("tilt", JointType::universal, sleeve, first);
+  const auto slide = [&](const char* stem, const char* child, const Vec3& axis) {
+    join(stem, JointType::prismatic, massless(child, held.beyond), held.beyond, axis);
+  };
+  if (held.along) slide("along", "slide", held.axis);
+  slide(upwards ? "up" : "across", "slide", first);
+  slide("across", "yoke", second);
+  const std::string sleeve = massless("sleeve", held.at);
+  join("tilt", JointType::universal, sleeve, held.at, first);
   const auto to_sleeve = [&](std::array<std::string, 2>& bodies, const std::string& from) {
     std::ranges::replace(bodies, from, sleeve);
   };
@@ -207,9 +214,8 @@ std::string give_bearing_drive(Mechanism& mechanism, const std::string& body, do
     to_sleeve(force.bodies, body);
     if (!driven.empty()) continue;
     // The axis goes through the first one, by its expressions too.
-    join("spin", JointType::revolute, body, held.axis);
+    join("spin", JointType::revolute, body, force.at.value_or(held.at), held.axis);
     Joint& spin = next.joints.back();
-    spin.at = force.at.value_or(held.at);
     for (const Formula& formula : force.formulas)
       if (formula.key.starts_with("at.")) spin.formulas.push_back(formula);
     driven = spin.name;

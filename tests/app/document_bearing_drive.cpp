@@ -84,8 +84,11 @@ TEST_CASE("a body in bearings turns in a sleeve that they hold") {
   REQUIRE(m.bodies.size() == 4);
   for (std::size_t b = 1; b < 4; ++b) {
     CHECK(m.bodies[b].mass == 0);
-    CHECK(m.bodies[b].position == Vec3::Zero()); // on the axis, beside the mass centre
+    CHECK(m.bodies[b].position.tail<2>().norm() == 0); // on the axis
   }
+  CHECK(m.bodies[3].position.x() == 0); // the sleeve, beside the mass centre
+  CHECK(joint(m, "tilt1").at == Vec3::Zero());
+  CHECK(joint(m, "up1").at.x() < -half); // beyond the bearings, where there is room
   CHECK(joint(m, "up1").axis == Vec3::UnitY());
   CHECK(joint(m, "across1").axis == Vec3::UnitZ());
   CHECK(joint(m, spin).bodies == std::array<std::string, 2>{"sleeve1", "rotor"});
