@@ -284,8 +284,8 @@ class PhaseSearch {
       const auto step = least_squares(all, rhs);
       if (!step || !step->allFinite()) return false;
       const double size = largest_size(step->head(n)), turned = largest_size(step->tail(count));
-      const double part =
-          std::min({1., longest / std::max(size, 1e-300), longest_turn / std::max(turned, 1e-300)});
+      const double part = std::min({1., longest / std::max(way_of(step->head(n), z.q), 1e-300),
+                                    longest_turn / std::max(turned, 1e-300)});
       const Eigen::VectorXd moved = part * step->head(n).cwiseProduct(given_.scaling.column);
       retract<double>(given_.system, moved, z.q);
       z.lambda += part * step->segment(n, rows).cwiseProduct(given_.scaling.row);
@@ -311,7 +311,7 @@ class PhaseSearch {
       const auto step = least_squares(matrix_, -left);
       if (!step || !step->allFinite()) return false;
       const double size = largest_size(step->head(n));
-      const double part = std::min(1., 3 / std::max(size, 1e-300));
+      const double part = std::min(1., 3 / std::max(way_of(step->head(n), z.q), 1e-300));
       const Eigen::VectorXd moved = part * step->head(n).cwiseProduct(column);
       retract<double>(system, moved, z.q);
       z.lambda += part * step->tail(rows).cwiseProduct(row);
@@ -322,6 +322,17 @@ class PhaseSearch {
       last = size;
     }
     return false;
+  }
+
+  // Of a scaled step of q; of a speed that has grown beyond its scale as a share of that.
+  double way_of(const Eigen::VectorXd& step, const Eigen::VectorXd& q) const {
+    double out = 0;
+    for (const Link& link : given_.system.links)
+      for (int v = link.v; link.v >= 0 && v < link.v + (link.type == LinkType::spherical ? 3 : 1); ++v) {
+        const double grown = finds_speed(link) ? std::abs(q[link.q]) / given_.scaling.column[v] : 0;
+        out = std::max(out, std::abs(step[v]) / std::max(1., grown));
+      }
+    return out;
   }
 
   // V^T w + h, 1/s, at the balance where the angles are turned so far along V. Nothing where there is none.
