@@ -8,20 +8,15 @@ namespace {
 constexpr double small_rate =
     1e-3; // of the fastest: what an implied rate begins with tells nothing of its size
 
-double given_speed(const System& system, const Parameters& p, const Link& link) {
-  return p.links[static_cast<std::size_t>(&link - system.links.data())].speed;
-}
-
 } // namespace
 
 double found_speed_unit(const System& system, const Parameters& p, const Link& link) {
-  const double given = std::abs(given_speed(system, p, link));
+  const double given = std::abs(p.links[static_cast<std::size_t>(&link - system.links.data())].speed);
   return given != 0 ? given : link.type == LinkType::prismatic ? p.length : 1;
 }
 
 double largest_found_speed(const Problem& problem, const Link& link) {
-  const bool from_rest = given_speed(problem.system, problem.parameters, link) == 0;
-  return (from_rest ? 1e7 : 1e4) * problem.scaling.column[link.v];
+  return 1e4 * problem.scaling.column[link.v];
 }
 
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {

@@ -17,8 +17,8 @@ struct Scaling {
 };
 void set_scaling(const System& system, const Parameters& parameters, Scaling& scaling);
 
-// What a speed that is found is measured by, rad/s or m/s: that at which its search begins, or from rest a
-// radian or the reach a second.
+// What a speed that is found is measured by, rad/s or m/s: that at which its search begins; where that is
+// rest, as of what loops turn, a radian or the reach a second.
 double found_speed_unit(const System& system, const Parameters& parameters, const Link& link);
 
 struct Problem {
@@ -42,7 +42,6 @@ struct Problem {
 };
 
 // Up to which a speed that is found is followed, rad/s or m/s: ten thousand times what it is measured by.
-// From rest, of which that tells nothing, faster than anything turns.
 double largest_found_speed(const Problem& problem, const Link& link);
 
 // Pivots of the constraints below this, of the largest, belong to dependent rows: where the loops, whose rows
