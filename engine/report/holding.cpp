@@ -117,6 +117,13 @@ void for_geared(Compiled& held, int drive, const Act& act) {
       act(held.parameters.links[static_cast<std::size_t>(held.system.drives[d].link)]);
 }
 
+// Whether a coordinate is driven by the drive of another.
+bool moved_by_gears(const Compiled& held, int coordinate) {
+  const int drive = held.link(coordinate).drive;
+  return drive >= 0 && held.system.drives[static_cast<std::size_t>(drive)].motor != drive &&
+         !finds_speed(held.link(coordinate));
+}
+
 // A drive at rest to another place, rad or m from the drawn one, with what gears move along.
 void move_drive(Compiled& held, int drive, double to) {
   LinkParameters& own =
@@ -342,8 +349,9 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
     const bool is_held = std::ranges::any_of(which.independent, [&](std::size_t i) {
       return frictions[i].joint == c.joint && frictions[i].coordinate == c.coordinate;
     });
-    // Without friction of its own a joint may close a loop, and then follows.
-    const bool follows = c.joint >= 0 && held.find(locked, c) < 0;
+    // Without friction of its own a joint may close a loop, and then follows; so it does behind a gear.
+    const int there = c.joint >= 0 ? held.find(locked, c) : -1;
+    const bool follows = c.joint >= 0 && (there < 0 || moved_by_gears(held, there));
     if (!is_held && !follows) rest.emplace_back(name, value);
   }
   for (std::size_t k = 0; k < independent.size(); ++k) {

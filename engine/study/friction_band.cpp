@@ -306,12 +306,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
   const std::vector<FreeNumber> free = all_shares(mechanism);
   const Interruptible scope(options.cancel);
   try {
-    SolveOptions solve;
-    solve.start = options.start;
-    solve.nearest = !options.start.empty();
-    solve.details = false;
-    solve.cancel = options.cancel;
-    const Solution state = Analysis(mechanism).solve(solve);
+    const Solution state = steady_state_near(mechanism, options.start, options.cancel);
     if (state.status != Status::converged || !state.frictions.empty()) {
       band.message = state.message;
       return band;

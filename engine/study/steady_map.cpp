@@ -25,6 +25,23 @@ constexpr double longest_correction = 0.25; // where it was predicted: more has 
 constexpr double longest_way = 0.3;         // in one step
 constexpr int most_halvings = 12;           // of steps that the state does not follow
 
+Solution steady_state_near(const Mechanism& mechanism,
+                           const std::vector<std::pair<std::string, double>>& start,
+                           const std::atomic<bool>* cancel) {
+  SolveOptions solve;
+  solve.start = start;
+  solve.nearest = !start.empty();
+  solve.details = false;
+  solve.cancel = cancel;
+  Analysis analysis(mechanism);
+  Solution out = analysis.solve(solve);
+  if (out.status == Status::converged || start.empty()) return out;
+  solve.start.clear();
+  solve.nearest = false;
+  Solution answer = analysis.solve(solve);
+  return answer.turned ? answer : out;
+}
+
 SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> free,
                      std::vector<std::string> wanted, const std::atomic<bool>* cancel)
     : varied_(mechanism), cancel_(cancel) {
@@ -104,17 +121,7 @@ void SteadyMap::find_values(State& state) {
 std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std::string, double>>& start,
                                                  Solution& first) {
   set(p_, {});
-  SolveOptions solve;
-  solve.start = start;
-  solve.nearest = !start.empty();
-  solve.details = false;
-  solve.cancel = cancel_;
-  first = Analysis(varied_).solve(solve);
-  if (first.status != Status::converged && !start.empty()) { // states that stand turned are near no start
-    solve.start.clear();
-    solve.nearest = false;
-    if (Solution other = Analysis(varied_).solve(solve); other.turned) first = std::move(other);
-  }
+  first = steady_state_near(varied_, start, cancel_);
   if (first.status != Status::converged) return std::nullopt;
   if (!first.frictions.empty()) { // rates of what rests on it are none
     first.status = Status::no_steady_state;

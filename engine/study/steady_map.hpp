@@ -27,6 +27,13 @@ struct FreeNumber {
   bool operator==(const FreeNumber&) const = default;
 };
 
+// The steady state nearest to a start (as of SolveOptions), or where that is empty what a solve answers.
+// Where there is none near it the answer if that stands turned against the drawn pose: such are near no
+// start.
+Solution steady_state_near(const Mechanism& mechanism,
+                           const std::vector<std::pair<std::string, double>>& start,
+                           const std::atomic<bool>* cancel);
+
 class SteadyMap {
  public:
   struct State {

@@ -89,6 +89,7 @@ TEST_CASE("the branch of a block on a conveyor ends where that stands, in a slip
   INFO(d.message);
   REQUIRE(d.branches.size() >= 2);
   for (const ResponseBranch& branch : d.branches) {
+    if (branch.points.size() == 1) continue; // held on the belt that stands
     INFO(branch.begin << "; " << branch.end);
     CHECK_THAT(branch.begin + branch.end, !ContainsSubstring("fold"));
     for (const ResponsePoint& p : branch.points) {
