@@ -135,6 +135,8 @@ void update_campbell(Session& session) {
     campbell.judged_ticket = session.answer.ticket;
   }
   if (session.mode != Mode::explore || speeds.empty() || !session.mistakes.empty()) return;
+  // Whether there are too many coordinates is known once it was compiled.
+  if (!session.answer.ticket || !modes_refusal(session).empty()) return;
   if (!diagram.asked) return follow_campbell(session);
   const CampbellRequest wanted = wanted_now(session);
   campbell.current = diagram.is_of(wanted);

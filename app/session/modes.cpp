@@ -12,14 +12,20 @@ namespace {
 constexpr int most_coordinates = 300;
 constexpr double full_turn = 2 * std::numbers::pi;
 
+// Of so many free coordinates; empty where that is not too many.
+std::string refusal_of(int free) {
+  if (free <= most_coordinates) return {};
+  return "Modes are found of at most " + std::to_string(most_coordinates) +
+         " free coordinates; this mechanism has " + std::to_string(free) + ".";
+}
+
 FoundModes find(std::shared_ptr<const Mechanism> mechanism,
                 const std::vector<std::pair<std::string, double>>& start,
                 const TaskContext<FoundModes>& context) {
   FoundModes found;
   found.analysis = std::make_unique<Analysis>(std::move(mechanism));
-  if (const int free = found.analysis->summary().free_coordinates; free > most_coordinates)
-    throw std::runtime_error("Modes are found of at most " + std::to_string(most_coordinates) +
-                             " free coordinates; this mechanism has " + std::to_string(free) + ".");
+  if (const std::string refusal = refusal_of(found.analysis->summary().free_coordinates); !refusal.empty())
+    throw std::runtime_error(refusal);
   SolveOptions options;
   options.nearest = true;
   options.start = start;
@@ -69,6 +75,10 @@ void find_modes_again(Session& session) {
           const ModesRequest&, const TaskContext<FoundModes>& context) {
         return find(mechanism, start, context);
       });
+}
+
+std::string modes_refusal(const Session& session) {
+  return refusal_of(session.answer.summary.free_coordinates);
 }
 
 void update_modes(Session& session) {

@@ -50,6 +50,9 @@ struct ModesState {
 // Takes what was found; asks for what is missing while the study is open.
 void update_modes(Session& session);
 void find_modes_again(Session& session);
+// Why none are looked for, nor a Campbell diagram, a sentence: too many coordinates are free. Empty where
+// they are.
+std::string modes_refusal(const Session& session);
 // Everything goes but how the Campbell diagram is wanted.
 void close_modes(Session& session);
 // Whether modes or the diagram are being computed.

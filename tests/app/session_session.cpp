@@ -4,6 +4,7 @@
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
@@ -72,6 +73,21 @@ TEST_CASE("Session: a Campbell diagram over another range does not wait for the 
   CHECK(campbell.diagram.asked->to == before / 8);
   REQUIRE(test::wait_until(session, [&] { return campbell.diagram.found && !campbell.diagram.running(); }));
   CHECK(campbell.diagram.found->of.to == before / 8);
+}
+
+TEST_CASE("Session: of more coordinates than modes are found of no Campbell diagram is begun") {
+  for (const auto& [count, begun] : {std::pair{20, true}, std::pair{310, false}}) {
+    CAPTURE(count);
+    Session session({.mode = LiveSolver::Mode::background});
+    open_document(session, Document(test::hanging_chain(count, 3)));
+    open_study(session, StudyKind::modes);
+    REQUIRE(test::wait_until(session, [&] { return converged(session) && !solving(session); }));
+    const ModesState& modes = session.study.modes;
+    REQUIRE(test::wait_until(session, [&] { return modes.list.found || !modes.list.problem.empty(); }));
+    CHECK(modes_refusal(session).empty() == begun);
+    CHECK(modes.list.problem == modes_refusal(session));
+    CHECK(modes.campbell.diagram.asked.has_value() == begun);
+  }
 }
 
 TEST_CASE("Session: a slider's move hands one mechanism on, from the document to the answer") {

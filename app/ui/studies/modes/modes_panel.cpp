@@ -335,6 +335,7 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
     note_widget(ui.widgets, "campbell/turns");
     return;
   }
+  if (!modes_refusal(session).empty()) return; // which the list says
   campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
   if (const std::string problem = campbell_problem(session); !problem.empty()) {
