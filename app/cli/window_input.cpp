@@ -15,7 +15,7 @@ bool is_modifier(int key) {
 }
 
 // Whether it only adds to a text: letters, digits, signs, which come as characters, too.
-bool types(const WindowEvent& event) {
+bool only_types(const WindowEvent& event) {
   if (event.kind == WindowEvent::Kind::character) return true;
   if (event.kind == WindowEvent::Kind::button) return false;
   const bool command = (event.modifiers & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0;
@@ -70,9 +70,15 @@ void WindowInput::give(const WindowEvent& event, std::vector<KeyPress>& keys) {
 
 void WindowInput::read(std::vector<KeyPress>& keys) {
   button_.reset();
-  for (bool more = true; more && !events_.empty(); events_.pop_front()) {
-    more = types(events_.front());
-    give(events_.front(), keys);
+  bool typed = false; // a key that does more comes by itself, when what was typed has been taken
+  while (!events_.empty()) {
+    const WindowEvent event = events_.front();
+    const bool types = only_types(event);
+    if (!types && typed) break;
+    events_.pop_front();
+    give(event, keys);
+    if (!types) break;
+    typed = true;
   }
   take_over(keys);
 }

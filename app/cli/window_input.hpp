@@ -36,8 +36,8 @@ class WindowInput {
   // keyboard in the third.
   static constexpr int frames_each = 3;
 
-  // Gives what one frame takes, as far as the next key that does something beside typing a character. Presses
-  // are added to `keys`.
+  // Gives what one frame takes: characters, or one key that does something beside typing one. Presses are
+  // added to `keys`.
   void read(std::vector<KeyPress>& keys);
   // A frame in which nothing new happens.
   void rest();
