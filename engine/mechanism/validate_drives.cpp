@@ -131,9 +131,14 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
       if (coordinate.stop)
         mistakes.add(coordinate_path(mechanism, j, "stop", i), "expected no stop" + reason);
       if (coordinate.friction)
-        mistakes.add(coordinate_path(mechanism, j, "friction", i),
-                     "expected no friction on this coordinate, which is driven" + by +
-                         ": it holds nothing there, and only the drive would feel it");
+        mistakes.add(
+            coordinate_path(mechanism, j, "friction", i),
+            "expected no friction on this coordinate, which is driven" + by +
+                (driven(j, i).found
+                     ? ": whether it holds what a torque turns is not looked for. While that turns a "
+                       "load of its drive does the same, such as 0.5 N m*tanh(rate(" +
+                           mechanism.joints[driven(j, i).joint].name + ")/(0.01 rad/s))"
+                     : ": it holds nothing there, and only the drive would feel it"));
     }
 }
 
