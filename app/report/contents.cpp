@@ -57,7 +57,8 @@ void expect_plotted(const Mechanism& m, const std::vector<CoordinateSolution>& a
   }
 }
 
-// What is to be drawn: what is named and is there, else the first angle and the first length.
+// What is to be drawn: what is named and is there, else the first speed that is found, the first angle and
+// the first length.
 std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m, const ResponseDiagram& d,
                                                 const std::vector<std::string>& names) {
   std::vector<PlottedQuantity> out;
@@ -65,6 +66,9 @@ std::vector<PlottedQuantity> plotted_quantities(const Mechanism& m, const Respon
     if (const auto found = find_plotted(m, d, name)) out.push_back(*found);
   if (!names.empty()) return out;
   const std::vector<CoordinateSolution>& all = d.branches.front().points.front().coordinates;
+  const auto turning = std::ranges::find_if(
+      all, [](const CoordinateSolution& c) { return c.driven && c.speed && !c.dependent; });
+  if (turning != all.end()) out.push_back({static_cast<std::size_t>(turning - all.begin()), false, true});
   for (const bool angle : {true, false})
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].driven || all[i].dependent || all[i].angle != angle) continue;

@@ -61,8 +61,8 @@ Html vector_quantity(const Vec3& v, std::string_view unit, int digits) {
   return with_unit(inner + ")", unit);
 }
 
-Html rate_quantity(const Mechanism& mechanism, double rate, bool angle, std::string_view address) {
-  const std::string per = parameter_unit(mechanism, address), unit(coordinate_unit_of(angle));
+Html rate_quantity(const Mechanism& mechanism, double rate, std::string_view of, std::string_view address) {
+  const std::string per = parameter_unit(mechanism, address), unit(of);
   const bool compound = per.find_first_of(" /") != std::string::npos;
   return quantity(rate, per.empty() ? unit : unit + (compound ? "/(" + per + ")" : "/" + per), 4);
 }

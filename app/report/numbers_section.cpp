@@ -2,6 +2,8 @@
 #include "app/report/numbers.hpp"
 #include "app/report/sections.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/force_law.hpp"
 
 namespace flyball {
 
@@ -29,6 +31,24 @@ OptionalSection numbers_section(const ReportContents& contents) {
   if (table.empty()) return std::nullopt;
   return ReportSection{"numbers", "All numbers of the scene",
                        element("div", table.html(), {{"class", "columns"}})};
+}
+
+OptionalSection laws_section(const ReportContents& contents) {
+  const Mechanism& m = *contents.mechanism;
+  HtmlTable table({{"Of", false}, {"Law", false}});
+  for (const Joint& joint : m.joints)
+    for (const Formula& f : joint.formulas)
+      if (is_drive_law(m, f) || is_force_law(f))
+        table.row({"joints." + joint.name + "." + f.key, "= " + f.text});
+  for (const Force& force : m.forces)
+    for (const Formula& f : force.formulas)
+      if (is_force_law(f)) table.row({"forces." + force.name + "." + f.key, "= " + f.text});
+  if (table.empty()) return std::nullopt;
+  return ReportSection{
+      "laws", "Laws",
+      paragraph_of("Torques and loads of drives, forces of springs and dampers and coefficients of "
+                   "vanes that are expressions of the state.") +
+          table.html()};
 }
 
 OptionalSection bodies_section(const ReportContents& contents) {

@@ -9,9 +9,9 @@ namespace flyball {
 namespace {
 
 constexpr OptionalSection (*all_sections[])(const ReportContents&) = {
-    steady_state_section, periodic_section, stability_section, cycle_section,   friction_section,
-    loads_section,        bodies_section,   sliders_section,   curves_section,  sensitivities_section,
-    assumptions_section,  warnings_section, numbers_section,   versions_section};
+    steady_state_section,  periodic_section,    stability_section, cycle_section,   friction_section,
+    loads_section,         bodies_section,      sliders_section,   laws_section,    curves_section,
+    sensitivities_section, assumptions_section, warnings_section,  numbers_section, versions_section};
 
 Html image(const std::string& png, const char* which, const ReportPicture& picture, const std::string& alt) {
   return void_element("img", {{"class", which},

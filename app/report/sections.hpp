@@ -21,6 +21,7 @@ OptionalSection friction_section(const ReportContents& contents); // of scenes t
 OptionalSection loads_section(const ReportContents& contents);
 OptionalSection curves_section(const ReportContents& contents);
 OptionalSection sliders_section(const ReportContents& contents);
+OptionalSection laws_section(const ReportContents& contents);
 OptionalSection sensitivities_section(const ReportContents& contents);
 OptionalSection assumptions_section(const ReportContents& contents);
 OptionalSection warnings_section(const ReportContents& contents);

@@ -93,15 +93,18 @@ OptionalSection sensitivities_section(const ReportContents& contents) {
   HtmlTable table({{"Coordinate", false}, {"Slider", false}, {"Rate"}});
   for (const Sensitivity& s : contents.solution.sensitivities)
     for (const Sensitivity::Rate& r : s.rates) {
-      if (r.speed) continue; // those of the coordinates
       const int joint = joint_index(m, r.joint);
       const bool angle = joint < 0 || is_angle(m.joints[static_cast<std::size_t>(joint)].type, r.index);
-      table.row({coordinate_label(r), s.address, rate_quantity(m, r.value, angle, s.address)});
+      const std::string unit = std::string(coordinate_unit_of(angle)) + (r.speed ? "/s" : "");
+      table.row({coordinate_label(r) + (r.speed ? ".speed" : ""), s.address,
+                 rate_quantity(m, r.value, r.speed ? "(" + unit + ")" : unit, s.address)});
     }
   if (table.empty()) return std::nullopt;
   return ReportSection{
       "sensitivities", "Sensitivities",
-      paragraph_of("How fast each coordinate of the steady state changes with each slider.") + table.html()};
+      paragraph_of("How fast each coordinate of the steady state, and each speed that is found, changes with "
+                   "each slider.") +
+          table.html()};
 }
 
 } // namespace flyball

@@ -109,7 +109,7 @@ std::array<double, 2> campbell_range(const Session& session) {
 void follow_campbell(Session& session) {
   CampbellState& campbell = session.study.modes.campbell;
   const std::string drive = campbell_drive(session);
-  if (drive.empty() || !session.mistakes.empty()) return;
+  if (drive.empty() || !session.mistakes.empty() || !modes_refusal(session).empty()) return;
   campbell.asked_ticket = session.answer.ticket;
   campbell.diagram.ask(session.options, wanted_now(session),
                        [mechanism = session.document.shared(), state = present(session, drive)](
@@ -136,7 +136,8 @@ void update_campbell(Session& session) {
   }
   if (session.mode != Mode::explore || speeds.empty() || !session.mistakes.empty()) return;
   // Whether there are too many coordinates is known once it was compiled.
-  if (!session.answer.ticket || !modes_refusal(session).empty()) return;
+  if (!session.answer.ticket) return;
+  if (!modes_refusal(session).empty()) return diagram.stop();
   if (!diagram.asked) return follow_campbell(session);
   const CampbellRequest wanted = wanted_now(session);
   campbell.current = diagram.is_of(wanted);

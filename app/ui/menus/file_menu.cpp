@@ -63,7 +63,7 @@ const std::array file_commands{
             .help = "Write the linear model that Transfer shows for MATLAB, Python or NumPy, or as JSON.",
             .run = open_dialog_of<&Panels::model>,
             .enabled = [](const App& app) { return has_transfer(app.session); },
-            .lacks = "Transfer shows no linear model."},
+            .lacks = "it is the model that Study, Transfer shows, which is not open, or has none."},
     Command{.id = "file.quit",
             .title = "Quit",
             .help = "Leave the program; asks before unsaved work is lost.",

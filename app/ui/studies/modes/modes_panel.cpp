@@ -330,6 +330,7 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
+  if (!modes_refusal(session).empty()) return; // the list says it
   if (turns_with_drives(session)) { // there is none at any speed, and axes without lines say nothing
     paragraph(without_modes(session), colors.dim);
     note_widget(ui.widgets, "campbell/turns");
