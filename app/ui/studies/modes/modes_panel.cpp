@@ -330,20 +330,18 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
-  if (!modes_refusal(session).empty()) return; // the list says it
-  if (turns_with_drives(session)) { // there is none at any speed, and axes without lines say nothing
+  if (!modes_refusal(session).empty()) return;   // the list says it
+  const bool turns = turns_with_drives(session); // then axes without lines would say nothing
+  if (turns)
     paragraph(without_modes(session), colors.dim);
-    note_widget(ui.widgets, "campbell/turns");
-    return;
-  }
-  if (!modes_refusal(session).empty()) return; // which the list says
-  campbell_choices(session, ui, drawn, drive);
+  else
+    campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
   if (const std::string problem = campbell_problem(session); !problem.empty()) {
     paragraph(problem, colors.bad);
     note_widget(ui.widgets, "campbell/problem");
   }
-  if (!diagram.found) return;
+  if (!diagram.found || turns) return;
   draw_campbell(session, drawn);
   if (const std::string& words = drawn.critical; !words.empty()) {
     clipped_text(words, ImGui::GetContentRegionAvail().x);
