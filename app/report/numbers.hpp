@@ -15,7 +15,7 @@ Html quantity_within(double value, double error, std::string_view unit);
 // A magnitude, such as an error: two digits.
 Html magnitude(double value, std::string_view unit);
 Html vector_quantity(const Vec3& v, std::string_view unit, int digits = 6);
-// Of a coordinate, in rad or m per unit of the number at `address`.
+// In a unit, "rad", "(rad/s)", per that of the number at `address`.
 Html rate_quantity(const Mechanism& mechanism, double rate, std::string_view of, std::string_view address);
 // A run time; what a run is told by the clock stands in <time>.
 Html duration(double seconds);

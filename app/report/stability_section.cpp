@@ -55,8 +55,8 @@ Html modes_tables(const std::vector<VibrationMode>& modes) {
     const std::string number = std::to_string(i + 1);
     table.row({number, eigenvalue(m.eigenvalue),
                m.oscillates() ? quantity(hertz(m.frequency), "Hz", 5) : Html("no oscillation"),
-               quantity(hertz(m.natural_frequency), "Hz", 5), quantity(100 * m.damping_ratio, "%", 4),
-               time_constant(m.eigenvalue.real())});
+               m.oscillates() ? quantity(hertz(m.natural_frequency), "Hz", 5) : Html("–"),
+               quantity(100 * m.damping_ratio, "%", 4), time_constant(m.eigenvalue.real())});
     shapes.row({number, amplitudes(m)});
   }
   return heading_of("Modes of the linearised motion") + table.html() + heading_of("Their shapes") +

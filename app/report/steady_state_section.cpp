@@ -94,7 +94,8 @@ OptionalSection sensitivities_section(const ReportContents& contents) {
   for (const Sensitivity& s : contents.solution.sensitivities)
     for (const Sensitivity::Rate& r : s.rates) {
       const int joint = joint_index(m, r.joint);
-      const bool angle = joint < 0 || is_angle(m.joints[static_cast<std::size_t>(joint)].type, r.index);
+      const JointType type = joint < 0 ? JointType::free : m.joints[static_cast<std::size_t>(joint)].type;
+      const bool angle = is_angle(type, r.index);
       const std::string unit = std::string(coordinate_unit_of(angle)) + (r.speed ? "/s" : "");
       table.row({coordinate_label(r) + (r.speed ? ".speed" : ""), s.address,
                  rate_quantity(m, r.value, r.speed ? "(" + unit + ")" : unit, s.address)});

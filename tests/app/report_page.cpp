@@ -122,6 +122,34 @@ TEST_CASE("a report tells all of a steady state") {
   CHECK(drawings == 8);
 }
 
+TEST_CASE("a report of an engine with its governor tells the law, the droop and the rates of the speed") {
+  const ReportContents contents = contents_of("governor_engine");
+  const std::string page = report_page(contents);
+  check_page(page);
+  CHECK(section(page, "laws").find("gain * (coordinate(slide) - 0.15 m)") != std::string::npos);
+  REQUIRE(contents.curves.size() == 3);
+  REQUIRE(contents.curves[0].over.parameter == "joints.spin.drive.load");
+  REQUIRE(contents.curves[0].plots.size() == 3);
+  const Plot& droop = contents.curves[0].plots[0];
+  CHECK(droop.y.unit == "rad/s");
+  for (const auto& [load, speed] : {std::pair(-25., 11.74560), std::pair(25., 10.29396)}) { // Haug's
+    double nearest = 1;
+    for (const PlotCurve& line : droop.curves)
+      for (const auto& p : line.points)
+        if (std::abs(p[0] - load) < 1e-9) nearest = std::min(nearest, std::abs(p[1] - speed));
+    CAPTURE(load);
+    CHECK(nearest < 1e-5);
+  }
+  const std::string rates = section(page, "sensitivities");
+  CHECK(rates.find("spin.speed") != std::string::npos);
+  CHECK(rates.find("(rad/s)/(N") != std::string::npos);
+  // A mode that does not swing has no frequency of any kind.
+  const std::string modes = section(page, "stability");
+  const std::size_t still = modes.find("no oscillation");
+  REQUIRE(still != std::string::npos);
+  CHECK(modes.substr(still, modes.find("</tr>", still) - still).find("Hz") == std::string::npos);
+}
+
 TEST_CASE("a report's curves pass through its state") {
   const ReportContents contents = contents_of("governor");
   REQUIRE(contents.curves.size() == 2);
