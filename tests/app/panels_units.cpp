@@ -168,7 +168,7 @@ TEST_CASE("ends of sliders are round in the units shown, and so is a new drive")
   CHECK(shown_unit("rad/s", workshop).shown(new_drive_speed(workshop)) == 100);
   CHECK(new_drive_speed(si) == 10);
   // A slider that is made for an angle of zero ends at half a turn.
-  const Slider slider = slider_for(app.session.mechanism(), "joints.spin.drawn", DisplayUnits{});
+  const Slider slider = slider_for(app.session.mechanism(), "joints.spin.coordinate", DisplayUnits{});
   CHECK(shown_unit("rad", DisplayUnits{}).shown(slider.to) == 180);
 }
 

@@ -86,9 +86,9 @@ struct CoordinateRows {
               const char* help, Least least = Least::any, const std::function<void()>& reset = {}) const {
     number(label, address, value, unit, help, {}, least, reset);
   }
-  // `various`: see QuantityField.
+  // `law`: see QuantityField.
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
-              const char* help, const std::string& various, Least least = Least::any,
+              const char* help, const std::string& law, Least least = Least::any,
               const std::function<void()>& reset = {}) const {
     quantity_row(session, ui, label,
                  {.name = widget(address),
@@ -97,7 +97,7 @@ struct CoordinateRows {
                   .help = help,
                   .least = least,
                   .address = "joints." + joint.name + "." + address,
-                  .various = various},
+                  .law = law},
                  reset);
   }
   // Of an expression of the state the value that it has there, where that is known; else the expression

@@ -43,7 +43,7 @@ void spring_rows(Session& session, Ui& ui, const Force& force) {
                       "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
                       "[5 mm, 40 N]).",
                   .address = address_of(force, "force"),
-                  .various = law_text(spring_law(force))},
+                  .law = law_text(spring_law(force))},
                  [&session, &ui, name = force.name] {
                    edit_force(session, ui, "Stiffness of " + name, name, [](Force& same) {
                      same.force.reset();
@@ -82,7 +82,7 @@ void spring_rows(Session& session, Ui& ui, const Force& force) {
                                  "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
                                  "m/s, 90 N]).",
                          .address = address_of(force, "damping_force"),
-                         .various = law_text(damper_law(force))},
+                         .law = law_text(damper_law(force))},
                         [&session, &ui, name = force.name] {
                           edit_force(session, ui, "Damping of " + name, name, [](Force& same) {
                             same.damping_force.reset();
@@ -292,7 +292,7 @@ void coefficient_row(Session& session, Ui& ui, const Force& vane, const std::str
                 .unit = "",
                 .help = help,
                 .address = address_of(vane, key),
-                .various = law_text(law)});
+                .law = law_text(law)});
 }
 
 void vane_rows(Session& session, Ui& ui, const Force& vane) {

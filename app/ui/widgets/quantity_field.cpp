@@ -240,15 +240,16 @@ void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& s
   const float behind = unit_width(ui, shown.unit.text);
   const float sign = given ? ImGui::CalcTextSize("=").x + gap : 0; // of an expression
   const float room = right - from.x - padding - behind - sign;
-  const std::string text = field.various.empty() ? fitting_text(ui, shown.value, room) : std::string();
+  const std::string& words = field.law.empty() ? field.various : field.law;
+  const std::string text = words.empty() ? fitting_text(ui, shown.value, room) : std::string();
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
   const float x = field.framed ? from.x + padding + sign : right - behind - digits_width(ui, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
   if (given) list.AddText({x - sign, y}, packed(colors.accent), "=");
-  if (!field.various.empty())
-    list.AddText({x, y}, packed(colors.dim), field.various.c_str());
+  if (!words.empty())
+    list.AddText({x, y}, packed(colors.dim), words.c_str());
   else
     list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {x, y + digits_drop(ui)}, packed(color),
                  text.c_str());
@@ -261,7 +262,7 @@ std::string tooltip(const QuantityField& field, const ShownNumber& shown,
                     const std::optional<std::string>& formula) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
-  if (field.various.empty()) {
+  if (field.various.empty() && field.law.empty()) {
     constexpr double degrees = 180 / std::numbers::pi;
     std::string exact = with_unit(number_text(shown.value), shown.unit.text);
     if (const std::string own = written_unit(field.unit); shown.unit.text != own)
@@ -308,7 +309,7 @@ void scrub_label(Session& session, Ui& ui, const std::string& label, const Quant
   const std::string name = field.name + "/label";
   ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
   note_widget(ui.widgets, name, KeyUse::none); // the field does all of it
-  const bool active = ImGui::IsItemActive(), draggable = field.various.empty();
+  const bool active = ImGui::IsItemActive(), draggable = field.various.empty() && field.law.empty();
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   const ShownNumber shown(session, field);

@@ -23,6 +23,7 @@ struct QuantityField {
   std::string expression{};          // where its expression is kept, if it has no address
   std::function<void(double)> set{}; // an edit; if empty, of the number at the address
   std::string various{};             // shown instead of the value: several parts differ
+  std::string law{};                 // likewise: an expression of the state, which has no value by itself
   bool standard = false;             // the value stands for an absent one: shown faintly
   int axis = -1;                     // 0 to 2: its label ends in x, y or z
   bool framed = true;                // or plain digits to the right until it is pointed at
