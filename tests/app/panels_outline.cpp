@@ -208,11 +208,15 @@ TEST_CASE("while numbers are typed no section opens above them") {
   });
   hand.frames(3);
   const std::string body = hand.app.session.selection().parts.back().name;
+  hand.press_widget("inspector/shapes/0/from/x");
+  hand.frames(2);
   const float before = hand.widget("inspector/shapes section").from.y;
-  edit(hand.app.session, "Skew", [&](Mechanism& m, Selection&) {
-    Body& same = m.bodies[static_cast<std::size_t>(body_index(m, body))];
-    same.inertia = {1, 1, 1, 0.1, 0, 0};
-    same.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  hand.key('A', true);
+  hand.type("0.03"); // skew, as both its products of inertia and its turn tell
+  hand.key(key_enter);
+  edit(hand.app.session, "Turn", [&](Mechanism& m, Selection&) {
+    m.bodies[static_cast<std::size_t>(body_index(m, body))].rotation =
+        Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
   });
   hand.frames(3);
   CHECK(hand.widget("inspector/shapes section").from.y == before);

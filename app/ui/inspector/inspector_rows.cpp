@@ -161,13 +161,17 @@ bool inspector_section(const Session& session, Ui& ui, const std::string& name, 
   if (found != ui.sections.open.end()) {
     now = found->second;
   } else {
-    // While one works on a selection none opens or closes of itself: what is below would move from under the
-    // hand.
+    // What is open stays open while one works in it, even if the last number that opened it goes. None opens
+    // of itself while the hand is in the inspector: what is below would move from under it.
     if (ui.sections.seen_of.parts != session.selection().parts) {
       ui.sections.seen.clear();
       ui.sections.seen_of = session.selection();
     }
-    now = ui.sections.seen.try_emplace(name, open).first->second;
+    const bool first = !ui.sections.seen.contains(name);
+    const bool at_work =
+        ui.keyboard.at.starts_with("inspector/") || ui.fields.typing.name.starts_with("inspector/");
+    bool& seen = ui.sections.seen[name];
+    now = seen = seen || (open && (first || !at_work));
   }
   const bool before = now;
   ImGui::Dummy({0, 2 * ui.scale});
