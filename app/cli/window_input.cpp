@@ -22,6 +22,10 @@ bool only_types(const WindowEvent& event) {
   return is_modifier(event.code) || (!command && event.code < GLFW_KEY_ESCAPE);
 }
 
+bool is_press(const WindowEvent& event) {
+  return event.kind == WindowEvent::Kind::button && event.action == GLFW_PRESS;
+}
+
 // As they are once the event has happened: GLFW tells them as they were before.
 void set_modifiers_after(const WindowEvent& event) {
   const auto down = [&](int left, int right, int bit) {
@@ -70,6 +74,13 @@ void WindowInput::give(const WindowEvent& event, std::vector<KeyPress>& keys) {
 
 void WindowInput::read(std::vector<KeyPress>& keys) {
   button_.reset();
+  if (!events_.empty() && !placed_ && is_press(events_.front())) {
+    // The mouse comes to the place first, where what lies under it is seen, and is pressed then.
+    placed_ = true;
+    button_ = {events_.front().x, events_.front().y};
+    return take_over(keys);
+  }
+  placed_ = false;
   bool typed = false; // a key that does more comes by itself, when what was typed has been taken
   while (!events_.empty()) {
     const WindowEvent event = events_.front();
