@@ -55,6 +55,7 @@ class WindowInput {
   AltTap alt_;
   std::vector<int> held_;         // shown as down for one frame
   std::array<bool, 5> buttons_{}; // down, of what was given
+  bool placed_ = false;           // the mouse is where the next event presses it
   std::optional<std::array<double, 2>>
       button_; // where the last one was pressed or let go, as long as more waits
   std::array<float, 5> mouse_{};

@@ -125,3 +125,22 @@ TEST_CASE("the habits are kept, and the sheet of shortcuts tells them") {
   robot.frames(2);
   CHECK(robot.app.ui.widgets.count("shortcuts/Right drag, middle drag") == 1);
 }
+
+TEST_CASE("how the mouse came to where it is pressed is no drag") {
+  Robot robot;
+  const WidgetRect view = robot.widget("view");
+  robot.point({view.from.x + 20, view.to.y - 20});
+  const ViewCamera before = robot.app.view.camera;
+  for (const int button : {1, 2}) {
+    // Moved and pressed within one frame, as where frames are slow.
+    ImGui::GetIO().MousePos = view.center();
+    ImGui::GetIO().MouseDown[button] = true;
+    robot.frames(1);
+    CHECK(robot.app.view.camera == before);
+    ImGui::GetIO().MouseDown[button] = false;
+    robot.frames(3);
+    CHECK(robot.app.view.camera == before);
+    robot.key(key_escape);
+    robot.point({view.from.x + 20, view.to.y - 20});
+  }
+}

@@ -57,7 +57,8 @@ void steer(const ToolState& tool, ViewState& view, const ViewInput& input) {
   if (input.active && by != Vec2::Zero()) {
     stop_glide(view);
     for (const int button : {ImGuiMouseButton_Middle, ImGuiMouseButton_Right, ImGuiMouseButton_Left}) {
-      if (!ImGui::IsMouseDown(button)) continue;
+      // How the mouse came to where it was pressed is no drag.
+      if (!ImGui::IsMouseDown(button) || ImGui::IsMouseClicked(button)) continue;
       if (button == ImGuiMouseButton_Left && (!input.moved || takes_left_drag(tool, view, input))) break;
       const ImVec2& pressed = io.MouseClickedPos[button];
       drag_camera(

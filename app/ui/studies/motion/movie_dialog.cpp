@@ -189,8 +189,7 @@ void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& 
   movie.of = of;
   if (!shown(session, movie)) return;
   dialog.wanted = Dialog::export_run;
-  std::error_code ignored;
-  show_folder(query_, std::filesystem::current_path(ignored));
+  show_folder(query_, usual_folder(session));
   query_.replacing.clear();
   movie.problem.clear();
   movie.done = false;
