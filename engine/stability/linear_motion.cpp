@@ -128,7 +128,13 @@ Eigen::MatrixXd cyclic_directions(const System& system, const Eigen::MatrixXd& b
   PivotedQr qr;
   if (all.size() == 0 || !(all.cwiseAbs().maxCoeff() > 1e-12) || !qr.compute(all))
     return Eigen::MatrixXd(basis.cols(), 0);
-  return qr.q().leftCols(qr.rank(1e-9)); // loops and gears tie some together
+  Eigen::MatrixXd out(basis.cols(), qr.rank(1e-9)); // loops and gears tie some together
+  for (Eigen::Index i = 0; i < out.cols(); ++i) {
+    Eigen::VectorXd column = Eigen::VectorXd::Unit(basis.cols(), i);
+    qr.apply_q(column, std::min(all.rows(), all.cols()));
+    out.col(i) = column;
+  }
+  return out;
 }
 
 std::optional<Eigen::MatrixXd> basis_beside(const LinearMotion& motion, const Eigen::MatrixXd& reference) {
