@@ -204,6 +204,10 @@ std::vector<double> natural_durations(const Solution& steady, const Mechanism& m
   return out;
 }
 
+// In radians or of the reach: what a motion ends farther away from it has not come to.
+constexpr double comes_near = 1e-2;
+
+// Leaves the message with what there is to say where no motion is one to compare with.
 void find_best(Comparison& c) {
   for (const MotionCurve& curve : c.motion)
     for (const MotionPoint& p : curve.points) {
@@ -211,9 +215,16 @@ void find_best(Comparison& c) {
       c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
     }
   if (!c.best) return;
+  if (c.best->error > comes_near) {
+    c.message += " No motion comes to this steady state: the nearest ends " + rounded_text(c.best->error, 2) +
+                 " (radians, or parts of the reach) from it, after " + rounded_text(c.best->duration, 4) +
+                 " s simulated; it may need longer, or settle in another one.";
+    c.best.reset();
+    return;
+  }
   // The first iteration that comes as near; where a fallback was needed, the answer.
   for (const DirectMark& mark : c.direct)
-    if (mark.error <= c.best->error) {
+    if (mark.iterations > 0 && mark.error <= c.best->error) {
       c.best->direct_s = mark.run_time_s;
       return;
     }
@@ -352,7 +363,11 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
       options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
   if (!measure_motions(mechanism, options, durations, time, direct, steady.neutral, out)) broken_off();
   find_best(out);
-  if (out.complete && !out.best) {
+  const bool any_end = std::ranges::any_of(out.motion, [](const MotionCurve& curve) {
+    return std::ranges::any_of(curve.points,
+                               [](const MotionPoint& p) { return p.status == RunStatus::completed; });
+  });
+  if (out.complete && !any_end) {
     out.complete = false;
     out.message = "No motion went on to its end, so there is nothing to compare with.";
   }

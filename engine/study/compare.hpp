@@ -69,7 +69,7 @@ struct Comparison {
   std::vector<DirectMark> direct;        // by iteration; without the iterations where a fallback was needed
   DirectMark answer;                     // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;
-  std::optional<SpeedRatio> best;
+  std::optional<SpeedRatio> best; // where a motion comes within 0.01 of it; else the message says so
 };
 
 // Throws SceneError for a mechanism that cannot be compiled or has no equations of motion.

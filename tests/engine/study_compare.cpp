@@ -128,6 +128,19 @@ TEST_CASE("errors of measures are those that the coordinates' errors make") {
   CHECK(fine.measure_errors[1] == Approx(1000 * fine.measure_errors[0]).epsilon(1e-6));
 }
 
+TEST_CASE("a motion that does not come to the steady state is no measure of it") {
+  CompareOptions o = quick();
+  o.tolerances = {1e-4};
+  o.durations = {0.05};
+  o.integrators = {Integrator::bdf};
+  const Comparison c = compare(shipped("governor"), o);
+  CHECK(c.complete);
+  REQUIRE(c.motion.size() == 1);
+  CHECK(c.motion[0].points[0].error > 0.1);
+  CHECK_FALSE(c.best);
+  CHECK_THAT(c.message, ContainsSubstring("No motion comes to this steady state: the nearest ends 0."));
+}
+
 TEST_CASE("what is asked for is what is measured") {
   CompareOptions o = quick();
   o.tolerances = {1e-4, 1e-6};

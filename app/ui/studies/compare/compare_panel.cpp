@@ -28,7 +28,8 @@ void found(const Session& session, Ui& ui, const Comparison& c) {
   row(ui, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
       "The reference is the direct solution iterated in extended precision; so far its last correction moved "
       "it.");
-  if (!c.best) return paragraph("No damped motion came to an end.", colors.dim);
+  if (!c.complete || !c.best) paragraph(c.message, colors.warn);
+  if (!c.best) return;
   row(ui, "Motion at its best", duration_text(c.best->motion_s, numbers), "",
       "The run whose end comes nearest to the reference.");
   row(ui, "its error", magnitude_text(c.best->error, numbers), "");
