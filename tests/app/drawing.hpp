@@ -9,7 +9,7 @@ namespace flyball::test {
 
 // One metre in view: the grid's step is 0.05 m.
 struct Drawing : Robot {
-  Drawing() { begin_empty(1); }
+  explicit Drawing(PixelSize in = {900, 600}) : Robot(in) { begin_empty(1); }
 
   const Mechanism& m() const { return app.session.mechanism(); }
   std::size_t steps() const { return app.session.document.position(); }

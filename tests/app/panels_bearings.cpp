@@ -13,7 +13,7 @@ using namespace flyball::test;
 namespace {
 
 struct ShaftInBearings : Drawing {
-  ShaftInBearings() {
+  ShaftInBearings() : Drawing({1280, 900}) {
     have_rod({-0.3, 0, 0}, {0.3, 0, 0});
     for (const double end : {-0.3, 0.3}) {
       choose_nothing();
