@@ -424,9 +424,18 @@ class PhaseSearch {
       if (step.norm() > most) step *= most / step.norm();
       last = step.norm();
       if (!std::isfinite(last)) return {};
-      along += step;
+      const Eigen::VectorXd from = along;
+      const Unknowns at = z;
       const double before = drift->norm();
-      drift = drift_at(along, z);
+      constexpr int most_halvings = 6; // where a step leads to no balance
+      for (int k = 0; k <= most_halvings; ++k) {
+        along = from + step;
+        drift = drift_at(along, z);
+        if (drift) break;
+        z = at;
+        step /= 2;
+        time /= 2;
+      }
       if (drift) time *= std::clamp(before / drift->norm(), 0.5, 10.);
     }
     return {};
