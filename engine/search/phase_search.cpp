@@ -427,7 +427,7 @@ class PhaseSearch {
       const Eigen::VectorXd from = along;
       const Unknowns at = z;
       const double before = drift->norm();
-      constexpr int most_halvings = 6; // where a step leads to no balance
+      constexpr int most_halvings = 3; // where a step leads to no balance
       for (int k = 0; k <= most_halvings; ++k) {
         along = from + step;
         drift = drift_at(along, z);
