@@ -122,7 +122,7 @@ Color load_color(LoadKind kind, const Palette& colors) {
   case LoadKind::reaction: return colors.reaction;
   case LoadKind::drive: return colors.accent;
   case LoadKind::spring: return okabe_ito::green;
-  case LoadKind::damper: return okabe_ito::vermillion;
+  case LoadKind::damper: return rgb(0xE8836B); // a vermillion that is seen on black, too
   case LoadKind::gear: return okabe_ito::purple;
   case LoadKind::weight: return colors.slack;
   case LoadKind::applied: return colors.force;

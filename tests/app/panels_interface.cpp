@@ -226,14 +226,14 @@ TEST_CASE("the tutorial of the README is in Help, without its marks") {
   Robot robot({1280, 800});
   robot.app.commands.run("help.tutorial");
   robot.frames(3);
-  CHECK(robot.app.ui.widgets.contains("tutorial"));
+  CHECK(robot.app.ui.widgets.contains("tutorial/1"));
   const std::string text(tutorial_text());
   CHECK(text.starts_with("1. Ctrl+N begins an empty document"));
   CHECK(std::ranges::count(text, '\n') == 6); // six steps and a word on undoing
   CHECK_THAT(text, ContainsSubstring("=2*L + 5 mm") && !ContainsSubstring("`") && !ContainsSubstring("**"));
   robot.app.commands.run("help.tutorial");
   robot.frames(2);
-  CHECK_FALSE(robot.app.ui.widgets.contains("tutorial"));
+  CHECK_FALSE(robot.app.ui.widgets.contains("tutorial/1"));
   robot.app.commands.run("help.about");
   CHECK_THAT(robot.app.session.notice, ContainsSubstring("Flyball ") && ContainsSubstring("MIT license"));
 }

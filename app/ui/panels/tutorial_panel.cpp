@@ -20,13 +20,14 @@ void TutorialPanel::draw(Ui& ui, const PanelRect& view) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
   if (ImGui::Begin("A governor from nothing", &open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    int line = 0;
     for (std::string_view rest = tutorial_text(); !rest.empty();) {
       const std::size_t end = std::min(rest.find('\n'), rest.size());
       paragraph(std::string(rest.substr(0, end)), colors_of(ui).text);
+      note_widget(ui.widgets, "tutorial/" + std::to_string(++line), KeyUse::none);
       ImGui::Dummy({0, 3 * s});
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
-    note_widget(ui.widgets, "tutorial", KeyUse::none);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);
