@@ -383,8 +383,9 @@ class Binder {
 };
 
 // Of what is drawn at one point: how far slides are from where their springs are slack, stops touch and
-// coordinates are counted from, springs are long, and loads deflect the softest spring; else a radius
-// of gyration, or what bearings tell by their stiffnesses. Zero where nothing tells.
+// coordinates are counted from, springs are long, and loads deflect the softest spring; where no place tells
+// the largest radius of gyration counts, too, or what bearings tell by their stiffnesses. Zero where nothing
+// does.
 double reach_from_one_point(const System& system, const Parameters& p) {
   double far = 0, load = 0, softest = std::numeric_limits<double>::infinity();
   const auto spring_of = [&](double stiffness) {
@@ -410,7 +411,7 @@ double reach_from_one_point(const System& system, const Parameters& p) {
     if (force.type == ForceType::force) load += force.vector.norm();
   double out = std::max(far, load / softest);
   for (const LinkParameters& l : p.links)
-    if (out == 0 && l.mass > 0) out = std::sqrt(l.inertia.norm() / l.mass);
+    if (far == 0 && l.mass > 0) out = std::max(out, std::sqrt(l.inertia.norm() / l.mass));
   for (std::size_t i = 0; i < system.bearings.size() && out == 0; ++i) {
     const auto& stiffness = p.bearings[i].stiffness;
     const double shifts = stiffness.topLeftCorner<3, 3>().norm(),
