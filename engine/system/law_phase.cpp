@@ -132,24 +132,29 @@ bool tells_turns_apart(const DriveLaw& law, const DriveLawParameters& numbers, i
   if (!law.expression || std::ranges::none_of(law.inputs, asked)) return false;
   std::vector<std::size_t> as_they_come(law.inputs.size());
   std::iota(as_they_come.begin(), as_they_come.end(), std::size_t{0});
-  const auto value = [&](double place, double turns) {
+  const auto value = [&](double place, double turns, double others) {
     std::vector<Dual> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
-      inputs.emplace_back(asked(law.inputs[i]) ? place + turns * 2 * std::numbers::pi
-                                               : 1.5 + std::sin(0.7 + 2.3 * static_cast<double>(i)));
+      inputs.emplace_back(asked(law.inputs[i])
+                              ? place + turns * 2 * std::numbers::pi
+                              : others * (1.5 + std::sin(0.7 + 2.3 * static_cast<double>(i))));
     return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come).value;
   };
-  double differs = 0, size = 0;
-  for (const double place : {0.3, 1.4, -0.8, 2.9, -2.2}) {
-    const double here = value(place, 0);
-    size = std::max(size, std::abs(here));
-    for (const double turns : {1., -3.}) {
-      const double there = value(place, turns);
-      if (!std::isfinite(here) || !std::isfinite(there)) return true;
-      differs = std::max(differs, std::abs(there - here));
+  // What a law asks for may begin to matter many turns away, and where the others are large.
+  for (const double others : {1., -1., 0.01, 30., -30., 1e3, -1e3, 1e5}) {
+    double differs = 0, size = 0;
+    for (const double place : {0.3, 1.4, -0.8, 2.9, -2.2}) {
+      const double here = value(place, 0, others);
+      size = std::max(size, std::abs(here));
+      for (const double turns : {1., -3., 10., -30., 100., -300., 1e3, -3e3}) {
+        const double there = value(place, turns, others);
+        if (!std::isfinite(here) || !std::isfinite(there)) return true;
+        differs = std::max(differs, std::abs(there - here));
+      }
     }
+    if (differs > rounding * size) return true;
   }
-  return differs > rounding * size;
+  return false;
 }
 
 } // namespace flyball

@@ -513,6 +513,23 @@ TEST_CASE("whole turns of an angle count that a law asks for", "[torque][places]
   CHECK(std::abs(value(labelled, "a") - 10) < 3);
 }
 
+TEST_CASE("whole turns of an angle count where a law begins to ask for it many turns away",
+          "[torque][places][turns]") {
+  // A winch whose drum stands six turns on: 5 - w / 10 - (40 - 38) = 0.
+  Mechanism m;
+  m.bodies = {body("drum", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("motor", 1, {1, 0, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {revolute("a", "ground", "drum", {0, 0, 0}, {0, 0, 1}),
+              torque_driven(revolute("m", "ground", "motor", {1, 0, 0}, {0, 0, 1}), 5,
+                            "5 N m - 0.1 N m s*rate(m) - 1 N m*max(0, coordinate(a) - 38)")};
+  m.joints[0].coordinates[0].drawn = 40;
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "m"), WithinRel(30, 1e-12));
+  CHECK_THAT(value(s, "a"), WithinRel(40, 1e-12));
+}
+
 TEST_CASE("whole turns of an angle do not count where a law goes on alike", "[torque][places][turns]") {
   Mechanism m;
   m.gravity = {0, -standard_gravity, 0};
