@@ -1,5 +1,6 @@
 #include "app/session/state_words.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/periodic/limit_cycle.hpp"
 #include "engine/solve/solution_difference.hpp"
@@ -45,6 +46,10 @@ std::string window_message(const Solution& solution) {
   std::string text = solution.message;
   if (const std::size_t at = text.find(command); at != std::string::npos)
     text.replace(at, command.size(), own);
+  for (const CoordinateSolution& c : solution.coordinates)
+    if (const std::string name = joint_words(c.joint); c.index == 0 && name != c.joint)
+      for (std::size_t at = text.find(c.joint); at != std::string::npos; at = text.find(c.joint, at + 1))
+        text.replace(at, c.joint.size(), name);
   return text;
 }
 

@@ -15,7 +15,8 @@ const char* reason_text(StabilityReason reason);
 // eigenvalue tells.
 std::string growth_words(const Solution& solution);
 
-// What the engine says of a state; where it names a command of the terminal, the window's own.
+// What the engine says of a state; where it names a command of the terminal, the window's own, and a body
+// that no joint holds by its name.
 std::string window_message(const Solution& solution);
 
 // Whether two lists of coordinates are one state but for rounding: whole turns, and joints in which nothing

@@ -2,6 +2,7 @@
 #include "drawing.hpp"
 
 #include "app/session/coordinate_words.hpp"
+#include "app/session/state_words.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "tests/catch.hpp"
@@ -112,6 +113,13 @@ TEST_CASE("what cannot be driven in its bearings is told so") {
 }
 
 TEST_CASE("coordinates are told in words") {
+  Solution solution;
+  solution.message = "Nothing resists rotor.free and slide; their values are arbitrary.";
+  solution.coordinates.resize(2);
+  solution.coordinates[0].joint = "rotor.free";
+  solution.coordinates[1].joint = "slide";
+  CHECK(window_message(solution) == "Nothing resists rotor and slide; their values are arbitrary.");
+
   CHECK(coordinate_words("slide", 0, 1, false) == "slide");
   CHECK(coordinate_words("rotor.free", 0, 6, false) == "rotor, shift x");
   CHECK(coordinate_words("rotor.free", 5, 6, true) == "rotor, rotation z");
