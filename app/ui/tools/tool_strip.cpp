@@ -39,7 +39,7 @@ constexpr std::array buttons{
     ToolButton{Tool::vane, "tools/vane", "insert.vane"},
 };
 
-constexpr float top = 56, bottom = 92; // points of the view that the caption and the axes need
+constexpr float top = 46, bottom = 102; // points of the view that the caption and the axes need
 constexpr float button_side = 26, strip_pad = 4, group_gap = 7;
 
 // What it is and how to call it, beside the strip.
