@@ -18,7 +18,8 @@ struct BranchState {
   double determinant = 0;  // of the bordered balance, scaled: changes sign at a branch point
 };
 
-// Farther than any mechanism goes: a hundred times its reach, or at a found speed that is followed no further.
+// Farther than any mechanism goes: a hundred times its reach, or at a found speed that is followed no
+// further.
 bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q);
 
 class Continuation {

@@ -1,6 +1,5 @@
 #include "engine/study/input_effect.hpp"
 
-
 namespace flyball {
 namespace {
 

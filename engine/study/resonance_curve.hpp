@@ -55,11 +55,11 @@ struct ResonanceGap {
 std::vector<ResonanceGap> resonance_gaps(const ResonanceCurve& curve);
 
 struct ResonanceOptions {
-  bool logarithmic = false;  // evenly spaced in the number's logarithm; both ends are positive then
-  int coarse = 33;           // points in order over the range, at least 2; then others between them
-  int most = 257;            // in all
-  double tolerance = 0.01;   // how far a point may be off the line through its neighbours, of what an output
-                             // goes through over the range
+  bool logarithmic = false; // evenly spaced in the number's logarithm; both ends are positive then
+  int coarse = 33;          // points in order over the range, at least 2; then others between them
+  int most = 257;           // in all
+  double tolerance = 0.01;  // how far a point may be off the line through its neighbours, of what an output
+                            // goes through over the range
   // Of the equations of motion, of all points together: then no other point is begun.
   long most_evaluations = std::numeric_limits<long>::max();
   const std::atomic<bool>* cancel = nullptr; // the point under way is dropped, those before stay

@@ -5,7 +5,6 @@
 #include "engine/system/parameters.hpp"
 #include "engine/system/spatial.hpp"
 
-
 namespace flyball {
 
 // Of one link, world axes, positions from Parameters::origin. Gravity is carried as a fictitious acceleration

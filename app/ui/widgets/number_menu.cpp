@@ -108,7 +108,8 @@ std::optional<std::string> formula_of(const Session& session, const QuantityFiel
 
 void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked) {
   const std::string& place = place_of(field);
-  if (place.empty() || !field.various.empty() || !field.law.empty() || field.name.starts_with("parameters/")) return;
+  if (place.empty() || !field.various.empty() || !field.law.empty() || field.name.starts_with("parameters/"))
+    return;
   ImGui::PushID(field.name.c_str());
   if (asked || takes_menu_key(ui, field.name)) ImGui::OpenPopup("number");
   if (ImGui::BeginPopup("number")) {
