@@ -198,8 +198,12 @@ class Diagram {
     };
     const auto way = [&](const TurnedState& next) {
       const Problem problem = follower_.problem_at(points.back().parameter);
+      Eigen::VectorXd turned = next.starts - state.starts;
+      for (std::size_t l = 0; l < problem.system.links.size(); ++l)
+        if (problem.system.links[l].type == LinkType::prismatic)
+          turned[static_cast<Eigen::Index>(l)] /= problem.parameters.length;
       return std::max(scaled_difference(problem, state.z.q, next.z.q).lpNorm<Eigen::Infinity>(),
-                      (next.starts - state.starts).lpNorm<Eigen::Infinity>());
+                      turned.lpNorm<Eigen::Infinity>());
     };
     add(from_, state);
     double at = from_, step = first * range;

@@ -221,8 +221,9 @@ std::string open_loop_message(const ReportInput& in) {
     text += "; the joints marked with \"cut\" were left as marked";
   text += ".";
   if (turns)
-    text += " Its loop could turn with the drives, what springs hold at rest in it; a state in which that "
-            "is twisted and gears on a bearing beside it turn is not solved for. A motion shows it.";
+    text +=
+        " Its loop could turn with the drives, what springs hold at rest in it twisted; no such state was "
+        "found. A motion shows whether there is one.";
   return text;
 }
 

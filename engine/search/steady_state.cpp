@@ -284,6 +284,7 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
 
 SteadyState::Answer SteadyState::replace(const Problem& problem, Found candidate) {
   Answer before{std::exchange(found, std::move(candidate)),
+                phases,
                 existence,
                 error,
                 std::exchange(stability, std::nullopt),
@@ -296,6 +297,7 @@ SteadyState::Answer SteadyState::replace(const Problem& problem, Found candidate
 
 void SteadyState::put_back(Answer answer) {
   found = std::move(answer.found);
+  phases = std::move(answer.phases);
   existence = std::move(answer.existence);
   error = std::move(answer.error);
   stability = std::move(answer.stability);

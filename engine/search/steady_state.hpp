@@ -81,6 +81,7 @@ class SteadyState {
   // An answer with what was computed of it.
   struct Answer {
     Found found;
+    std::vector<double> phases;
     Existence existence;
     ErrorEstimate error;
     std::optional<Stability> stability;
