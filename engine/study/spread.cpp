@@ -83,6 +83,7 @@ SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Toleran
         "followed to samples.";
     return out;
   }
+  constexpr double rounding = 1e-13; // of the nominal value
   const Eigen::MatrixXd& rates = sampler.rates();
   for (Eigen::Index k = 0; k < rates.rows(); ++k) {
     const SpreadName& named = outputs[static_cast<std::size_t>(k)];
@@ -97,8 +98,9 @@ SpreadAnswer spread_by_rates(const Mechanism& mechanism, std::span<const Toleran
       output.linear_shares.push_back(by * by);
       variance += by * by;
     }
+    const double least = rounding * std::abs(output.nominal);
     for (double& share : output.linear_shares)
-      share = variance > 0 ? share / variance : 0;
+      share = variance > least * least ? share / variance : 0;
     output.linear_deviation = std::sqrt(variance);
     out.outputs.push_back(std::move(output));
   }

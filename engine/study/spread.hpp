@@ -62,7 +62,7 @@ struct SpreadOutput {
   SpreadStatistics followed;  // of samples that followed, stable or not
   SpreadStatistics elsewhere; // of those on another branch
   // By the rates at the nominal state, to first order: standard deviation, and of its square the share of
-  // each tolerance.
+  // each tolerance, 0 where it is rounding.
   double linear_deviation = 0;
   std::vector<double> linear_shares;
   // The same by the samples that followed: squares of the standardised regression coefficients. What they

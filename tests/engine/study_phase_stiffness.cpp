@@ -522,6 +522,7 @@ TEST_CASE("studies over the coupling of a motor and its load", "[phase][coupling
                             : output.name == "apart" ? 0.5 * (apart(9.999) - apart(10.001)) / 0.002
                                                      : 0;
     CHECK_THAT(output.linear_deviation, WithinAbs(expected, 1e-9));
+    CHECK(output.linear_shares.at(0) == (expected > 0 ? 1 : 0));
   }
   CHECK(std::ranges::count(scatter.fate, SampleFate::followed) == 50);
   const std::vector<FreeNumber> free{{number, 5, 20}};
