@@ -172,7 +172,7 @@ class PhaseSearch {
     return Eigen::MatrixXd(squares.vectors().leftCols(rows.isZero(0) ? found_ : closed));
   }
 
-  // V and h.
+  // V, M and h.
   bool find_directions() {
     const auto m = static_cast<Eigen::Index>(links_.size());
     const Eigen::Index n = given_.system.nv + given_.system.rows;
@@ -198,9 +198,10 @@ class PhaseSearch {
     while (rank < parts->values.size() && parts->values[rank] > counts * parts->values[0])
       ++rank;
     directions_ = closed_ * parts->right.leftCols(rank);
-    const auto given = least_squares_columns(by_found * directions_, by_angles.rightCols(m - found_));
-    if (!given) return false;
-    of_given_ = given->transpose();
+    const auto rates = least_squares_columns(by_found * directions_, by_angles);
+    if (!rates) return false;
+    of_found_ = rates->leftCols(found_);
+    of_given_ = rates->rightCols(m - found_).transpose();
     drift_ = Eigen::VectorXd::Zero(rank);
     for (Eigen::Index i = found_; i < m; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -216,7 +217,8 @@ class PhaseSearch {
     const Eigen::VectorXd per_unit =
         Eigen::Map<const Eigen::VectorXd>(units_.data(), static_cast<Eigen::Index>(units_.size()))
             .cwiseInverse();
-    out.of_found = per_unit.head(found_).asDiagonal() * directions_;
+    out.along = per_unit.head(found_).cwiseInverse().asDiagonal() * directions_;
+    out.of_found = per_unit.head(found_).asDiagonal() * of_found_.transpose();
     out.of_given = per_unit.tail(per_unit.size() - found_).asDiagonal() * of_given_;
     return out;
   }
@@ -252,12 +254,11 @@ class PhaseSearch {
     double fastest = 0;
     for (Eigen::Index i = 0; i < found_; ++i) {
       const int v = given_.system.links[links_[static_cast<std::size_t>(i)]].v;
-      by_speeds.col(v) =
-          directions_.row(i).transpose() * given_.scaling.column[v] / units_[static_cast<std::size_t>(i)];
+      by_speeds.col(v) = of_found_.col(i) * given_.scaling.column[v] / units_[static_cast<std::size_t>(i)];
       fastest = std::max(fastest, std::abs(speed(i, z.q)));
     }
     if (!(fastest > 0)) return false;
-    const Eigen::VectorXd apart = directions_ * (directions_.transpose() * speeds_of(z.q) + drift_);
+    const Eigen::VectorXd apart = directions_ * drift_of(z.q);
     for (Eigen::Index i = 0; i < found_; ++i)
       z.q[given_.system.links[links_[static_cast<std::size_t>(i)]].q] -=
           apart[i] * units_[static_cast<std::size_t>(i)];
@@ -279,7 +280,7 @@ class PhaseSearch {
         all.col(n + rows + k).head(n + rows) = slope(directions_ * along, directions_.col(k), z.lambda);
       q_ = q;
       Eigen::VectorXd rhs(n + rows + count);
-      rhs << -left, -(directions_.transpose() * speeds_of(z.q) + drift_) / fastest;
+      rhs << -left, -drift_of(z.q) / fastest;
       if (!all.allFinite() || !rhs.allFinite()) return false;
       const auto step = least_squares(all, rhs);
       if (!step || !step->allFinite()) return false;
@@ -335,11 +336,14 @@ class PhaseSearch {
     return out;
   }
 
-  // V^T w + h, 1/s, at the balance where the angles are turned so far along V. Nothing where there is none.
+  // M w + h, 1/s.
+  Eigen::VectorXd drift_of(const Eigen::VectorXd& q) const { return of_found_ * speeds_of(q) + drift_; }
+
+  // At the balance where the angles are turned so far along V. Nothing where there is none.
   std::optional<Eigen::VectorXd> drift_at(const Eigen::VectorXd& along, Unknowns& z) {
     turn(directions_ * along);
     if (!balance(z)) return {};
-    return directions_.transpose() * speeds_of(z.q) + drift_;
+    return drift_of(z.q);
   }
 
   // That are found, over their units.
@@ -469,6 +473,7 @@ class PhaseSearch {
   std::vector<double> units_;      // of links_: 1 rad, or the reach
   Eigen::MatrixXd closed_;         // angles along which what is tied by rates stays closed
   Eigen::MatrixXd directions_;     // V, among these
+  Eigen::MatrixXd of_found_;       // M, by speeds over their units
   Eigen::MatrixXd of_given_;       // h by the speeds of the others, over their units
   Eigen::VectorXd drift_;          // h, 1/s
   Linearization linearization_;

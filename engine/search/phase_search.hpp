@@ -1,10 +1,11 @@
 // Steady states in which what turns at speeds that are found stands at another angle than drawn: two shafts
 // that a spring ties, or that close a loop through one, turn alike, the one some way behind the other.
 //
-// Angles along which the balance or the loops change cannot drift as the drives turn on. With V a basis of
-// these, along which gears and what else is tied by rates stay closed, and w the speeds, V^T w + h = 0, h
-// what drives at given speeds do; that is as many equations as there are angles along V, and Newton-Raphson
-// solves them by these, the speeds being those of the balance there.
+// Angles along which the balance or the loops change cannot drift as the drives turn on. With E what they
+// change by the angles that are found, V a basis of these along which gears and what else is tied by rates
+// stay closed, M = (E V)^+ E, and w the speeds, M w + h = 0, h what drives at given speeds do; that is as
+// many equations as there are angles along V, and Newton-Raphson solves them by these, the speeds being those
+// of the balance there.
 #pragma once
 
 #include "engine/solve/newton.hpp"
@@ -14,10 +15,11 @@
 
 namespace flyball {
 
-// V and h: of what turns at speeds that are found, and h by the speeds of other drives.
+// Of what turns at speeds that are found, and h by the speeds of other drives.
 struct AngleTies {
   std::vector<int> found, given; // links
-  Eigen::MatrixXd of_found;      // V (found, ties)
+  Eigen::MatrixXd along;         // V (found, ties): rad or m
+  Eigen::MatrixXd of_found;      // M^T (found, ties)
   Eigen::MatrixXd of_given;      // (given, ties); both in 1/rad, or 1/m
 };
 

@@ -46,14 +46,14 @@ std::vector<TurnedRate> turned_rates(const Problem& problem, const Unknowns& z, 
   BalanceRate balance;
   const NumberRates none;
   const auto links = static_cast<Eigen::Index>(system.links.size());
-  // Links along V, of 1/rad or 1/m there.
+  // Links along V.
   Eigen::MatrixXd along = Eigen::MatrixXd::Zero(links, count);
   double fastest = 0;
   for (std::size_t i = 0; i < ties.found.size(); ++i) {
     const auto link = static_cast<std::size_t>(ties.found[i]);
     const Eigen::VectorXd tie = ties.of_found.row(static_cast<Eigen::Index>(i)).transpose();
     const double unit = system.links[link].type == LinkType::revolute ? 1 : problem.parameters.length;
-    along.row(ties.found[i]) = unit * unit * tie.transpose();
+    along.row(ties.found[i]) = ties.along.row(static_cast<Eigen::Index>(i));
     const int v = system.links[link].v;
     fastest = std::max(fastest, std::abs(z.q[system.links[link].q]) / unit);
     all.block(n + rows, v, count, 1) = tie * column[v];

@@ -1,7 +1,7 @@
 // How a steady state that stands turned (phase_search.hpp) moves with a number p of the mechanism. With F its
 // balance and loops and a the angles along V,
 //
-//     F_z dz/dp + F_a da/dp = -F_p,    V^T dw/dp = -dh/dp
+//     F_z dz/dp + F_a da/dp = -F_p,    M dw/dp = -dh/dp
 //
 // V as it is: numbers that tie the angles otherwise, as a gear's ratio does, change it.
 #pragma once

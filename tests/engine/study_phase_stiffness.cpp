@@ -362,6 +362,41 @@ TEST_CASE("two shafts whose speeds by themselves are of no balance turn together
   CHECK(s.stable == true);
 }
 
+TEST_CASE("a planetary set drives a load through a coupling, its sun by a torque or at the speed that gives",
+          "[phase][coupling]") {
+  Mechanism m;
+  m.bodies = {body("sun", 1, {0, 0, 0}, {0.15, 0.15, 0.3}), body("carrier", 1, {0, 0, 0}, {0.15, 0.15, 0.3}),
+              body("planet", 0, {0.9, 0, 0}, {0.015, 0.015, 0.03}),
+              body("ring", 1, {0, 0, 0}, {0.15, 0.15, 0.3}), body("load", 1, {0, 0, 0.5}, {0.15, 0.15, 0.3})};
+  m.joints = {
+      torque_driven(hinge("sun", "ground", "sun"), 6, "5 N m - 0.3 N m s * rate(sun)"),
+      torque_driven(hinge("carrier", "ground", "carrier"), 2, "5 N m - 1 N m s * rate(carrier)"),
+      hinge("sc", "carrier", "sun"),
+      revolute("planet", "carrier", "planet", {0.9, 0, 0}, {0, 0, 1}),
+      hinge("rc", "carrier", "ring"),
+      torque_driven(hinge("ring", "ground", "ring"), 2, "-0.1 N m s * rate(ring)"),
+      torque_driven(revolute("load", "ground", "load", {0, 0, 0.5}, {0, 0, 1}), 5, "-0.2 N m s * rate(load)"),
+      dampened(sprung(revolute("cp", "ring", "load", {0, 0, 0.5}, {0, 0, 1}), 10), 0.1),
+      gear("in", "sc", "planet", -1.25),
+      gear("out", "planet", "rc", 4. / 13)};
+  validate(m);
+  const Solution by_torque = Analysis(m).solve();
+  INFO(by_torque.message);
+  REQUIRE(by_torque.status == Status::converged);
+  const double ring = speed(by_torque, "ring"), coupled = value(by_torque, "cp");
+  CHECK_THAT(speed(by_torque, "load"), WithinRel(ring, 1e-11));
+  CHECK_THAT(coupled, WithinRel(-0.2 * ring / 10, 1e-9));
+  Mechanism given = m;
+  given.joints[0] = driven(hinge("sun", "ground", "sun"), speed(by_torque, "sun"));
+  validate(given);
+  const Solution at_speed = Analysis(given).solve();
+  INFO(at_speed.message);
+  REQUIRE(at_speed.status == Status::converged);
+  for (const char* shaft : {"carrier", "ring", "load"})
+    CHECK_THAT(speed(at_speed, shaft), WithinRel(speed(by_torque, shaft), 1e-9));
+  CHECK_THAT(value(at_speed, "cp"), WithinRel(coupled, 1e-9));
+}
+
 TEST_CASE("two shafts with play between them turn together against its flank", "[phase][coupling]") {
   const double play = 0.1, stiffness = 1000;
   Mechanism m;
