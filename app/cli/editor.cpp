@@ -73,10 +73,8 @@ void type_character(GLFWwindow* window, unsigned character) {
 
 void press_button(GLFWwindow* window, int button, int action, int modifiers) {
   stir(window);
-  WindowEvent event{
-      .kind = WindowEvent::Kind::button, .code = button, .action = action, .modifiers = modifiers};
-  glfwGetCursorPos(window, &event.x, &event.y);
-  desk_of(window).input->note(event);
+  desk_of(window).input->note(
+      {.kind = WindowEvent::Kind::button, .code = button, .action = action, .modifiers = modifiers});
 }
 
 void turn_wheel(GLFWwindow* window, double x, double y) {
@@ -84,11 +82,9 @@ void turn_wheel(GLFWwindow* window, double x, double y) {
   ImGui_ImplGlfw_ScrollCallback(window, x, y);
 }
 
-void move_cursor(GLFWwindow* window, [[maybe_unused]] double x, [[maybe_unused]] double y) {
+void move_cursor(GLFWwindow* window, double x, double y) {
   stir(window);
-#if IMGUI_VERSION_NUM >= 18700
-  ImGui_ImplGlfw_CursorPosCallback(window, x, y);
-#endif
+  desk_of(window).input->move_to(x, y);
 }
 
 void enter_window(GLFWwindow* window, int entered) {

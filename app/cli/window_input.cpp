@@ -26,6 +26,13 @@ bool is_press(const WindowEvent& event) {
   return event.kind == WindowEvent::Kind::button && event.action == GLFW_PRESS;
 }
 
+// Before 1.87 Dear ImGui asks for the present place in every frame.
+void place_mouse([[maybe_unused]] GLFWwindow* window, [[maybe_unused]] double x, [[maybe_unused]] double y) {
+#if IMGUI_VERSION_NUM >= 18700
+  ImGui_ImplGlfw_CursorPosCallback(window, x, y);
+#endif
+}
+
 // As they are once the event has happened: GLFW tells them as they were before.
 void set_modifiers_after(const WindowEvent& event) {
   const auto down = [&](int left, int right, int bit) {
@@ -41,10 +48,20 @@ void set_modifiers_after(const WindowEvent& event) {
 
 WindowInput::WindowInput(const Window& window) : window_(window) {
   ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
+  glfwGetCursorPos(window.handle(), &cursor_[0], &cursor_[1]);
 }
 
 WindowInput::~WindowInput() {
   ImGui_ImplGlfw_Shutdown();
+}
+
+void WindowInput::note(WindowEvent event) {
+  // Of a key that is held while more waits: Dear ImGui repeats by a clock of its own, and text comes as
+  // characters.
+  if (event.kind == WindowEvent::Kind::key && event.action == GLFW_REPEAT && pending()) return;
+  event.x = cursor_[0];
+  event.y = cursor_[1];
+  events_.push_back(event);
 }
 
 void WindowInput::give(const WindowEvent& event, std::vector<KeyPress>& keys) {
@@ -63,6 +80,7 @@ void WindowInput::give(const WindowEvent& event, std::vector<KeyPress>& keys) {
     if (const auto press = typed_sign(event.character)) keys.push_back(*press);
     break;
   case WindowEvent::Kind::button:
+    place_mouse(window, event.x, event.y);
     ImGui_ImplGlfw_MouseButtonCallback(window, event.code, event.action, event.modifiers);
     alt_.disturb();
     if (event.code >= 0 && event.code < static_cast<int>(buttons_.size()))
@@ -101,13 +119,14 @@ void WindowInput::rest() {
 // The interface counts in pixels; on some desktops the mouse counts in points. `keys` went down since the
 // last frame: Dear ImGui 1.86 would not see one that is up again by now.
 void WindowInput::take_over(const std::vector<KeyPress>& keys) {
+  const auto [x, y] = button_.value_or(cursor_);
+  place_mouse(window_.handle(), x, y);
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
   if constexpr (!imgui_compat::queues_events) { // else they come in their order by themselves
     for (std::size_t i = 0; i < buttons_.size(); ++i)
       io.MouseDown[i] = buttons_[i];
-    if (button_ && !events_.empty())
-      io.MousePos = {static_cast<float>((*button_)[0]), static_cast<float>((*button_)[1])};
+    if (button_) io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
   }
   hold(keys);
   look(keys);

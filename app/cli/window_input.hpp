@@ -18,7 +18,7 @@ struct WindowEvent {
   Kind kind = Kind::key;
   int code = 0, scancode = 0, action = 0, modifiers = 0;
   unsigned character = 0;
-  double x = 0, y = 0; // of the mouse, in the window's coordinates
+  double x = 0, y = 0; // of a button: where the mouse was, in the window's coordinates
 };
 
 class WindowInput {
@@ -29,7 +29,9 @@ class WindowInput {
   WindowInput(const WindowInput&) = delete;
   WindowInput& operator=(const WindowInput&) = delete;
 
-  void note(const WindowEvent& event) { events_.push_back(event); }
+  void note(WindowEvent event);
+  // The mouse has come to a place, in the window's coordinates.
+  void move_to(double x, double y) { cursor_ = {x, y}; }
   // Whether there is more than one frame could take.
   bool pending() const { return !events_.empty(); }
   // Frames that what one read() gave needs until the next may be read: a field that Tab goes to takes the
@@ -56,8 +58,8 @@ class WindowInput {
   std::vector<int> held_;         // shown as down for one frame
   std::array<bool, 5> buttons_{}; // down, of what was given
   bool placed_ = false;           // the mouse is where the next event presses it
-  std::optional<std::array<double, 2>>
-      button_; // where the last one was pressed or let go, as long as more waits
+  std::array<double, 2> cursor_{};
+  std::optional<std::array<double, 2>> button_; // where one was pressed or let go in the last read()
   std::array<float, 5> mouse_{};
   bool changed_ = false;
 };

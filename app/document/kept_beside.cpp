@@ -1,9 +1,14 @@
 #include "app/document/kept_beside.hpp"
 
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
 
 namespace flyball {
 
@@ -28,6 +33,22 @@ json read_store(const fs::path& state_folder) {
   return json::array();
 }
 
+Explored read_numbers(const json& entry, const char* key) {
+  Explored out;
+  if (const auto numbers = entry.find(key); numbers != entry.end() && numbers->is_object())
+    for (const auto& [address, value] : numbers->items())
+      if (value.is_number()) out.push_back({address, value.get<double>()});
+  return out;
+}
+
+// Nothing where there is none, or an expression gives it.
+std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) try {
+  if (formula_at(mechanism, address)) return {};
+  return get_parameter(mechanism, address);
+} catch (const SceneError&) {
+  return {};
+}
+
 bool is_of(const json& entry, const fs::path& file) {
   if (!entry.is_object()) return false;
   const auto name = entry.find("file");
@@ -36,14 +57,30 @@ bool is_of(const json& entry, const fs::path& file) {
 
 } // namespace
 
+void keep_explored(KeptBeside& kept, const Mechanism& stored, const Explored& explored) {
+  kept.explored = explored;
+  kept.stored.clear();
+  for (const ExploredValue& each : explored)
+    if (const auto beneath = number_at(stored, each.address)) kept.stored.push_back({each.address, *beneath});
+}
+
+Explored still_explored(const KeptBeside& kept, const Mechanism& mechanism) {
+  Explored out;
+  for (const ExploredValue& each : kept.explored) {
+    const auto beneath = std::ranges::find(kept.stored, each.address, &ExploredValue::address);
+    if (beneath != kept.stored.end() && number_at(mechanism, each.address) == beneath->value)
+      out.push_back(each);
+  }
+  return out;
+}
+
 KeptBeside read_beside(const fs::path& state_folder, const fs::path& file) {
   KeptBeside kept;
   if (state_folder.empty() || file.empty()) return kept;
   for (const json& entry : read_store(state_folder)) {
     if (!is_of(entry, file)) continue;
-    if (const auto explored = entry.find("explored"); explored != entry.end() && explored->is_object())
-      for (const auto& [address, value] : explored->items())
-        if (value.is_number()) kept.explored.push_back({address, value.get<double>()});
+    kept.explored = read_numbers(entry, "explored");
+    kept.stored = read_numbers(entry, "stored");
     if (const auto hues = entry.find("colours"); hues != entry.end() && hues->is_object())
       for (const auto& [body, hue] : hues->items())
         if (hue.is_number_unsigned() && hue.get<std::uint64_t>() < body_hue_count * body_shade_count)
@@ -55,23 +92,25 @@ KeptBeside read_beside(const fs::path& state_folder, const fs::path& file) {
 
 void keep_beside(const fs::path& state_folder, const fs::path& file, const KeptBeside& kept) {
   if (state_folder.empty() || file.empty()) return;
-  json store = read_store(state_folder);
+  const json store = read_store(state_folder);
   json left = json::array();
   if (kept != KeptBeside()) {
     json& entry = left.emplace_back(json{{"file", file.string()}});
     for (const ExploredValue& each : kept.explored)
       entry["explored"][each.address] = each.value;
+    for (const ExploredValue& each : kept.stored)
+      entry["stored"][each.address] = each.value;
     for (const auto& [body, hue] : kept.hues)
       entry["colours"][body] = hue;
   }
-  for (json& entry : store)
-    if (left.size() < most_kept_beside && !is_of(entry, file)) left.push_back(std::move(entry));
+  for (const json& entry : store)
+    if (left.size() < most_kept_beside && !is_of(entry, file)) left.push_back(entry);
   if (left == store) return;
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);
   try {
     // A name that is not UTF-8 is kept as one that does not exist.
-    write_bytes(store_in(state_folder), left.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    replace_file(store_in(state_folder), left.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   } catch (const SceneError&) { // a convenience
   }
 }

@@ -11,9 +11,15 @@ namespace flyball {
 
 struct KeptBeside {
   Explored explored;
-  NamedHues hues; // where they are not those that names ask for
+  Explored stored; // the numbers that stood beneath these
+  NamedHues hues;  // where they are not those that names ask for
   bool operator==(const KeptBeside&) const = default;
 };
+
+// What is tried, and what the mechanism has there.
+void keep_explored(KeptBeside& kept, const Mechanism& stored, const Explored& explored);
+// What was tried over the numbers that the mechanism still has; what has become another since counts.
+Explored still_explored(const KeptBeside& kept, const Mechanism& mechanism);
 
 // Nothing where nothing is kept of the file, or what is cannot be read.
 KeptBeside read_beside(const std::filesystem::path& state_folder, const std::filesystem::path& file);

@@ -70,7 +70,7 @@ void keep_beside_now(Session& session) {
   FileState& files = session.files;
   files.until_kept = std::numeric_limits<double>::infinity();
   if (files.beside.explored == session.document.explored() || is_example(session)) return;
-  files.beside.explored = session.document.explored();
+  keep_explored(files.beside, session.document.stored(), session.document.explored());
   keep_beside(session.options.state, session.document.file(), files.beside);
 }
 

@@ -46,7 +46,7 @@ namespace {
 
 // What was tried when the file was last open stands beside it again.
 void bring_back_explored(Session& session) {
-  const Explored explored = session.files.beside.explored;
+  const Explored explored = still_explored(session.files.beside, session.mechanism());
   if (explored.empty() || is_example(session)) return;
   const std::string step = "Explored last time";
   if (session.mode == Mode::explore) {
@@ -80,6 +80,7 @@ void note_recent(Session& session, const fs::path& file) {
 }
 
 void open_scene(Session& session, const fs::path& file) {
+  keep_beside_now(session); // it may be of the same file
   try {
     const std::string text = read_bytes(file, patience);
     // What comes from a pipe has no file to be saved to.
@@ -111,7 +112,8 @@ std::string save_to(Session& session, const fs::path& file) {
   session.files.aside.clear();
   session.files.autosave.remove();
   if (!session.options.state.empty()) remove_aside(own, session.options.state);
-  session.files.beside = {session.document.explored(), hues_to_keep(session.document)};
+  keep_explored(session.files.beside, session.document.stored(), session.document.explored());
+  session.files.beside.hues = hues_to_keep(session.document);
   keep_beside(session.options.state, own, session.files.beside);
   note_recent(session, own);
   const std::size_t tried = session.document.explored().size();

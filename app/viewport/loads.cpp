@@ -28,6 +28,7 @@ class Collector {
   }
 
   void reactions() {
+    find_acting();
     for (const Reaction& r : solution_.reactions) {
       const auto found = joints_.find(r.joint);
       if (found == joints_.end()) continue;
@@ -197,33 +198,45 @@ class Collector {
     double value = 0; // along it, on the child
     PartId part;
   };
-  // `whole`: of the reaction along it. What drive, spring and gears leave of that is a damper's or
-  // friction's.
-  std::vector<Acting> acting_along(std::size_t j, int index, double whole) const {
-    constexpr double rounding = 1e-9; // of the largest
-    const std::string& name = mechanism_.joints[j].name;
-    const PartId own = part_at(PartKind::joint, j);
-    std::vector<Acting> all;
+  // By joint and coordinate; found once, where reactions are asked for.
+  void find_acting() {
+    acting_.resize(mechanism_.joints.size());
+    const auto add_at = [&](std::size_t j, int index, LoadKind kind, double value, std::size_t of) {
+      acting_[j].push_back({index, {kind, value, part_at(PartKind::joint, of)}});
+    };
     for (const DriveTorque& t : solution_.drive_torques)
-      if (t.joint == name && t.index == index) all.push_back({LoadKind::drive, t.value, own});
+      if (const auto at = joints_.find(t.joint); at != joints_.end())
+        add_at(at->second, t.index, LoadKind::drive, t.value, at->second);
     for (const CoordinateSolution& c : solution_.coordinates)
-      if (c.joint == name && c.index == index) all.push_back({LoadKind::spring, spring_force(c), own});
+      if (const auto at = joints_.find(c.joint); at != joints_.end())
+        add_at(at->second, c.index, LoadKind::spring, spring_force(c), at->second);
     for (const GearReaction& g : solution_.gears) {
       const auto gear = joints_.find(g.joint);
       if (gear == joints_.end()) continue;
       for (const std::size_t end : {0, 1}) {
         const CoordinateReference at =
             find_coordinate(mechanism_, mechanism_.joints[gear->second].joints[end]);
-        if (at.joint == static_cast<int>(j) && at.coordinate == index)
-          all.push_back({LoadKind::gear, end == 0 ? g.a : g.b, part_at(PartKind::joint, gear->second)});
+        if (at.joint >= 0)
+          add_at(static_cast<std::size_t>(at.joint), at.coordinate, LoadKind::gear, end == 0 ? g.a : g.b,
+                 gear->second);
       }
     }
+  }
+
+  // `whole`: of the reaction along it. What drive, spring and gears leave of that is a damper's or
+  // friction's.
+  std::vector<Acting> acting_along(std::size_t j, int index, double whole) const {
+    constexpr double rounding = 1e-9; // of the largest
+    std::vector<Acting> all;
+    for (const auto& [coordinate, each] : acting_[j])
+      if (coordinate == index) all.push_back(each);
     double rest = whole, largest = std::abs(whole);
     for (const Acting& each : all) {
       rest -= each.value;
       largest = std::max(largest, std::abs(each.value));
     }
-    if (std::abs(rest) > rounding * largest) all.push_back({LoadKind::damper, rest, own});
+    if (std::abs(rest) > rounding * largest)
+      all.push_back({LoadKind::damper, rest, part_at(PartKind::joint, j)});
     return all;
   }
 
@@ -272,6 +285,7 @@ class Collector {
   int body_;
   Quat turn_;
   std::unordered_map<std::string_view, std::size_t> joints_;
+  std::vector<std::vector<std::pair<int, Acting>>> acting_;
 };
 
 } // namespace

@@ -174,6 +174,24 @@ TEST_CASE("what was explored stands beside the file again when it is opened, as 
   CHECK_FALSE(robot.shows("explored/keep"));
 }
 
+TEST_CASE("what was explored over a number that has become another since does not come back") {
+  const TemporaryFolder folder;
+  const fs::path file = governor_in(folder);
+  {
+    FileRobot robot(folder);
+    robot.open(file);
+    drag_speed(robot);
+    robot.pass(2);
+  }
+  Mechanism elsewhere = load_scene(file);
+  set_parameter(elsewhere, speed, 20);
+  write_bytes(file, write_scene(elsewhere));
+  FileRobot robot(folder);
+  robot.open(file);
+  CHECK(robot.speed_now() == 20);
+  CHECK_FALSE(robot.shows("explored/keep"));
+}
+
 TEST_CASE("a body that was renamed has its colour again when the file is opened") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder);

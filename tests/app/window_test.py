@@ -165,6 +165,17 @@ def type_ahead(window, scene):
     window.click("outline/bodies/ball1")
     window.click("inspector/position/x")
     window.wait("a field", lambda s: s["typing"] == "inspector/position/x")
+    # A button is pressed where the mouse was then, wherever it has gone since.
+    rows = [[str(number) for number in window.place(f"outline/bodies/{body}")] for body in ("ball2", "collar")]
+    window.hurry(["mousemove", *rows[0]], ["click", "1"], ["mousemove", *rows[1]])
+    window.wait("the row that was clicked", lambda s: s["selected"] == "ball2")
+    time.sleep(0.5)
+    if window.state()["selected"] != "ball2":
+        raise SystemExit(f"clicked ahead, {window.state()['selected']} is selected")
+    window.click("outline/bodies/ball1")
+    window.wait("the ball", lambda s: s["selected"] == "ball1")
+    window.click("inspector/position/x")
+    window.wait("the field again", lambda s: s["typing"] == "inspector/position/x")
     window.hurry(["key", "ctrl+a"], ["type", "0.31"], ["key", "Tab"], ["type", "0.12"], ["key", "Tab"],
                  ["key", "ctrl+a"], ["type", "0.05"], ["key", "Return"])
     window.wait("the fields are left", lambda s: s["unsaved"] and not s["typing"])
