@@ -127,10 +127,12 @@ std::string first_address(const Session& session, std::size_t axis) {
   if (!found.empty()) return found;
   const Mechanism& mechanism = session.mechanism();
   for (int i = 0; i < 3; ++i)
-    if (const std::string g = "gravity." + std::to_string(i); mechanism.gravity[i] != 0 && g != other)
+    if (const std::string g = "gravity." + std::to_string(i);
+        mechanism.gravity[i] != 0 && g != other && control_of(session, g))
       return g;
   for (const Body& body : mechanism.bodies)
-    if (const std::string mass = "bodies." + body.name + ".mass"; mass != other) found = mass;
+    if (const std::string mass = "bodies." + body.name + ".mass"; mass != other && control_of(session, mass))
+      found = mass;
   return found;
 }
 
