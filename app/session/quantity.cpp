@@ -33,29 +33,6 @@ std::string quoted(std::string_view text) {
   return "“" + std::string(text) + "”";
 }
 
-// Signs that look alike or are nicer than those on a keyboard.
-std::string plain_signs(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 11> signs{{{"²", "^2"},
-                                                                                 {"³", "^3"},
-                                                                                 {"·", "*"},
-                                                                                 {"⋅", "*"},
-                                                                                 {"×", "*"},
-                                                                                 {"÷", "/"},
-                                                                                 {"−", "-"},
-                                                                                 {"π", "pi"},
-                                                                                 {"μ", "µ"},
-                                                                                 {"\u00A0", " "},
-                                                                                 {"\t", " "}}};
-  std::string plain;
-  while (!text.empty()) {
-    const auto* found =
-        std::ranges::find_if(signs, [&](const auto& sign) { return text.starts_with(sign.first); });
-    plain += found == signs.end() ? text.substr(0, 1) : found->second;
-    text.remove_prefix(found == signs.end() ? 1 : found->first.size());
-  }
-  return plain;
-}
-
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -338,6 +315,28 @@ bool fits(const Dimension& value, const Dimension& field) {
 }
 
 } // namespace
+
+std::string plain_signs(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 11> signs{{{"²", "^2"},
+                                                                                 {"³", "^3"},
+                                                                                 {"·", "*"},
+                                                                                 {"⋅", "*"},
+                                                                                 {"×", "*"},
+                                                                                 {"÷", "/"},
+                                                                                 {"−", "-"},
+                                                                                 {"π", "pi"},
+                                                                                 {"μ", "µ"},
+                                                                                 {"\u00A0", " "},
+                                                                                 {"\t", " "}}};
+  std::string plain;
+  while (!text.empty()) {
+    const auto* found =
+        std::ranges::find_if(signs, [&](const auto& sign) { return text.starts_with(sign.first); });
+    plain += found == signs.end() ? text.substr(0, 1) : found->second;
+    text.remove_prefix(found == signs.end() ? 1 : found->first.size());
+  }
+  return plain;
+}
 
 Quantity parse_quantity(std::string_view text, std::string_view unit) {
   return parse_quantity(text, unit, unit);

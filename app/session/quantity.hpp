@@ -22,6 +22,9 @@ Quantity parse_quantity(std::string_view text, std::string_view unit);
 // The same of a field that is shown in another unit than its value has: a plain number is in `shown`.
 Quantity parse_quantity(std::string_view text, std::string_view unit, std::string_view shown);
 
+// Signs that look alike or are nicer than those on a keyboard ("m²", "·", "π") as these.
+std::string plain_signs(std::string_view text);
+
 // "a length, e.g. 0.1 m or 100 mm": what a field of this unit expects.
 std::string expected_quantity(std::string_view unit);
 

@@ -21,7 +21,7 @@ std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
   std::string out = " The linearised motion turns with the drives: in a period of " +
                     rounded_text(f.period, 4) + " s its largest multiplier is " +
                     rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
-  if (stable == true && f.growth.front() > -1e-9 / f.period)
+  if (stable == true && !f.growth.empty() && f.growth.front() > -1e-9 / f.period)
     out += " Motions beside the state neither grow nor die out.";
   else if (!stable)
     out += " That is too close to 1 to tell.";

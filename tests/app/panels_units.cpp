@@ -222,6 +222,8 @@ TEST_CASE("an expression of numbers alone is in the unit of its field") {
   CHECK(collar().position.x() == Approx(0.05).epsilon(1e-14));
   enter("inspector/position/x", "=0.02 m");
   CHECK(collar().position.x() == 0.02);
+  enter("inspector/inertia/xx", "=0.25 kg m²"); // as units are shown
+  CHECK(collar().inertia[0] == 0.25);
   select(app.session, {{{PartKind::joint, "spin"}}});
   robot.frames(3);
   enter("inspector/drive/speed", "=60");

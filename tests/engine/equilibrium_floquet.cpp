@@ -510,3 +510,14 @@ TEST_CASE("branches: ground resonance begins and ends where the multiblade eigen
   for (std::size_t i = 0; i < found.size(); ++i)
     CHECK(found[i] == Approx(wanted[i]).epsilon(0).margin(1e-7));
 }
+
+TEST_CASE("a motion that has died out long before a turn is over is stable", "[floquet]") {
+  const Solution s = solve(stored_case("rotor_that_settles_within_a_turn"));
+  CAPTURE(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  REQUIRE(s.floquet);
+  CHECK(std::abs(s.floquet->multipliers.front()) < 1e-200);
+  for (const double rate : s.floquet->growth)
+    CHECK(std::isfinite(rate));
+}

@@ -80,7 +80,8 @@ bool is_expression(const QuantityField& field, std::string_view text) {
 
 // An expression of numbers alone is in the field's unit, as a number by itself is: "=60" is 60 mm where these
 // are shown.
-std::string with_field_unit(const Session& session, const QuantityField& field, const std::string& text) {
+std::string with_field_unit(const Session& session, const QuantityField& field, const std::string& typed) {
+  const std::string text = plain_signs(typed);
   const std::string shown = shown_unit(field.unit, session.units).text;
   const bool numbers = text.find_first_not_of("0123456789.eE+-*/^() ") == std::string::npos &&
                        text.find_first_of("0123456789") != std::string::npos;
@@ -91,7 +92,7 @@ std::string with_field_unit(const Session& session, const QuantityField& field, 
   const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ') + 1;
   const std::string trimmed = text.substr(begin, end - begin);
   const bool single = trimmed.find_first_not_of("0123456789.") == std::string::npos;
-  return (single ? trimmed : "(" + trimmed + ")*1") + " " + unit;
+  return (single ? trimmed : "(" + trimmed + ")*1") + " " + plain_signs(unit);
 }
 
 // What a typed expression does; a point's name alone gives all three numbers of a vector.
