@@ -152,6 +152,9 @@ void find_design(Session& session) {
   ResponseDesign& wanted = session.study.response.design;
   const std::optional<ResponseRequest> of = response_wanted(session);
   std::optional<DesignGoal> goal = design_goal(session);
+  // Where there is no state now there is no torque to offer: what was asked for is asked for still.
+  if (const auto& asked = wanted.answer.asked; !goal && asked && asked->goal.key == wanted.coordinate)
+    goal = asked->goal;
   if (!of || !goal) return;
   // The same question about a mechanism that is being changed: every answer is worth seeing.
   const auto& found = wanted.answer.found;
