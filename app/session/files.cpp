@@ -59,8 +59,8 @@ void bring_back_explored(Session& session) {
   }
   if (!session.document.explored().empty())
     session.notice =
-        "Values that were explored last time are back: in Build, Keep makes them part of the document and "
-        "Back leaves them.";
+        "Values that were explored last time are back: Keep makes them part of the document, Back "
+        "leaves them.";
 }
 
 // Those that the bodies' names do not ask for.
