@@ -25,7 +25,6 @@
 
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -33,17 +32,6 @@ using Catch::Matchers::WithinRel;
 using Complex = std::complex<double>;
 
 namespace {
-
-// A mechanism with the torque of its drive "spin" by this law.
-Mechanism with_torque(Mechanism m, const std::string& law) {
-  for (Joint& joint : m.joints) {
-    if (joint.name != "spin") continue;
-    joint.coordinates[0].drive->torque = 0;
-    std::erase_if(joint.formulas, [](const Formula& f) { return f.key == "drive.torque"; });
-    joint.formulas.push_back({"drive.torque", law});
-  }
-  return m;
-}
 
 // Haug's governor with engine; its collar's coordinate is 0.2 m less its height. "top" is on the shaft's
 // axis, "aside" is not.
@@ -479,69 +467,6 @@ TEST_CASE("a slow start is not answered beyond the toggle of a governor", "[torq
     CHECK_THAT(speed(s, "spin"), WithinRel(8.52988846, 1e-8)); // where the motion settles
     CHECK(std::abs(value(s, "slide") + 0.01540045) < 1e-8);
   }
-}
-
-TEST_CASE("whole turns of an angle count that a law asks for", "[torque][places][turns]") {
-  // w = 5 - a / 10, and the pendulum's balance by it.
-  Mechanism m;
-  m.gravity = {0, -standard_gravity, 0};
-  m.bodies = {body("h", 1, {0, 0, 0}, {0.3, 0.4, 0.3}), body("b", 1, {0.1, -0.3, 0}, {0.001, 0.001, 0.001})};
-  m.joints = {driven(revolute("spin", "ground", "h", {0, 0, 0}, {0, 1, 0}), 5),
-              dampened(revolute("a", "h", "b", {0.05, 0, 0}, {0, 0, 1}), 0.2)};
-  m = with_torque(m, "5 N m - 1 N m s*rate(spin) - 0.1 N m*coordinate(a)");
-  m.measures.push_back({"law", "", "5 N m - 1 N m s*rate(spin) - 0.1 N m*coordinate(a)", "N m"});
-  validate(m);
-  for (const double start : {0.1, 6.3, 20., -40.}) {
-    CAPTURE(start);
-    SolveOptions options;
-    options.start = {{"a", start}};
-    const Solution s = Analysis(m).solve(options);
-    REQUIRE(s.status == Status::converged);
-    CHECK(std::abs(5 - speed(s, "spin") - 0.1 * value(s, "a")) < 1e-12);
-    CHECK(std::abs(s.measures.at(0).value.value()) < 1e-12);
-  }
-  const AllSolutions all = Analysis(m).solve_all();
-  CHECK(all.equilibria.size() == 2);
-  for (const Solution& s : all.equilibria) {
-    CHECK(std::abs(5 - speed(s, "spin") - 0.1 * value(s, "a")) < 1e-12);
-    CHECK(coordinate(s, "a").error < 1e-9);
-  }
-  // A label beyond a turn.
-  m.joints[1].coordinates[0].drawn = 10;
-  const Solution labelled = Analysis(m).solve();
-  CHECK(std::abs(5 - speed(labelled, "spin") - 0.1 * value(labelled, "a")) < 1e-12);
-  CHECK(std::abs(value(labelled, "a") - 10) < 3);
-}
-
-TEST_CASE("whole turns of an angle count where a law begins to ask for it many turns away",
-          "[torque][places][turns]") {
-  // A winch whose drum stands six turns on: 5 - w / 10 - (40 - 38) = 0.
-  Mechanism m;
-  m.bodies = {body("drum", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("motor", 1, {1, 0, 0}, {0.1, 0.1, 0.1})};
-  m.joints = {revolute("a", "ground", "drum", {0, 0, 0}, {0, 0, 1}),
-              torque_driven(revolute("m", "ground", "motor", {1, 0, 0}, {0, 0, 1}), 5,
-                            "5 N m - 0.1 N m s*rate(m) - 1 N m*max(0, coordinate(a) - 38)")};
-  m.joints[0].coordinates[0].drawn = 40;
-  validate(m);
-  const Solution s = Analysis(m).solve();
-  INFO(s.message);
-  REQUIRE(s.status == Status::converged);
-  CHECK_THAT(speed(s, "m"), WithinRel(30, 1e-12));
-  CHECK_THAT(value(s, "a"), WithinRel(40, 1e-12));
-}
-
-TEST_CASE("whole turns of an angle do not count where a law goes on alike", "[torque][places][turns]") {
-  Mechanism m;
-  m.gravity = {0, -standard_gravity, 0};
-  m.bodies = {body("h", 1, {0, 0, 0}, {0.3, 0.4, 0.3}), body("b", 1, {0.1, -0.3, 0}, {0.001, 0.001, 0.001})};
-  m.joints = {driven(revolute("spin", "ground", "h", {0, 0, 0}, {0, 1, 0}), 5),
-              dampened(revolute("a", "h", "b", {0.05, 0, 0}, {0, 0, 1}), 0.2)};
-  m = with_torque(m, "5 N m - 1 N m s*rate(spin) - 0.5 N m*sin(coordinate(a))");
-  validate(m);
-  const double drawn = value(Analysis(m).solve(), "a");
-  SolveOptions options;
-  options.start = {{"a", drawn + 2 * std::numbers::pi}};
-  CHECK_THAT(value(Analysis(m).solve(options), "a"), WithinRel(drawn, 1e-9));
 }
 
 TEST_CASE("forces and accelerations are refused in laws", "[torque][places]") {

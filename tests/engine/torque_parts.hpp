@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace flyball::test {
 
@@ -37,6 +38,17 @@ inline Joint torque_driven(Joint j, double guess, const std::string& law, const 
   give("torque", law, drive.torque);
   if (!load.empty()) give("load", load, drive.load);
   return j;
+}
+
+// A mechanism with the torque of its drive "spin" by this law.
+inline Mechanism with_torque(Mechanism m, const std::string& law) {
+  for (Joint& joint : m.joints) {
+    if (joint.name != "spin") continue;
+    joint.coordinates[0].drive->torque = 0;
+    std::erase_if(joint.formulas, [](const Formula& f) { return f.key == "drive.torque"; });
+    joint.formulas.push_back({"drive.torque", law});
+  }
+  return m;
 }
 
 // Haug's governor as two coordinates, its arms' angle a and the spindle's: m(a), J(a), V(a) and the collar's
