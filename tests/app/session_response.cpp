@@ -61,6 +61,15 @@ struct SpareSession : Session {
   }
 };
 
+// Of the drive's speed and the number that nothing uses.
+void open_map(Session& session) {
+  open_study(session, StudyKind::map);
+  session.study.map.choice.axes = {map_axis(session, "joints.spin.drive.speed"),
+                                   map_axis(session, "parameters.spare")};
+  for (MapAxis& axis : session.study.map.choice.axes)
+    axis.count = 3;
+}
+
 } // namespace
 
 TEST_CASE("Session: a curve over a number that an undo has taken away is not gone along") {
@@ -82,11 +91,7 @@ TEST_CASE("Session: a curve over a number that an undo has taken away is not gon
 
 TEST_CASE("Session: a map over a number that is gone goes with it, also while the document has mistakes") {
   SpareSession session;
-  open_study(session, StudyKind::map);
-  session.study.map.choice.axes = {map_axis(session, "joints.spin.drive.speed"),
-                                   map_axis(session, "parameters.spare")};
-  for (MapAxis& axis : session.study.map.choice.axes)
-    axis.count = 3;
+  open_map(session);
   session.study.map.choice.folds = true;
   session.frames();
   REQUIRE(session.study.map.cells.found);
@@ -103,11 +108,7 @@ TEST_CASE("Session: a map over a number that is gone goes with it, also while th
 
 TEST_CASE("Session: a map takes another number where an expression has come to give the one it was over") {
   SpareSession session;
-  open_study(session, StudyKind::map);
-  session.study.map.choice.axes = {map_axis(session, "joints.spin.drive.speed"),
-                                   map_axis(session, "parameters.spare")};
-  for (MapAxis& axis : session.study.map.choice.axes)
-    axis.count = 3;
+  open_map(session);
   session.frames();
   edit(session, "Given", [](Mechanism& m, Selection&) {
     m.parameters.front().formulas = {{"value", "2+2"}};
