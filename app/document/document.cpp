@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace flyball {
 
@@ -19,7 +20,7 @@ bool is_finite(const Explored& explored) {
 
 Document::Document(Mechanism mechanism, std::filesystem::path file, const NamedHues& hues)
     : file_(std::move(file)), saved_(std::make_shared<const Mechanism>(std::move(mechanism))) {
-  steps_.push_back({.name = "Open",
+  steps_.push_back({.name = file_.empty() && saved_->bodies.empty() ? "New" : "Open",
                     .mechanism = saved_,
                     .selection = {},
                     .tried = saved_,
@@ -177,6 +178,29 @@ void Document::mark_saved(std::filesystem::path file) {
   file_ = std::move(file);
   saved_ = steps_[position_].mechanism;
   unsaved_ = false;
+}
+
+bool Document::name_untitled(const std::string& name) {
+  const std::string untitled = empty_mechanism().name;
+  if (stored().name != untitled || name == untitled) return false;
+  std::map<std::shared_ptr<const Mechanism>, std::shared_ptr<const Mechanism>> named; // shared as before
+  const auto give_name = [&](std::shared_ptr<const Mechanism>& mechanism) {
+    if (mechanism->name != untitled) return;
+    std::shared_ptr<const Mechanism>& other = named[mechanism];
+    if (!other) {
+      Mechanism copy = *mechanism;
+      copy.name = name;
+      other = std::make_shared<const Mechanism>(std::move(copy));
+    }
+    mechanism = other;
+  };
+  const std::shared_ptr<const Mechanism> before = now().mechanism;
+  for (Step& step : steps_) {
+    give_name(step.mechanism);
+    give_name(step.tried);
+  }
+  changed(before.get());
+  return true;
 }
 
 void Document::recover(Mechanism mechanism) {

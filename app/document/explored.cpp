@@ -47,7 +47,7 @@ std::string renamed_address(const std::string& address, const Mechanism& before,
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value) {
   const std::optional<double> present = number_at(mechanism, address);
   const auto found = std::ranges::find(explored, address, &ExploredValue::address);
-  if (!present || *present == value) {
+  if (!present || *present == value || formula_at(mechanism, address)) {
     if (found != explored.end()) explored.erase(found);
   } else if (found != explored.end()) {
     found->value = value;

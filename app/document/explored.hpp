@@ -17,7 +17,7 @@ struct ExploredValue {
 using Explored = std::vector<ExploredValue>; // each address once
 
 // With one more number, in its place where the address is there; without the address where the mechanism has
-// this value anyway, or has no such number.
+// this value anyway, an expression gives it, or there is no such number.
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value);
 
 // The mechanism with these numbers. Those that it does not have, or that expressions give, are ignored.

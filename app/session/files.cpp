@@ -73,6 +73,15 @@ NamedHues hues_to_keep(const Document& document) {
   return named;
 }
 
+// "swing_pendulum.flyball" as a person would write it.
+std::string words_of(std::string stem) {
+  if (stem.ends_with(".flyball")) stem.resize(stem.rfind('.'));
+  for (char& c : stem)
+    if (c == '_') c = ' ';
+  if (!stem.empty() && stem[0] >= 'a' && stem[0] <= 'z') stem[0] = static_cast<char>(stem[0] - 'a' + 'A');
+  return stem;
+}
+
 } // namespace
 
 void note_recent(Session& session, const fs::path& file) {
@@ -97,14 +106,18 @@ void open_scene(Session& session, const fs::path& file) {
 
 std::string save_to(Session& session, const fs::path& file) {
   const fs::path own = resolved(file);
+  const bool first = session.document.file().empty();
+  Mechanism written = session.document.stored();
+  if (first && written.name == Document::empty_mechanism().name) written.name = words_of(own.stem().string());
   try {
-    const std::string text = write_scene(session.document.stored());
+    const std::string text = write_scene(written);
     replace_file(own, text);
     session.files.watch = FileWatch(own, text);
   } catch (const SceneError& error) {
     const std::string& why = error.where() == own.string() ? error.expected() : error.what();
     return own.filename().string() + " was not saved: " + why + ".";
   }
+  name_untitled(session, written.name);
   session.document.mark_saved(own);
   session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
   session.problem.clear();

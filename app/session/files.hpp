@@ -54,8 +54,8 @@ void replace_document(Session& session, Document document, std::string_view text
 void open_scene(Session& session, const std::filesystem::path& file);
 // Among the files opened lately, from now on.
 void note_recent(Session& session, const std::filesystem::path& file);
-// Writes the document to a file, which is its own from then on. Returns why it could not, and then nothing
-// has changed.
+// Writes the document to a file, which is its own from then on; a mechanism that nobody has named is called
+// as its first file is. Returns why it could not, and then nothing has changed.
 std::string save_to(Session& session, const std::filesystem::path& file);
 void reload_document(Session& session); // from its file, as it is there now: a step that can be undone
 

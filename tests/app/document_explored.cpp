@@ -137,6 +137,16 @@ TEST_CASE("an edit leaves beside it what is explored of other numbers") {
   }
 }
 
+TEST_CASE("a number that an expression gives is not explored") {
+  Document document = governor();
+  Mechanism given = document.stored();
+  given.bodies[static_cast<std::size_t>(body_index(given, "collar"))].formulas = {{"mass", "1 kg"}};
+  document.edit("Give the mass", given, {});
+  document.explore("Set mass", {{mass, 2}});
+  CHECK(document.explored().empty());
+  CHECK(document.steps().size() == 2);
+}
+
 TEST_CASE("what cannot be explored is not") {
   Document document = governor();
   document.explore("Nothing", {{"joints.none.drive.speed", 3}});

@@ -58,6 +58,25 @@ TEST_CASE("a drag is one step, and none once it is back where it began") {
   CHECK(document.mechanism() == with_gravity(4));
 }
 
+TEST_CASE("an untitled document is named in all its steps at once") {
+  Document document;
+  document.edit("Change gravity", with_gravity(1), {});
+  document.explore("Try gravity", {{"gravity.1", -2}});
+  document.edit("Change gravity again", with_gravity(3), {});
+  document.undo();
+  CHECK(document.name_untitled("Arm"));
+  CHECK_FALSE(document.name_untitled("Leg"));
+  CHECK(document.position() == 2);
+  CHECK(document.steps().size() == 4);
+  for (std::size_t i = 0; i < document.steps().size(); ++i) {
+    CHECK(document.steps()[i].mechanism->name == "Arm");
+    CHECK(document.steps()[i].tried->name == "Arm");
+  }
+  CHECK(document.steps()[1].mechanism == document.steps()[2].mechanism); // one object still
+  CHECK(document.stored().gravity.y() == -1);
+  CHECK(document.mechanism().gravity.y() == -2);
+}
+
 TEST_CASE("what could not be saved is no edit") {
   Document document;
   document.edit("Change gravity", with_gravity(std::numeric_limits<double>::infinity()), {});

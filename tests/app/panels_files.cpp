@@ -30,6 +30,14 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   CHECK_FALSE(app.session.document.unsaved());
   CHECK(app.session.notice == "Saved new_arm.json");
   CHECK(app.session.mechanism().name == "New arm");
+  // The name is the file's: saving is no edit, and what is undone later keeps it.
+  REQUIRE(app.session.document.steps().size() == 2);
+  CHECK(app.session.document.steps().front().name == "New");
+  robot.key('Z', true);
+  CHECK(app.session.mechanism().bodies.empty());
+  CHECK(app.session.mechanism().name == "New arm");
+  robot.key('Y', true);
+  CHECK_FALSE(app.session.document.unsaved());
   CHECK(document_name(app.session) == "new_arm.json");
   // Unfinished as it is: the ball hangs on nothing.
   CHECK(parse_scene(read_bytes(file)) == app.session.mechanism());

@@ -62,6 +62,26 @@ TEST_CASE("a number is named in one gesture") {
   CHECK(d.app.session.document.stored().bodies[1].mass == 1);
 }
 
+TEST_CASE("an expression typed at a slider: of numbers alone it is a value, of others it is told") {
+  Desk d("governor_parametric");
+  const std::string mass = "parameters.m", field = "parameters/" + mass + "/value";
+  d.enter(field, "=2*1.5");
+  CHECK(get_parameter(d.m(), mass) == 3);
+  CHECK(get_parameter(d.app.session.document.stored(), mass) == 1); // tried, as a number is
+  CHECK_FALSE(formula_at(d.m(), mass));
+  CHECK(d.app.ui.widgets.contains(field));
+  d.enter(field, "=250 g");
+  CHECK(get_parameter(d.m(), mass) == 0.25);
+  const std::string link = "parameters.l";
+  d.enter("parameters/" + link + "/value", "=0.7*L");
+  CHECK(formula_at(d.m(), link) == "0.7*L");
+  CHECK_FALSE(d.app.ui.widgets.contains("parameters/" + link + "/value"));
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("l is given by an expression now and has no slider"));
+  d.key('Z', true);
+  d.frames(2);
+  CHECK(d.app.ui.widgets.contains("parameters/" + link + "/value"));
+}
+
 TEST_CASE("the list of parameters and points") {
   Desk d("governor_parametric");
   d.build();

@@ -11,24 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "swing_pendulum.flyball" as a person would write it.
-std::string words_of(std::string stem) {
-  if (stem.ends_with(".flyball")) stem.resize(stem.rfind('.'));
-  for (char& c : stem)
-    if (c == '_') c = ' ';
-  if (!stem.empty() && stem[0] >= 'a' && stem[0] <= 'z') stem[0] = static_cast<char>(stem[0] - 'a' + 'A');
-  return stem;
-}
-
 } // namespace
 
 // Whether it is saved.
 bool SaveDialog::save(Session& session) {
   const fs::path file = typed_file(query_, ".json");
   if (!may_replace(session, query_, file)) return false;
-  // A mechanism that nobody has named is called as its file is.
-  if (session.document.file().empty() && session.mechanism().name == Document::empty_mechanism().name)
-    edit(session, "Name", [&](Mechanism& m, Selection&) { m.name = words_of(file.stem().string()); });
   query_.message = save_to(session, file);
   query_.replacing.clear();
   if (!query_.message.empty()) return false;

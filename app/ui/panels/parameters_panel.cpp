@@ -192,7 +192,8 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
                   .help = "Click to type a number, with a unit if you like.",
                   .address = control.address,
                   .set = set,
-                  .framed = false},
+                  .framed = false,
+                  .slider = true},
                  value_width);
   ImGui::SameLine(0, 0);
   if (small_icon(ui, name + "/gear", icon::gear, "Range of the slider, pin and unpin.", pointed, icon_width))

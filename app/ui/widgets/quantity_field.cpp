@@ -9,6 +9,7 @@
 #include "app/ui/widgets/number_menu.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
@@ -125,6 +126,21 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
   return typed ? too_small(typed.value, field.least) : typed.mistake;
 }
 
+// "60 rpm", "2*3": it rests on nothing that could change.
+bool is_of_numbers_alone(const std::string& text) {
+  try {
+    const Expression expression(text, Expression::Results::allowed);
+    return expression.names().empty() && expression.results().empty();
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+bool has_slider(const Session& session, const std::string& address) {
+  return !address.empty() && std::ranges::find(session.parameters, address, &ParameterControl::address) !=
+                                 session.parameters.end();
+}
+
 // A number without the dust of binary arithmetic.
 double rounded(double value) {
   return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
@@ -136,13 +152,23 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
   const auto follow = [&](Mechanism& mechanism) {
     if (field.follow) field.follow(session.document.stored(), mechanism);
   };
-  if (is_expression(field, typed))
-    return edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
-      set_typed_expression(mechanism, field, with_field_unit(session, field, typed.substr(1)));
+  if (is_expression(field, typed)) {
+    const std::string text = with_field_unit(session, field, typed.substr(1)), place = place_of(field);
+    if (field.slider && is_of_numbers_alone(text))
+      return field.set(evaluate_expression(session.mechanism(), text, field.unit, place));
+    const bool slid = has_slider(session, place);
+    edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
+      set_typed_expression(mechanism, field, text);
       follow(mechanism);
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
     });
+    if (session.mode == Mode::explore && slid && !has_slider(session, place))
+      session.notice = "The " + parameter_phrase(place) +
+                       " is given by an expression now and has no slider; it stands in the inspector, and "
+                       "Undo brings the slider back.";
+    return;
+  }
   if (const std::optional<NumberWithUnit> own = with_own_unit(field, typed))
     return field.set_with_unit(own->value, own->unit);
   const double value = typed_quantity(session, typed, field).value;

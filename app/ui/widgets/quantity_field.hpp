@@ -32,6 +32,8 @@ struct QuantityField {
   // Where its unit is open, "": takes a number with an SI unit of its own, "3 N m s".
   std::function<void(double value, const std::string& unit)> set_with_unit{};
   bool at_once = false; // `set` is called while drawing: for a number outside the document
+  // It is a slider's, where numbers are tried: an expression of numbers alone is taken as its value.
+  bool slider = false;
 };
 
 // Pixels that a field needs for its number at rest with up to six digits; with less room it drops digits.
