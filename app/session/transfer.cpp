@@ -114,6 +114,10 @@ bool has_transfer(const Session& session) {
   return found.found && found.problem.empty();
 }
 
+std::string signal_phrase(const Session& session, const std::string& signal) {
+  return has_number(session.mechanism(), signal) ? parameter_phrase(signal) : signal;
+}
+
 void close_transfer(Session& session) {
   TransferState fresh;
   fresh.choice = session.study.transfer.choice;

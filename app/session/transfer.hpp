@@ -47,6 +47,9 @@ void close_transfer(Session& session);
 // Whether there is a model of what is shown.
 bool has_transfer(const Session& session);
 
+// An input or output in words: "speed of spin" of a number's address; others as they are written.
+std::string signal_phrase(const Session& session, const std::string& signal);
+
 // What may be chosen: numbers, and torques and forces that are added; coordinates, rates, measures and what
 // drives give.
 std::vector<std::string> transfer_inputs(const Session& session);

@@ -256,6 +256,45 @@ TEST_CASE("the export is on offer where a motion is shown") {
   CHECK(robot.app.ui.widgets.contains("movie/save"));
 }
 
+TEST_CASE("the File menu exports a film of the motion, which begins for that, or of the mode that moves") {
+  const TemporaryFolder folder;
+  Robot robot;
+  App& app = robot.app;
+  app.session.motion.duration = 0.2;
+  const bool mode = GENERATE(false, true);
+  if (mode) {
+    robot.key('O');
+    robot.frames(3);
+    robot.click("modes/row/1");
+  }
+  REQUIRE(app.commands.enabled(command("file.film")));
+  app.commands.run("file.film");
+  robot.frames(3);
+  REQUIRE(app.dialog.showing);
+  CHECK(app.session.motion.on == !mode);
+  CHECK(app.movie.of == (mode ? Filmed::mode : Filmed::run));
+  app.movie.width = 160;
+  app.movie.height = 91;
+  app.movie.rate = 10;
+  robot.point({2, 2});
+  robot.click("movie/png");
+  app.panels->movie.query().path = (folder / "film.png").string();
+  robot.frames(2);
+  robot.click("movie/save");
+  for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
+    robot.frames(1);
+  robot.frames(2);
+  CHECK_FALSE(app.dialog.showing);
+  CHECK(names_in(folder).size() == (mode ? 10 : 3));
+}
+
+TEST_CASE("a film is not asked for where nothing can move") {
+  Robot robot;
+  robot.begin_empty(1);
+  CHECK_FALSE(robot.app.commands.enabled(command("file.film")));
+  CHECK_FALSE(robot.app.commands.enabled(command("file.model")));
+}
+
 TEST_CASE("the frames of a run are evenly spaced and end with it") {
   Run run;
   run.time = {1, 1.5, 2};

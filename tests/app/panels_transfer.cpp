@@ -212,6 +212,27 @@ TEST_CASE("an engine's governor has its shaft among the states") {
   CHECK(robot.found().zeros.size() == 2);
 }
 
+TEST_CASE("the File menu exports the model of what is shown, whichever panel is open") {
+  Robot robot({1400, 1000});
+  App& app = robot.app;
+  robot.frames(2);
+  REQUIRE(app.session.study.open == StudyKind::none);
+  REQUIRE(app.commands.enabled(command("file.model")));
+  app.commands.run("file.model");
+  robot.frames(3);
+  REQUIRE(app.dialog.showing);
+  CHECK(app.session.study.open == StudyKind::transfer);
+  CHECK(app.ui.widgets.contains("model/of"));
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_model_of_file_menu.m";
+  std::filesystem::remove(file);
+  robot.point({2, 2});
+  app.panels->model.query().path = file.string();
+  robot.click("model/save");
+  robot.frames(2);
+  CHECK(app.session.notice == "Saved " + file.string());
+  std::filesystem::remove(file);
+}
+
 TEST_CASE("the model is exported, by the ending of its name") {
   TransferRobot robot;
   const std::filesystem::path folder = std::filesystem::temp_directory_path();

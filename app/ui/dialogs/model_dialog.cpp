@@ -20,10 +20,20 @@ void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
   if (!begin_dialog(ui, dialog, Dialog::export_model, "Export the linear model", 520)) return;
   bool accepted = path_field(ui, query_, "model", "Name");
   folder_line(ui, query_, "model");
-  const auto& found = session.study.transfer.found.found;
   const std::string ending = typed_path(query_).extension().string();
   const std::filesystem::path file = typed_file(query_, linear_model_format(ending) ? ending : ".m");
   const auto format = linear_model_format(file.extension().string());
+  const TransferState& state = session.study.transfer;
+  const auto& found = state.found.found;
+  if (!state.found.problem.empty())
+    paragraph(state.found.problem, colors_of(ui).warn);
+  else if (!has_transfer(session))
+    paragraph("The model is being made.", colors_of(ui).dim);
+  else
+    paragraph("From " + signal_phrase(session, state.choice.input) + " to " +
+                  signal_phrase(session, state.choice.output) + ", as chosen in Transfer.",
+              colors_of(ui).text);
+  note_widget(ui.widgets, "model/of");
   paragraph(
       "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
       format ? colors_of(ui).dim : colors_of(ui).bad);

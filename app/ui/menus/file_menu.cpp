@@ -8,6 +8,19 @@ namespace flyball::menus {
 
 namespace {
 
+// The model is that which Transfer shows.
+void export_model(App& app) {
+  if (app.session.study.open != StudyKind::transfer) open_study(app.session, StudyKind::transfer);
+  app.panels->model.open(app.session, app.dialog);
+}
+
+// Of the mode that moves, or else of the motion, which begins where none is shown.
+void export_film(App& app) {
+  const Filmed of = moving_mode(app.session) ? Filmed::mode : Filmed::run;
+  if (of == Filmed::run && !app.session.motion.on) open_study(app.session, StudyKind::motion);
+  app.panels->movie.open(app.session, app.dialog, app.movie, of);
+}
+
 const std::array file_commands{
     Command{.id = "file.new",
             .title = "New",
@@ -51,6 +64,14 @@ const std::array file_commands{
             .separated = true,
             .words = "screenshot, image"},
     Command{
+        .id = "file.film",
+        .title = "Export a film…",
+        .help = "Save the mode that moves, or the motion, as MP4, GIF or numbered pictures.",
+        .run = export_film,
+        .enabled = [](const App& app) { return holds_parts(app.session) && app.session.mistakes.empty(); },
+        .words = "movie, video, animation",
+        .lacks = "there is nothing that moves: no part yet, or mistakes to be mended."},
+    Command{
         .id = "file.report",
         .title = "Export report…",
         .help = "Write all about the steady state into one page: picture, loads, modes, curves, assumptions.",
@@ -60,10 +81,11 @@ const std::array file_commands{
         .lacks = "there are mistakes, or a report is being written."},
     Command{.id = "file.model",
             .title = "Export linear model…",
-            .help = "Write the linear model that Transfer shows for MATLAB, Python or NumPy, or as JSON.",
-            .run = open_dialog_of<&Panels::model>,
-            .enabled = [](const App& app) { return has_transfer(app.session); },
-            .lacks = "it is the model that Study, Transfer shows, which is not open, or has none."},
+            .help = "Write the linear model about the steady state for MATLAB, Python or NumPy, or as JSON.",
+            .run = export_model,
+            .enabled = of_session<converged>,
+            .words = "state space",
+            .lacks = "there is no steady state to make a model about."},
     Command{.id = "file.quit",
             .title = "Quit",
             .help = "Leave the program; asks before unsaved work is lost.",

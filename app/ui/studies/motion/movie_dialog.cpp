@@ -102,18 +102,21 @@ void time_fields(Session& session, Ui& ui, MovieState& movie, const Run& run) {
 
 // Whether what is to be filmed is still shown, and whole.
 bool shown(const Session& session, const MovieState& movie) {
-  return movie.of == Filmed::mode ? moving_mode(session) != nullptr : shown_motion(session) != nullptr;
+  return movie.of == Filmed::mode ? moving_mode(session) != nullptr : session.motion.on;
 }
 bool complete(const Session& session, const MovieState& movie) {
-  return movie.of == Filmed::mode ? modes_are_current(session) : shown_motion(session)->finished;
+  if (movie.of == Filmed::mode) return modes_are_current(session);
+  const MotionRun* run = shown_motion(session);
+  return run && run->finished;
 }
 
 // Why it cannot be made, or "".
 std::string problem_of(const Session& session, const MovieState& movie, const MovieRequest& request,
                        std::size_t frames) {
   if (!complete(session, movie))
-    return movie.of == Filmed::mode ? "The modes are of the state before the last changes."
-                                    : "The run is still being computed.";
+    return movie.of == Filmed::mode    ? "The modes are of the state before the last changes."
+           : computing_motion(session) ? "The run is still being computed."
+                                       : "There is no run.";
   if (request.of == Filmed::run && !(request.from < request.to) && !movie.whole)
     return "It ends before it begins.";
   if (std::min(request.width, request.height) < smallest_movie) return "At least 16 pixels a side.";
@@ -150,8 +153,8 @@ void MovieDialog::choices(Session& session, Ui& ui, MovieState& movie) {
                        Least::above_zero);
   if (movie.of == Filmed::mode)
     swing_fields(session, ui, movie);
-  else
-    time_fields(session, ui, movie, *shown_motion(session)->run);
+  else if (const MotionRun* run = shown_motion(session))
+    time_fields(session, ui, movie, *run->run);
 
   const MovieRequest request = request_of(session, query_, movie);
   const std::size_t frames = requested_moments(session, request).size();

@@ -8,7 +8,6 @@
 #include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
@@ -28,7 +27,7 @@ std::vector<std::string> signal_phrases(const Session& session, const std::vecto
   std::vector<std::string> phrases;
   std::set<std::string> taken;
   for (const std::string& signal : signals) {
-    std::string phrase = has_number(session.mechanism(), signal) ? parameter_phrase(signal) : signal;
+    std::string phrase = signal_phrase(session, signal);
     phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : signal);
   }
   return phrases;
