@@ -408,8 +408,10 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   if (!without_modes.empty()) out.message += " " + without_modes;
   out.turned = s.turned;
   if (s.turned) out.message += " " + s.turned_message();
-  if (options.details && !s.system.torques.empty() && !s.turned)
-    out.at_constant_speed = stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
+  if (options.details && !s.system.torques.empty())
+    out.at_constant_speed =
+        s.turned ? turned_stability_at_constant_speed(*s.mechanism, problem, steady.found.z, out.coordinates)
+                 : stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);
   if (!is_finite(out)) {
@@ -535,7 +537,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
       if (slips || entries.empty()) out.equilibria.push_back(std::move(state)); // else bands tell of it
     }
   // What stands turned against the drawn pose is looked for where nothing holds as drawn.
-  const bool may_turn = !s.system.torques.empty() && undetermined.empty() && !options.nearest;
+  const bool may_turn = !s.system.torques.empty() && !options.nearest;
   if (out.equilibria.empty() && may_turn && !problem.cancelled()) {
     SolveOptions turned = options;
     turned.search = 0; // looked for above

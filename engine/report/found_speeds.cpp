@@ -4,6 +4,10 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/report.hpp"
+#include "engine/search/phase_search.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/existence.hpp"
+#include "engine/stability/sign_is_open.hpp"
 #include "engine/system/drive_torque.hpp"
 
 #include <algorithm>
@@ -20,6 +24,16 @@ Coordinate& driven_coordinate(Mechanism& mechanism, const System& system, const 
 std::string name_of_drive(const System& system, const Link& link) {
   const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
   return coordinate_count(tree.type) == 1 ? tree.name : tree.name + "." + std::to_string(link.coordinate);
+}
+
+// The link of another system, in which other joints may be cut, that is this coordinate; -1: none.
+int same_link(const System& system, const Link& link, const System& other) {
+  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  const auto found = std::ranges::find_if(other.links, [&](const Link& l) {
+    return l.tree_joint >= 0 && l.coordinate == link.coordinate && l.type == link.type &&
+           other.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint == tree.joint;
+  });
+  return found == other.links.end() ? -1 : static_cast<int>(found - other.links.begin());
 }
 
 std::string names_of_drives(std::span<const std::string> drives) {
@@ -59,6 +73,63 @@ stability_at_constant_speed(const Mechanism& mechanism, const System& system, co
   }
   if (solution.status != Status::converged) return {};
   return AtConstantSpeed{solution.stable, solution.stability_reason, solution.eigenvalues};
+}
+
+std::optional<AtConstantSpeed>
+turned_stability_at_constant_speed(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                                   const std::vector<CoordinateSolution>& coordinates) {
+  const System& found = problem.system;
+  if (std::ranges::all_of(found.torques, &DriveTorqueElement::implied)) return {};
+  std::vector<std::pair<std::string, double>> rest;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven && !c.dependent) rest.emplace_back(coordinate_label(c), c.value);
+  try {
+    const Mechanism driven = at_constant_speeds(mechanism, found, z.q);
+    const System system = compile_for_drives(driven);
+    Parameters parameters;
+    bind(system, driven, parameters);
+    Scaling scaling;
+    set_scaling(system, parameters, scaling);
+    Eigen::VectorXd q;
+    drawn_configuration(system, parameters, q);
+    set_start(system, parameters, rest, q);
+    TurnedState beside;
+    beside.starts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.links.size()));
+    bool finds = false; // the rates that loops and gears give, still
+    for (std::size_t l = 0; l < system.links.size(); ++l) {
+      const Link& link = system.links[l];
+      if (link.drive < 0) continue;
+      const int of = same_link(system, link, found);
+      if (of < 0 || found.links[static_cast<std::size_t>(of)].drive < 0) return {};
+      const double start = problem.parameters.links[static_cast<std::size_t>(of)].start;
+      beside.starts[static_cast<Eigen::Index>(l)] = start;
+      if (!finds_speed(link)) {
+        parameters.links[l].start = start;
+        continue;
+      }
+      finds = true;
+      q[link.q] = z.q[found.links[static_cast<std::size_t>(of)].q];
+    }
+    const Problem there{system, parameters, scaling, problem.cancel};
+    Workspace w;
+    Unknowns state{q, Eigen::VectorXd::Zero(system.rows)};
+    if (finds) {
+      beside.z = state;
+      const auto turned = find_turned_state_beside(there, beside, w);
+      if (!turned) return {};
+      parameters = at_angles_of(parameters, *turned);
+      state = turned->z;
+    } else if (!newton(there, state, w, {}, nullptr).converged) {
+      return {};
+    }
+    if (!check_existence(there, state.q, sample_phases(system, parameters, state.q), w).holds) return {};
+    const FactoredState at = factor_at(there, state, w);
+    Stability stability = find_stability(at, true);
+    if (sign_is_open(at, stability)) leave_open(stability);
+    return AtConstantSpeed{stability.stable, stability.reason, stability.eigenvalues};
+  } catch (const SceneError&) { // as above
+    return {};
+  }
 }
 
 std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w) {

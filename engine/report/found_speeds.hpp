@@ -17,6 +17,12 @@ std::optional<AtConstantSpeed>
 stability_at_constant_speed(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q,
                             const std::vector<CoordinateSolution>& coordinates);
 
+// The same of a state that stands turned against the drawn pose (search/phase_search.hpp), at the angles of
+// `problem`, which stay as found.
+std::optional<AtConstantSpeed>
+turned_stability_at_constant_speed(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
+                                   const std::vector<CoordinateSolution>& coordinates);
+
 // Why no steady speed was found: what the drives give, and what turning takes, where the search for it
 // began. Empty where that tells nothing.
 std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w);

@@ -344,6 +344,32 @@ int find_neutral(const FactoredState& at, const Eigen::MatrixXd& null_space, Sta
   return count;
 }
 
+// Of null directions (scaled, by column) those along which tied angles do not drift: a balance at other
+// speeds that would turn what springs and loops tie is none of a steady state.
+Eigen::MatrixXd without_drift(const Problem& problem, const Kinematics<double>& k,
+                              const PhaseStiffness& angles, const Linearization& l,
+                              const Eigen::MatrixXd& null_space) {
+  const System& system = problem.system;
+  const Eigen::Index n = system.nv;
+  Eigen::MatrixXd ties = Eigen::MatrixXd::Zero(n + system.rows, n); // of forces and loops, by angles
+  for (std::size_t i = 0; i < angles.entries.size(); ++i)
+    ties.col(angles.entries[i]).head(n) =
+        angles.columns.col(static_cast<Eigen::Index>(i)).cwiseProduct(problem.scaling.column);
+  if (const double size = largest_size(ties); size > 0) ties /= size;
+  if (system.rows > 0)
+    ties.bottomRows(system.rows) =
+        problem.scaling.row.asDiagonal() *
+        (constraints_of_motion(system, problem.parameters, k, l.constraint) - l.constraint);
+  const auto parts = singular_vectors(ties * problem.scaling.column.asDiagonal() * null_space);
+  if (!parts) return null_space;
+  constexpr double drifts = 1e-9; // of the largest effect of an angle
+  const double least = drifts * largest_size(ties) * largest(problem.scaling.column);
+  Eigen::Index rank = 0;
+  while (rank < parts->values.size() && parts->values[rank] > least)
+    ++rank;
+  return null_space * parts->right.rightCols(null_space.cols() - rank);
+}
+
 // What the potential, where there is one, and null directions tell of a state that is no minimum.
 struct EnergyVerdict {
   bool potential = false;
@@ -417,8 +443,8 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   Workspace& w = at.w;
   const bool varies = motion_varies(problem, at.z.q,
                                     sample_phases(problem.system, problem.parameters, at.z.q), w.elsewhere());
-  const bool of_angles = !phase_stiffness(problem, at.z, w.elsewhere()).entries.empty() ||
-                         loops_tie_angles(problem, w.kinematics);
+  const PhaseStiffness angles = phase_stiffness(problem, at.z, w.elsewhere());
+  const bool of_angles = !angles.entries.empty() || loops_tie_angles(problem, w.kinematics);
   // The potential at given speeds tells nothing of their angles.
   const bool potential = !of_angles && has_potential(problem, at.z, w.dense.stiffness(), w.elsewhere());
   const Eigen::MatrixXd& basis = w.dense.constraints().basis();
@@ -433,7 +459,9 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
     out.reason = StabilityReason::minimum;
   }
 
-  const Eigen::MatrixXd null_space = basis * energy.null_basis();
+  Eigen::MatrixXd null_space = basis * energy.null_basis();
+  if (of_angles && null_space.cols() > 0)
+    null_space = without_drift(problem, w.kinematics, angles, w.dense.linearization, null_space);
   const int neutral = find_neutral(at, null_space, out);
   // Multipliers take such angles for cyclic, and where momentum is kept the row of what acts is not at hand.
   out.angles_leave_open = of_angles && (varies || keeps_momentum(problem.system));

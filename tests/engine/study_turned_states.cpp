@@ -198,6 +198,81 @@ TEST_CASE("two shafts whose speeds by themselves are of no balance turn together
   CHECK_THAT(value(s, "c"), WithinRel((-1.3 - 0.12 * w) / stiffness, 1e-9));
   CHECK_THAT(value(s, "r"), WithinRel(mass * w * w * place / (spring - mass * w * w), 1e-9));
   CHECK(s.stable == true);
+  // At constant speed the rider alone moves: m r'' + 10 r' + (k - m w^2) r = 0.
+  REQUIRE(s.at_constant_speed);
+  CHECK(s.at_constant_speed->stable == true);
+  REQUIRE(s.at_constant_speed->eigenvalues);
+  CHECK(s.at_constant_speed->eigenvalues->size() == 2);
+  for (const Complex x : *s.at_constant_speed->eigenvalues)
+    CHECK(std::abs(mass * x * x + 10. * x + spring - mass * w * w) < 1e-9 * spring);
+}
+
+TEST_CASE("four shafts back to back, turned against each other by a spring's preload", "[phase][coupling]") {
+  // A test rig for gears: a and c are tied by a spring, b and d by another, and gears turn b with a, d with
+  // c. What c and d turn at nothing but the springs determines.
+  const bool prescribed = GENERATE(false, true);
+  const double stiffness = 50, other = 80, preload = GENERATE(0.1, 0.);
+  CAPTURE(prescribed, preload);
+  const double ratio = -1.5, inertia = 0.1, loss = 0.2, drag = 0.4;
+  Mechanism m;
+  const Vec3 all(inertia, inertia, inertia), axis(0, 1, 0);
+  m.bodies = {body("a", 1, {0, 0, 0}, all), body("c", 1, {0, 0.3, 0}, all), body("b", 1, {0.3, 0, 0}, all),
+              body("d", 1, {0.3, 0.3, 0}, all)};
+  Joint first = revolute("pa", "ground", "a", {0, 0, 0}, axis),
+        spring = dampened(sprung(revolute("s", "a", "c", {0, 0.15, 0}, axis), stiffness), loss);
+  spring.coordinates[0].spring->free = preload;
+  m.joints = {prescribed ? driven(first, 7.5) : torque_driven(first, 6, "3 N m - 0.4 N m s * rate(pa)"),
+              revolute("pc", "ground", "c", {0, 0.3, 0}, axis),
+              revolute("pb", "ground", "b", {0.3, 0, 0}, axis),
+              revolute("pd", "ground", "d", {0.3, 0.3, 0}, axis),
+              spring,
+              dampened(sprung(revolute("t", "b", "d", {0.3, 0.15, 0}, axis), other), loss),
+              gear("g1", "pa", "pb", ratio),
+              gear("g2", "pc", "pd", ratio)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "pc"), WithinRel(7.5, 1e-10));
+  const double whole = stiffness + ratio * ratio * other, damping = loss * (1 + ratio * ratio),
+               turning = inertia * (1 + ratio * ratio), twist = stiffness * preload / whole;
+  CHECK_THAT(value(s, "s"), WithinAbs(twist, 1e-10));
+  CHECK_THAT(value(s, "t"), WithinAbs(ratio * twist, 1e-10));
+  CHECK(s.stable == true);
+  const auto holds = [&](Complex x) {
+    return std::abs(turning * x * x + damping * x + whole) < 1e-9 * whole;
+  };
+  REQUIRE(s.eigenvalues);
+  if (prescribed) {
+    CHECK(s.eigenvalues->size() == 2);
+    CHECK(std::ranges::all_of(*s.eigenvalues, holds));
+  } else {
+    CHECK(s.eigenvalues->size() == 3);
+    const Eigen::Matrix2d mass = Eigen::Vector2d(turning, turning).asDiagonal(), difference{{1, -1}, {-1, 1}};
+    const Eigen::Matrix2d drags =
+        damping * difference + Eigen::Matrix2d(Eigen::Vector2d(drag, 0).asDiagonal());
+    for (const Complex x : *s.eigenvalues)
+      CHECK(left_of(mass, drags, whole * difference, x) < 1e-12);
+    REQUIRE(s.at_constant_speed); // of pa, whose speed a torque gives
+    REQUIRE(s.at_constant_speed->eigenvalues);
+    CHECK(s.at_constant_speed->eigenvalues->size() == 2);
+    CHECK(std::ranges::all_of(*s.at_constant_speed->eigenvalues, holds));
+  }
+  const AllSolutions listed = Analysis(m).solve_all();
+  REQUIRE(listed.equilibria.size() == 1);
+  CHECK_THAT(value(listed.equilibria[0], "s"), WithinAbs(twist, 1e-10));
+}
+
+TEST_CASE("shafts that a spring ties and nothing drives or resists turn at any common speed", "[phase]") {
+  Mechanism m = shafts(false);
+  m.joints = {torque_driven(hinge("p", "ground", "a"), 5, "0"),
+              torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 5, "0")};
+  m.forces[0].free_length = GENERATE(0.2, 0.6);
+  CAPTURE(m.forces[0].free_length);
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  CHECK(s.status == Status::not_converged);
+  CHECK_THAT(s.message, ContainsSubstring("Nothing determines the speeds of p and q together"));
 }
 
 TEST_CASE("a planetary set drives a load through a coupling, its sun by a torque or at the speed that gives",
