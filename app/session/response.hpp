@@ -60,8 +60,18 @@ struct DesignRequest {
   double value = 0;
 };
 
+// What can be wanted of an answer, see design_goals().
+struct DesignGoals {
+  std::vector<DesignGoal> goals;
+  std::vector<std::string> titles; // theirs
+  // What they are of.
+  std::shared_ptr<const Mechanism> mechanism;
+  std::uint64_t answer = 0; // its ticket
+};
+
 // "Find the parameter so that the coordinate is this": design mode.
 struct ResponseDesign {
+  DesignGoals offered;
   std::string coordinate; // key of the goal; empty: not chosen
   double value = 0;       // rad or m, or in the goal's unit
   Study<DesignRequest, DesignAnswer> answer;

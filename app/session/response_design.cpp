@@ -84,9 +84,7 @@ DesignAnswer find_solutions(const DesignRequest& request, const TaskContext<Desi
   return answer;
 }
 
-} // namespace
-
-std::vector<DesignGoal> design_goals(const Session& session) {
+std::vector<DesignGoal> goals_now(const Session& session) {
   const bool solved = converged(session);
   const Solution& solution = session.answer.solution;
   std::vector<DesignGoal> goals;
@@ -130,10 +128,22 @@ std::vector<DesignGoal> design_goals(const Session& session) {
   return goals;
 }
 
-std::optional<DesignGoal> design_goal(const Session& session) {
-  for (DesignGoal& goal : design_goals(session))
-    if (goal.key == session.study.response.design.coordinate) return std::move(goal);
-  return std::nullopt;
+} // namespace
+
+const DesignGoals& design_goals(Session& session) {
+  DesignGoals& offered = session.study.response.design.offered;
+  const std::shared_ptr<const Mechanism>& mechanism = session.document.shared();
+  if (offered.mechanism == mechanism && offered.answer == session.answer.ticket) return offered;
+  offered = {goals_now(session), {}, mechanism, session.answer.ticket};
+  for (const DesignGoal& goal : offered.goals)
+    offered.titles.push_back(goal.title);
+  return offered;
+}
+
+std::optional<DesignGoal> design_goal(Session& session) {
+  const std::vector<DesignGoal>& goals = design_goals(session).goals;
+  const auto chosen = std::ranges::find(goals, session.study.response.design.coordinate, &DesignGoal::key);
+  return chosen == goals.end() ? std::nullopt : std::optional(*chosen);
 }
 
 void take_design(Session& session) {

@@ -2,7 +2,6 @@
 // turned.
 #include "app/ui/remedies.hpp"
 
-#include "app/document/bearing_drive.hpp"
 #include "app/document/remedies.hpp"
 #include "app/session/coordinate_words.hpp"
 #include "app/ui/commands.hpp"
@@ -130,14 +129,15 @@ void bearing_buttons(Buttons& buttons, Session& session, const std::vector<BodyI
 
 } // namespace
 
-void remedies(Session& session, Ui& ui) {
+void remedies(Session& session, Ui& ui, InBearings& in_bearings) {
   const Solution& solution = session.answer.solution;
   const bool none = solution.status == Status::not_converged || solution.status == Status::no_steady_state;
-  const std::vector<BodyInBearings> in_bearings = bodies_in_bearings(session.mechanism());
-  if (!none && in_bearings.empty()) return;
+  if (in_bearings.of != session.document.shared())
+    in_bearings = {session.document.shared(), bodies_in_bearings(session.mechanism())};
+  if (!none && in_bearings.bodies.empty()) return;
   ImGui::Dummy({0, 2 * ui.scale});
   Buttons buttons(ui);
-  bearing_buttons(buttons, session, in_bearings);
+  bearing_buttons(buttons, session, in_bearings.bodies);
   if (none) steady_state_buttons(buttons, session);
   ImGui::Dummy({0, 2 * ui.scale});
 }

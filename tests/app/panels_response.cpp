@@ -746,12 +746,26 @@ TEST_CASE("the response varies every number that the map does, whether it has a 
   CHECK(robot.app.ui.widgets.contains("response/outside"));
 }
 
+TEST_CASE("what Find offers is made once for each answer") {
+  ResponseRobot robot("pendulum");
+  App& app = robot.app;
+  robot.frames(2);
+  const DesignGoal* const first = design_goals(app.session).goals.data();
+  const double value = design_goals(app.session).goals.front().value.value();
+  robot.frames(5);
+  CHECK(design_goals(app.session).goals.data() == first);
+  change_parameter(app.session, "joints.spin.drive.speed", 12);
+  robot.frames(3);
+  CHECK(design_goals(app.session).goals.front().value.value() != value);
+  CHECK(design_goals(app.session).titles.size() == design_goals(app.session).goals.size());
+}
+
 TEST_CASE("Find asks for torques and forces, too, and tells what it found in the units shown") {
   ResponseRobot robot("pendulum");
   App& app = robot.app;
   choose_response(app.session, "joints.spin.drive.speed");
   robot.frames(2);
-  for (const DesignGoal& goal : design_goals(app.session)) {
+  for (const DesignGoal& goal : design_goals(app.session).goals) {
     if (goal.expression.empty()) continue;
     CAPTURE(goal.key);
     REQUIRE(goal.value);

@@ -5,7 +5,6 @@
 #include "app/session/session.hpp"
 #include "app/session/state_words.hpp"
 #include "app/ui/layout.hpp"
-#include "app/ui/remedies.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -130,7 +129,8 @@ PanelRect below_title(Ui& ui, const PanelRect& rect) {
   return rest;
 }
 
-void result_contents(Session& session, Ui& ui, ResultSections& open, const ToolState& tool) {
+void result_contents(Session& session, Ui& ui, ResultSections& open, InBearings& in_bearings,
+                     const ToolState& tool) {
   if (session.mechanism().bodies.empty()) {
     paragraph("Place a body and join it to the ground: where everything settles is told here, at every step.",
               colors_of(ui).dim);
@@ -141,7 +141,7 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, const ToolS
     paragraph(*session.answer.error, colors_of(ui).text);
   } else if (session.answer.ticket) {
     verdict(session, ui);
-    remedies(session, ui);
+    remedies(session, ui, in_bearings);
     periodic_results(session, ui);
     cycle_offer(session, ui);
     warning_rows(session, ui, "results/warnings", 3);
@@ -168,7 +168,7 @@ void ResultsPanel::draw(Session& session, Ui& ui, const ToolState& tool, const P
                         bool below_inspector) {
   begin_panel("results", below_inspector ? below_title(ui, rect) : rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 4 * ui.scale});
-  result_contents(session, ui, open_, tool);
+  result_contents(session, ui, open_, in_bearings_, tool);
   ImGui::PopStyleVar();
   ImGui::End();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/ui/panels/result_sections.hpp"
+#include "app/ui/remedies.hpp"
 
 namespace flyball {
 
@@ -15,6 +16,7 @@ class ResultsPanel {
 
  private:
   ResultSections open_;
+  InBearings in_bearings_;
 };
 
 } // namespace flyball

@@ -377,7 +377,7 @@ const DesignGoal& first_goal(const Session& session, const std::vector<DesignGoa
 
 void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
   const std::optional<ParameterControl> control = response_control(session);
-  const std::vector<DesignGoal> goals = design_goals(session);
+  const std::vector<DesignGoal>& goals = design_goals(session).goals;
   if (!control || goals.empty()) return;
   ResponseDesign& design = session.study.response.design;
   auto chosen = std::ranges::find(goals, design.coordinate, &DesignGoal::key);
@@ -388,11 +388,7 @@ void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
   heading(ui, ("Find the " + parameter_phrase(control->address)).c_str());
   help_on_hover("Solves for the number so that a coordinate, a speed that is found, a measure, a force or a "
                 "torque has the value that is asked for.");
-  std::vector<std::string> titles;
-  titles.reserve(goals.size());
-  for (const DesignGoal& goal : goals)
-    titles.push_back(goal.title);
-  if (const auto other = name_choice_row(ui, "response/design", "so that", titles,
+  if (const auto other = name_choice_row(ui, "response/design", "so that", design_goals(session).titles,
                                          chosen == goals.end() ? design.coordinate : chosen->title,
                                          "The coordinate, speed, measure, force or torque that is wanted "
                                          "somewhere.")) {
