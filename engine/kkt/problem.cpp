@@ -8,25 +8,20 @@ namespace {
 constexpr double small_rate =
     1e-3; // of the fastest: what an implied rate begins with tells nothing of its size
 
-} // namespace
-
-double found_speed_unit(const System& system, const Parameters& p, const Link& link) {
-  const double given = std::abs(p.links[static_cast<std::size_t>(&link - system.links.data())].speed);
-  return given != 0 ? given : link.type == LinkType::prismatic ? p.length : 1;
+double speed_unit(const Link& link, const Parameters& p, double begins) {
+  return begins != 0 ? std::abs(begins) : link.type == LinkType::prismatic ? p.length : 1;
 }
 
-double largest_found_speed(const Problem& problem, const Link& link) {
-  return 1e4 * problem.scaling.column[link.v];
-}
-
-void set_scaling(const System& system, const Parameters& p, Scaling& out) {
+// With begins(l): at which speed the search for that of link l begins.
+template <class Begins>
+void scale(const System& system, const Parameters& p, const Begins& begins, Scaling& out) {
   out.column.resize(system.nv);
   out.row.resize(system.rows);
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const Link& link = system.links[l];
     if (link.v < 0) continue;
     if (finds_speed(link))
-      out.column[link.v] = found_speed_unit(system, p, link);
+      out.column[link.v] = speed_unit(link, p, begins(l));
     else if (link.type == LinkType::spherical)
       out.column.segment<3>(link.v).setOnes();
     else
@@ -36,7 +31,7 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
   // that is not its size.
   double fastest_drive = 0;
   for (const DriveTorqueElement& torque : system.torques)
-    fastest_drive = std::max(fastest_drive, std::abs(p.links[static_cast<std::size_t>(torque.link)].speed));
+    fastest_drive = std::max(fastest_drive, std::abs(begins(static_cast<std::size_t>(torque.link))));
   for (const DriveTorqueElement& torque : system.torques) {
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
     if (torque.implied && finds_speed(link) && link.type == LinkType::revolute &&
@@ -64,6 +59,32 @@ void set_scaling(const System& system, const Parameters& p, Scaling& out) {
       }
       out.row[cut.first_row + static_cast<int>(r)] = scale;
     }
+}
+
+} // namespace
+
+double found_speed_unit(const System& system, const Parameters& p, const Link& link) {
+  return speed_unit(link, p, p.links[static_cast<std::size_t>(&link - system.links.data())].speed);
+}
+
+double largest_found_speed(const Problem& problem, const Link& link) {
+  return 1e4 * problem.scaling.column[link.v];
+}
+
+void set_scaling(const System& system, const Parameters& p, Scaling& out) {
+  scale(
+      system, p, [&](std::size_t l) { return p.links[l].speed; }, out);
+}
+
+Scaling motion_scaling(const Problem& problem) {
+  const System& system = problem.system;
+  if (system.torques.empty()) return problem.scaling;
+  Scaling out;
+  scale(
+      system, problem.parameters,
+      [&](std::size_t l) { return finds_speed(system.links[l]) ? 0 : problem.parameters.links[l].speed; },
+      out);
+  return out;
 }
 
 double rank_tolerance(const Problem& problem, const Eigen::VectorXd& phi) {

@@ -41,6 +41,12 @@ struct Problem {
   bool cancelled() const { return cancel && cancel->load(std::memory_order_relaxed); }
 };
 
+// The units of the linearised motion: those of the balance (Scaling), but what turns at a speed that is found
+// (drive_torque.hpp) is a coordinate like others here, a cyclic one, since no force depends on it, and is
+// measured by its angle or way. By the speed its inertia would count by the square of the unit of time, and
+// beside what others have either would be lost.
+Scaling motion_scaling(const Problem& problem);
+
 // Up to which a speed that is found is followed, rad/s or m/s: ten thousand times what it is measured by.
 double largest_found_speed(const Problem& problem, const Link& link);
 

@@ -42,17 +42,6 @@ void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian) {
 
 } // namespace
 
-Scaling motion_scaling(const Problem& problem) {
-  if (problem.system.torques.empty()) return problem.scaling;
-  Parameters at_unit_speeds = problem.parameters;
-  for (std::size_t i = 0; i < problem.system.links.size(); ++i)
-    if (const Link& link = problem.system.links[i]; finds_speed(link))
-      at_unit_speeds.links[i].speed = link.type == LinkType::revolute ? 1 : at_unit_speeds.length;
-  Scaling out;
-  set_scaling(problem.system, at_unit_speeds, out);
-  return out;
-}
-
 LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
   const System& system = problem.system;
   const Scaling scaling = motion_scaling(problem);

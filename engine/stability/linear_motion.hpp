@@ -7,13 +7,7 @@
 
 namespace flyball {
 
-// The units of the linearised motion: those of the balance (Scaling), but what turns at a speed that is found
-// (drive_torque.hpp) is a coordinate like others here, a cyclic one, since no force depends on it, and is
-// measured by its angle or way. By the speed its inertia would count by the square of the unit of time, and
-// beside what others have either would be lost.
-Scaling motion_scaling(const Problem& problem);
-
-// In these units (n = nv), the multipliers of that phase included.
+// In the units of motion_scaling() (n = nv), the multipliers of that phase included.
 struct LinearMotion {
   Eigen::MatrixXd mass, velocity, stiffness; // (n, n)
   Eigen::MatrixXd basis;                     // (n, k), orthonormal: null space of the constraints

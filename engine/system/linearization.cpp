@@ -8,6 +8,8 @@
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
 
+#include <optional>
+
 namespace flyball {
 namespace {
 
@@ -110,10 +112,10 @@ int nearest_free(const System& system, int link) {
 }
 
 // Adds, for every pair of coordinates on a common path, wrench(j) projected on i (j at or beyond i), and
-// row(i) applied to j (j strictly before i).
-template <class WrenchOf, class RowOf, class Apply>
+// row(i) applied to j (j strictly before i), where the column j is one of the links that `wants` says.
+template <class Wants, class WrenchOf, class RowOf, class Apply>
 void fill_tree(const System& system, const Kinematics<double>& k, const std::vector<ScrewRates>& screws,
-               Eigen::MatrixXd& out, WrenchOf wrench_of, RowOf row_of, Apply apply) {
+               Eigen::MatrixXd& out, Wants wants, WrenchOf wrench_of, RowOf row_of, Apply apply) {
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     interruption_point();
     const Link& link = system.links[l];
@@ -121,26 +123,31 @@ void fill_tree(const System& system, const Kinematics<double>& k, const std::vec
     const int nearest = nearest_free(system, link.parent);
     for (int j = link.v; j < link.v + column_count(link); ++j) {
       const ScrewRates& own = screws[static_cast<std::size_t>(j)];
-      const LinearizedWrench u = wrench_of(l, own);
-      for (int i = link.v; i < link.v + column_count(link); ++i) {
-        const ScrewRates& s = screws[static_cast<std::size_t>(i)];
-        out(i, j) += s.sw.dot(u.moment) + s.sv.dot(u.force);
+      LinearizedWrench u{};
+      if (wants(link)) {
+        u = wrench_of(l, own);
+        for (int i = link.v; i < link.v + column_count(link); ++i) {
+          const ScrewRates& s = screws[static_cast<std::size_t>(i)];
+          out(i, j) += s.sw.dot(u.moment) + s.sv.dot(u.force);
+        }
       }
-      if (nearest < 0) continue;
-      const auto row = row_of(l, own);
+      std::optional<decltype(row_of(l, own))> row;
       for (int a = nearest; a >= 0;
            a = nearest_free(system, system.links[static_cast<std::size_t>(a)].parent)) {
         const Link& other = system.links[static_cast<std::size_t>(a)];
         const Vec3 arm = k.links[l].o - k.at(a).o;
+        if (wants(other) && !row) row = row_of(l, own);
         for (int i = other.v; i < other.v + column_count(other); ++i) {
           const ScrewRates& s = screws[static_cast<std::size_t>(i)];
-          out(i, j) += s.sw.dot(u.moment + arm.cross(u.force)) + s.sv.dot(u.force);
-          out(j, i) += apply(row, s, arm);
+          if (wants(link)) out(i, j) += s.sw.dot(u.moment + arm.cross(u.force)) + s.sv.dot(u.force);
+          if (wants(other)) out(j, i) += apply(*row, s, arm);
         }
       }
     }
   }
 }
+
+constexpr auto all_columns = [](const Link&) { return true; };
 
 // The covectors S^T I and S^T B of a link's coordinate, about its own origin; B acts on angular rates alone.
 struct LinearizedRow {
@@ -268,7 +275,7 @@ void fill_velocity(const System& system, const Parameters& p, const Eigen::Vecto
   out.velocity.setZero(system.nv, system.nv);
   if (p.moving)
     fill_tree(
-        system, k, out.screws, out.velocity,
+        system, k, out.screws, out.velocity, all_columns,
         [&](std::size_t l, const ScrewRates& s) { return velocity_wrench(out.composites[l], s); },
         [&](std::size_t l, const ScrewRates& s) { return inertia_row(out.composites[l], s); },
         apply_velocity);
@@ -308,6 +315,7 @@ void linearize(const System& system, const Parameters& p, const Eigen::VectorXd&
   fill_composites(system, p, k, out.composites);
   fill_tree(
       system, k, out.screws, out.stiffness,
+      [](const Link& link) { return !finds_speed(link); }, // whose columns are of `velocity`, below
       [&](std::size_t l, const ScrewRates& s) {
         const CompositeBody& b = out.composites[l];
         LinearizedWrench u = times_inertia(b, s.ddw, s.ddv);
@@ -352,7 +360,7 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
                       const Kinematics<double>& k, Linearization& out) {
   out.mass.setZero(system.nv, system.nv);
   fill_tree(
-      system, k, out.screws, out.mass,
+      system, k, out.screws, out.mass, all_columns,
       [&](std::size_t l, const ScrewRates& s) { return times_inertia(out.composites[l], s.sw, s.sv); },
       [&](std::size_t l, const ScrewRates& s) { return inertia_row(out.composites[l], s); },
       [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {

@@ -382,12 +382,28 @@ class Binder {
   BasicParameters<N>& p_;
 };
 
-// Of what is drawn at one point: how far slides are from where their springs are slack, stops touch and
-// coordinates are counted from, springs are long, and loads deflect the softest spring; where no place tells
-// the largest radius of gyration counts, too, or what bearings tell by their stiffnesses. Zero where nothing
-// does.
+// How far free slides are from where their springs are slack and their stops touch, and how long springs are.
+double free_lengths(const System& system, const Parameters& p) {
+  double far = 0;
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const Link& link = system.links[l];
+    if (link.type != LinkType::prismatic || link.v < 0 || finds_speed(link)) continue;
+    const CoordinateForce& force = p.links[l].force[0];
+    const double drawn = p.links[l].drawn;
+    if (force.has_spring()) far = std::max(far, std::abs(force.slack() - drawn));
+    if (force.has_lower) far = std::max(far, std::abs(force.lower - drawn));
+    if (force.has_upper) far = std::max(far, std::abs(force.upper - drawn));
+  }
+  for (const PointSpringParameters& spring : p.springs)
+    far = std::max(far, std::abs(spring.free_length));
+  return far;
+}
+
+// Of what is drawn at one point: these lengths, where its coordinates are counted from, and how far loads
+// deflect the softest spring; where no place tells the largest radius of gyration counts, too, or what
+// bearings tell by their stiffnesses. Zero where nothing does.
 double reach_from_one_point(const System& system, const Parameters& p) {
-  double far = 0, load = 0, softest = std::numeric_limits<double>::infinity();
+  double far = free_lengths(system, p), load = 0, softest = std::numeric_limits<double>::infinity();
   const auto spring_of = [&](double stiffness) {
     if (stiffness != 0) softest = std::min(softest, std::abs(stiffness));
   };
@@ -395,18 +411,12 @@ double reach_from_one_point(const System& system, const Parameters& p) {
     const LinkParameters& link = p.links[l];
     load += std::abs(link.mass) * p.gravity.norm();
     if (system.links[l].type != LinkType::prismatic) continue;
-    const CoordinateForce& force = link.force[0];
     far = std::max(far, std::abs(link.drawn));
-    if (force.has_spring()) far = std::max(far, std::abs(force.slack() - link.drawn));
-    if (force.has_lower) far = std::max(far, std::abs(force.lower - link.drawn));
-    if (force.has_upper) far = std::max(far, std::abs(force.upper - link.drawn));
-    load += std::abs(force.friction);
-    spring_of(force.stiffness);
+    load += std::abs(link.force[0].friction);
+    spring_of(link.force[0].stiffness);
   }
-  for (const PointSpringParameters& spring : p.springs) {
-    far = std::max(far, std::abs(spring.free_length));
+  for (const PointSpringParameters& spring : p.springs)
     spring_of(spring.stiffness);
-  }
   for (const BodyForceParameters& force : p.body_forces)
     if (force.type == ForceType::force) load += force.vector.norm();
   double out = std::max(far, load / softest);
@@ -441,7 +451,12 @@ double reach(const System& system, const Parameters& p) {
     add(p.cuts[i].b, system.cuts[i].ends.b);
   }
   double half = box.isEmpty() ? 0 : box.diagonal().norm() / 2;
-  if (half == 0) half = reach_from_one_point(system, p);
+  // Places that differ by rounding are one point, and what goes much farther than they lie apart goes by
+  // that.
+  constexpr double rounding = 1e-12, little = 1. / 30;
+  if (box.isEmpty() || half <= rounding * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff() ||
+      half < little * free_lengths(system, p))
+    half = std::max(half, reach_from_one_point(system, p));
   return half > 0 && std::isfinite(half) ? half : 1;
 }
 

@@ -178,6 +178,32 @@ TEST_CASE("an unstable steady speed is left for the stable one that the motion g
     CHECK_THAT(speed(s, "spin"), WithinRel(9, 1e-10));
     CHECK_THAT(value(s, "swing"), WithinRel(value(there, "swing"), 1e-9));
   }
+  SECTION("which grows along (1, -1) alone") {
+    // Two balls on one diameter, each on its slide outwards, and a spring of k from one to the other: drawn
+    // even they stay even, though -m w^2 < 0 pushes them apart. One goes to its inner stop, and for the other
+    // k (r + inner - free) = m w^2 r.
+    Mechanism m;
+    m.bodies = {body("hub", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("a", 1, {0.1, 0, 0}),
+                body("b", 1, {-0.1, 0, 0})};
+    m.joints = {torque_driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 0, 1}), 10,
+                              "10 N m s * (10 rad/s - rate(spin))"),
+                dampened(joint(JointType::prismatic, "ra", "hub", "a", {0.1, 0, 0}, {1, 0, 0}), 1),
+                dampened(joint(JointType::prismatic, "rb", "hub", "b", {-0.1, 0, 0}, {-1, 0, 0}), 1)};
+    for (std::size_t i : {1U, 2U})
+      m.joints[i].coordinates[0].stop = Stop{-0.05, 0.2, 1e6};
+    m.forces = {point_spring("tie", "a", "b", {0, 0, 0}, {0, 0, 0}, 1000, 0.2)};
+    validate(m);
+    SolveOptions options;
+    options.search = 0; // by the motion alone
+    const Solution s = Analysis(m).solve(options);
+    INFO(s.message);
+    CHECK(s.stable == true);
+    CHECK_THAT(speed(s, "spin"), WithinRel(10, 1e-10));
+    const double out = std::max(value(s, "ra"), value(s, "rb")),
+                 in = std::min(value(s, "ra"), value(s, "rb"));
+    CHECK_THAT(in, WithinRel(-0.05, 1e-3)); // of a stiff stop
+    CHECK_THAT(out + 0.1, WithinRel(1000 * (0.2 - (in + 0.1)) / (1000 - 100), 1e-9));
+  }
   SECTION("a ball on a string") {
     Mechanism m = shipped("ball_on_string");
     m.joints[0] = torque_driven(m.joints[0], 4, "1 N m - 0.1 N m s * rate(spin)");
