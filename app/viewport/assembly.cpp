@@ -4,7 +4,9 @@
 #include "engine/mechanism/damped.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <unordered_map>
 
@@ -19,23 +21,32 @@ Vec3 direction(const Vec3& v, const Vec3& otherwise) {
 
 } // namespace
 
+namespace {
+
+Bounds bounds_of(const Shape& shape, const Body& body) {
+  const bool line = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+  // A box and the flat ends of a cylinder are taken along the world's axes: near enough for glyphs.
+  Vec3 around = Vec3::Constant(shape.radius);
+  if (shape.type == ShapeType::box) around = 0.5 * shape.size;
+  if (shape.type == ShapeType::cylinder) {
+    const Vec3 along = (shape.to - shape.from).stableNormalized();
+    around = shape.radius * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  }
+  Bounds bounds;
+  for (const Vec3& p : {line ? shape.from : shape.at.value_or(body.position),
+                        line ? shape.to : shape.at.value_or(body.position)}) {
+    bounds.add(Vec3(p - around));
+    bounds.add(Vec3(p + around));
+  }
+  return bounds;
+}
+
+} // namespace
+
 Bounds shape_bounds(const Body& body) {
   Bounds bounds;
-  for (const Shape& shape : body.shapes) {
-    const bool line = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
-    // A box and the flat ends of a cylinder are taken along the world's axes: near enough for glyphs.
-    Vec3 around = Vec3::Constant(shape.radius);
-    if (shape.type == ShapeType::box) around = 0.5 * shape.size;
-    if (shape.type == ShapeType::cylinder) {
-      const Vec3 along = (shape.to - shape.from).stableNormalized();
-      around = shape.radius * (Vec3::Ones() - along.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
-    }
-    for (const Vec3& p : {line ? shape.from : shape.at.value_or(body.position),
-                          line ? shape.to : shape.at.value_or(body.position)}) {
-      bounds.add(Vec3(p - around));
-      bounds.add(Vec3(p + around));
-    }
-  }
+  for (const Shape& shape : body.shapes)
+    bounds.add(bounds_of(shape, body));
   return bounds;
 }
 
@@ -167,13 +178,64 @@ std::array<double, 2> slider_reach(const Assembly& assembly, std::size_t index, 
   return {std::max(half - middle, 0.0), std::max(half + middle, 0.0)};
 }
 
+// How far it is from a slide's point in a direction to the shapes of what it slides on; none where it meets
+// none of them, or begins inside one.
+std::optional<double> distance_to_rail(const Assembly& assembly, std::size_t index, const Vec3& direction) {
+  const auto [parent, child] = assembly.joint_bodies[index];
+  const int rail = child >= 0 ? parent : -1;
+  if (rail < 0) return std::nullopt;
+  const Vec3& at = assembly.mechanism.joints[index].at;
+  const Body& body = assembly.mechanism.bodies[static_cast<std::size_t>(rail)];
+  std::optional<double> nearest;
+  for (const Shape& shape : body.shapes) {
+    const Bounds bounds = bounds_of(shape, body);
+    double enters = -std::numeric_limits<double>::infinity(), leaves = -enters;
+    for (int k = 0; k < 3; ++k) {
+      const double low = bounds.lower[k] - at[k], high = bounds.upper[k] - at[k];
+      if (std::abs(direction[k]) < 1e-9) {
+        if (low > 0 || high < 0) leaves = -std::numeric_limits<double>::infinity();
+        continue;
+      }
+      enters = std::max(enters, std::min(low / direction[k], high / direction[k]));
+      leaves = std::min(leaves, std::max(low / direction[k], high / direction[k]));
+    }
+    if (!(enters <= leaves) || leaves < 0) continue;
+    if (enters < 0) return std::nullopt;
+    nearest = std::min(nearest.value_or(enters), enters);
+  }
+  return nearest;
+}
+
+// How far a spring's other end is at least from the slide's point, on this side of it (1: below).
+double room_for_spring(const SlideRange& range, int side, double unit) {
+  return std::max((side > 0 ? range.below : range.above) + 1.5 * unit, 3 * unit);
+}
+
+// Puts the spring's other end on what the slide is on, where that is below or above all that the coordinate
+// takes. Returns on which side (1: below), 0 where it is on none.
+int stand_on_rail(const Assembly& assembly, std::size_t index, const Vec3& axis, double drawn,
+                  SlideRange& range) {
+  constexpr double farthest = 8; // times the room that it takes
+  for (const int side : {1, -1}) {
+    const std::optional<double> rail = distance_to_rail(assembly, index, -side * axis);
+    const double room = room_for_spring(range, side, assembly.scale.unit);
+    if (!rail || *rail > farthest * room) continue;
+    const double anchor = drawn - side * *rail, nearest = side > 0 ? range.from : range.to;
+    if (side * (nearest - anchor) < room) continue;
+    range.anchor = anchor;
+    return side;
+  }
+  return 0;
+}
+
 } // namespace
 
 SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t coordinate) {
   const Joint& joint = assembly.mechanism.joints[index];
   const Coordinate& c = joint.coordinates[coordinate];
   const double unit = assembly.scale.unit, travel = assembly.crank_travel[index];
-  const auto [below, above] = slider_reach(assembly, index, coordinate_axis(joint, coordinate).axis);
+  const Vec3 axis = coordinate_axis(joint, coordinate).axis;
+  const auto [below, above] = slider_reach(assembly, index, axis);
   SlideRange range{c.drawn, c.drawn, c.drawn, below, above};
   const auto include = [&](double value) {
     range.from = std::min(range.from, value);
@@ -184,20 +246,24 @@ SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t 
   include(c.drawn - travel);
   include(c.drawn + travel);
   // A spring as long as its coordinate starts at zero; otherwise the label says nothing about its length.
-  const double side = c.drawn < 0 ? -1 : 1; // of zero, where the coordinate is
+  const int side = c.drawn < 0 ? -1 : 1; // of zero, where the coordinate is
   const bool never_crosses = side * (side > 0 ? range.from : range.to) > 2 * unit &&
                              (!c.stop || !(side > 0 ? c.stop->lower : c.stop->upper) ||
                               side * *(side > 0 ? c.stop->lower : c.stop->upper) >= 0);
   const bool from_zero = c.spring && never_crosses;
   if (c.stop && c.stop->lower) include(*c.stop->lower);
   if (c.stop && c.stop->upper) include(*c.stop->upper);
+  // The spring stands by what was foreseen, not by the poses.
   const double lowest = range.from, now = coordinate_value(assembly, index, coordinate);
+  const int on_rail = has_anchor(c) && !from_zero ? stand_on_rail(assembly, index, axis, c.drawn, range) : 0;
   if (std::isfinite(now)) include(now);
   if (has_anchor(c)) {
-    const double towards = from_zero ? side : 1, clear = std::max(below + 1.5 * unit, 3 * unit);
-    const double length = std::max({6 * unit, clear, 1.6 * std::abs(c.drawn - free)});
-    const double least = from_zero ? 2 * unit : clear; // one that starts at zero may be pressed flat
-    range.anchor = from_zero ? 0 : lowest - length;
+    const double length =
+        std::max({6 * unit, room_for_spring(range, 1, unit), 1.6 * std::abs(c.drawn - free)});
+    if (on_rail == 0) range.anchor = from_zero ? 0 : lowest - length;
+    const int towards = from_zero ? side : on_rail != 0 ? on_rail : 1;
+    // One that starts at zero may be pressed flat.
+    const double least = from_zero ? 2 * unit : room_for_spring(range, towards, unit);
     if (towards * (now - range.anchor) < least) range.anchor = now - towards * least;
     include(range.anchor);
   }
@@ -220,6 +286,19 @@ Span along(const Shaft& shaft, const Bounds& bounds) {
   return {middle - half, middle + half};
 }
 
+// How far a shape reaches from its middle across a direction, all round: of what lies across it like a rod on
+// a pivot, how thick that is.
+double girth(const Shape& shape, const Vec3& half, const Vec3& direction) {
+  const bool line = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+  const Vec3 along = (shape.to - shape.from).stableNormalized();
+  if (line && along.cross(direction).norm() > 0.1) return shape.radius;
+  const Vec3 across = (half - direction * direction.dot(half)).cwiseAbs();
+  if (shape.type != ShapeType::box) return across.maxCoeff();
+  std::array<double, 3> sides{across[0], across[1], across[2]}; // one of them along the direction
+  std::ranges::sort(sides);
+  return sides[1];
+}
+
 // Ends the shaft where its shapes end. One whose bearing is at its upper end, with what it carries below,
 // hangs.
 void fit_to_shapes(Shaft& shaft, const Body& body, std::span<const Attachment> attachments, double unit) {
@@ -235,13 +314,10 @@ void fit_to_shapes(Shaft& shaft, const Body& body, std::span<const Attachment> a
     shaft.to = -whole.low;
   }
   for (const Shape& shape : body.shapes) {
-    Body alone;
-    alone.position = body.position;
-    alone.shapes = {shape};
-    const Bounds bounds = shape_bounds(alone);
+    const Bounds bounds = bounds_of(shape, body);
     const Span span = along(shaft, bounds);
     const Vec3 half = 0.5 * (bounds.upper - bounds.lower);
-    const double radius = (half - shaft.direction * shaft.direction.dot(half)).cwiseAbs().maxCoeff();
+    const double radius = girth(shape, half, shaft.direction);
     if (span.low > shaft.from + 0.5 * unit || radius <= shaft.base) continue;
     shaft.base = radius;
     shaft.base_height = span.high - span.low;

@@ -42,7 +42,8 @@ struct Stage {
   Sight sight; // m, in the world
   Mat4 view_projection;
   Vec3 up, key;
-  Vec3 center; // of the solids
+  Vec3 center;          // of the solids
+  bool nothing = false; // there are none
   double radius = 0, floor_reach = 0, floor_height = 0;
   const Palette* colors = nullptr;
 
@@ -52,6 +53,7 @@ struct Stage {
         sight(sight_of(frame.camera, size)), up(frame.camera.up), colors(&palette(frame.theme)) {
     if (frame.options.draft) sight.flat_coil = 9;
     const Bounds& bounds = scene.bounds;
+    nothing = bounds.empty;
     center = bounds.empty ? Vec3(Vec3::Zero()) : Vec3((bounds.center() - units.origin) / units.length);
     radius = std::clamp(bounds.empty ? 0.3 : bounds.radius() / units.length, 1e-6, 1e6);
     floor_reach = std::min(5 * radius, 60.0);
@@ -64,7 +66,11 @@ struct Stage {
     key = (0.62 * front.right() * -1 + 1.35 * up + 0.55 * up.cross(-front.right()).normalized()).normalized();
   }
   Vec3 floor_center() const { return center + (floor_height - up.dot(center)) * up; }
+  // Where nothing is drawn the floor would have a height that the first body changes: seen from the side, as
+  // if everything had moved.
   bool floor_in_view(const Vec3& eye) const {
+    constexpr double from_the_side = 0.05; // rad
+    if (nothing && std::abs(camera.elevation) < from_the_side) return false;
     return (eye - floor_center()).norm() < 50 * floor_reach &&
            std::abs(up.dot(eye - floor_center())) > 1e-6 * radius;
   }

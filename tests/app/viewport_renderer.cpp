@@ -54,6 +54,24 @@ TEST_CASE("passes that are not needed are left out") {
   CHECK_FALSE(has(report, "grid"));
 }
 
+TEST_CASE("where nothing is drawn there is no floor to be seen from the side, whose height would change") {
+  OffscreenContext context;
+  ViewRenderer renderer;
+  Framebuffer target(160, 120, 1);
+  Mechanism m;
+  ViewFrame frame;
+  frame.mechanism = &m;
+  frame.camera.target = {0, 0.1, 0};
+  frame.camera.distance = 1;
+  frame.camera.elevation = 0;
+  CHECK_FALSE(has(renderer.draw(frame, target), "grid"));
+  frame.camera.elevation = 0.5;
+  CHECK(has(renderer.draw(frame, target), "grid"));
+  m = governor();
+  frame.camera.elevation = 0;
+  CHECK(has(renderer.draw(frame, target), "grid"));
+}
+
 TEST_CASE("a ghost that coincides with the solid stays hidden behind it") {
   OffscreenContext context;
   ViewRenderer renderer;

@@ -149,6 +149,71 @@ TEST_CASE("beyond all that was foreseen the plate of a spring gives way and neve
   CHECK(has_plate_at(scene, coil.position));
 }
 
+namespace {
+
+// A hub that turns about y, and a shoe beside it that slides to and from it along x.
+Mechanism hub_and_shoe(double sense) {
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("hub", 1, {0, 0, 0}), body("shoe", 0.2, {0.1, 0, 0})};
+  Shape block;
+  block.type = ShapeType::box;
+  block.size = {0.05, 0.05, 0.05};
+  for (Body& b : m.bodies)
+    b.shapes = {block};
+  Joint slide = prismatic("slide", "hub", "shoe", {0.1, 0, 0}, {sense, 0, 0});
+  slide.coordinates[0].spring = CoordinateSpring{2e4, 0};
+  m.joints = {revolute("input", "ground", "hub", {0, 0, 0}, {0, 1, 0}), slide};
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("the spring of a slide stands on what it slides on, where the slide leads to that") {
+  const double sense = GENERATE(1., -1.); // from the hub, or to it
+  Mechanism m = hub_and_shoe(sense);
+  const Instance coil = spring_coil(build_scene(m, {}));
+  CHECK(coil.position.x() == Approx(0.025)); // the hub's face
+  // Not where the shoe comes to it.
+  Stop stop;
+  (sense > 0 ? stop.lower : stop.upper) = -0.05 * sense;
+  m.joints[1].coordinates[0].stop = stop;
+  CHECK(std::abs(spring_coil(build_scene(m, {})).position.x() - 0.025) > 0.003);
+}
+
+TEST_CASE("what a drive is drawn with keeps its size when a joint is added to what turns") {
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("rod1", 0.1, {0, 0, 0}), body("rod2", 0.1, {0.1, 0.05, 0})};
+  const auto rod = [](const Vec3& from, const Vec3& to) {
+    Shape shape;
+    shape.type = ShapeType::cylinder;
+    shape.radius = 0.005;
+    shape.from = from;
+    shape.to = to;
+    return shape;
+  };
+  const Vec3 half = GENERATE(Vec3(0.1, 0, 0), Vec3(0.07, 0, 0.07));
+  m.bodies[0].shapes = {rod(-half, half)};
+  m.bodies[1].shapes = {rod(half, half + Vec3(0, 0.1, 0))};
+  Joint table = revolute("table", "ground", "rod1", {0, 0, 0}, {0, 1, 0});
+  table.coordinates[0].drive = Drive{6};
+  m.joints = {table};
+  const auto size_of = [](const SceneList& scene, Role role) {
+    double most = 0;
+    for (const Instance& i : scene.instances)
+      if (i.role == role) most = std::max(most, instance_bounds(i).radius());
+    return most;
+  };
+  const SceneList before = build_scene(m, {});
+  m.joints.push_back(revolute("hinge", "rod1", "rod2", half, {0, 0, 1}));
+  const SceneList after = build_scene(m, {});
+  for (const Role role : {Role::drive, Role::anchor}) {
+    REQUIRE(size_of(before, role) > 0);
+    CHECK(size_of(after, role) / size_of(before, role) == Approx(1).margin(0.3));
+  }
+}
+
 TEST_CASE("parts move with the poses and keep their size") {
   const Mechanism m = governor();
   std::vector<Pose> poses = drawn_poses(m);
