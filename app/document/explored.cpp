@@ -42,6 +42,14 @@ std::string renamed_address(const std::string& address, const Mechanism& before,
   return list + "." + now + (end == std::string::npos ? "" : address.substr(end));
 }
 
+// The parameter that gives the number since the edit, where the edit has made it for that.
+std::string named_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
+  const std::optional<std::string> formula = formula_at(after, address);
+  const bool is_new =
+      formula && parameter_index(after, *formula) >= 0 && parameter_index(before, *formula) < 0;
+  return is_new ? "parameters." + *formula : address;
+}
+
 } // namespace
 
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value) {
@@ -68,7 +76,7 @@ Mechanism with_explored(Mechanism mechanism, const Explored& explored) {
 Explored carried_explored(const Explored& explored, const Mechanism& before, const Mechanism& after) {
   Explored left;
   for (const ExploredValue& each : explored) {
-    const std::string address = renamed_address(each.address, before, after);
+    const std::string address = named_address(renamed_address(each.address, before, after), before, after);
     if (number_at(before, each.address) == number_at(after, address))
       explore_value(left, after, address, each.value);
   }

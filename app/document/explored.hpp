@@ -25,7 +25,8 @@ void explore_value(Explored& explored, const Mechanism& mechanism, const std::st
 Mechanism with_explored(Mechanism mechanism, const Explored& explored);
 
 // What is left of them after an edit: a number that the edit has set counts from then on, what is gone is
-// gone, and a part that was renamed in its place keeps what is explored of it.
+// gone, and a part that was renamed in its place keeps what is explored of it. What is explored of a number
+// that the edit names is explored of the new parameter.
 Explored carried_explored(const Explored& explored, const Mechanism& before, const Mechanism& after);
 
 } // namespace flyball

@@ -36,7 +36,7 @@ std::uint64_t text_hash(std::string_view text) {
 }
 
 FileWatch::FileWatch(std::filesystem::path file, std::string_view text)
-    : file_(std::move(file)), hash_(text_hash(text)) {}
+    : file_(std::move(file)), hash_(text_hash(text)), told_(hash_) {}
 
 FileWatch::Look FileWatch::look() {
   if (file_.empty()) return {};
@@ -50,8 +50,9 @@ FileWatch::Look FileWatch::look() {
   if (!text) return {};
   known_ = now;
   const std::uint64_t hash = text_hash(*text);
-  if (hash == hash_) return {};
-  hash_ = hash;
+  if (hash == told_) return {};
+  told_ = hash;
+  if (hash == hash_) return {}; // back to what it was
   return {News::changed, std::move(*text)};
 }
 
@@ -61,7 +62,8 @@ bool FileWatch::settled() const {
 
 bool FileWatch::differs() const {
   const std::optional<FileStamp> now = stamp_of(file_);
-  if (!now || now == known_) return false;
+  if (!now) return false;
+  if (now == known_) return told_ != hash_;
   const std::optional<std::string> text = text_of(file_);
   return text && text_hash(*text) != hash_;
 }

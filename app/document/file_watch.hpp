@@ -21,11 +21,12 @@ std::uint64_t text_hash(std::string_view text);
 class FileWatch {
  public:
   FileWatch() = default; // of nothing
-  // `text` is what was just read from the file, or written to it.
+  // `text` is what the document is based on: just read from the file, written to it, or left there on
+  // purpose.
   FileWatch(std::filesystem::path file, std::string_view text);
 
   const std::filesystem::path& file() const { return file_; }
-  std::uint64_t hash() const { return file_.empty() ? 0 : hash_; } // of what the file is known to hold
+  std::uint64_t hash() const { return file_.empty() ? 0 : hash_; } // of what the document is based on
   bool vanished() const { return missing_ >= looks_missing; }
 
   enum class News { none, changed, vanished };
@@ -38,15 +39,15 @@ class FileWatch {
   Look look();
   // Whether looking again would tell nothing new until somebody touches the file.
   bool settled() const;
-  // Whether the file holds something else than is known.
+  // Whether the file holds something else than the document is based on, told or not: saving would lose it.
   bool differs() const;
 
  private:
   static constexpr int looks_missing = 2; // in a row: some programs delete a file and then write it anew
 
   std::filesystem::path file_;
-  std::uint64_t hash_ = 0;
-  // The stamp with which it held what is known. Nothing at first: a stamp taken after reading might be that
+  std::uint64_t hash_ = 0, told_ = 0; // of what the document is based on, and of what look() told last
+  // The stamp with which it held what was told. Nothing at first: a stamp taken after reading might be that
   // of a newer text.
   std::optional<FileStamp> known_;
   std::optional<FileStamp> last_; // at the last look

@@ -1,5 +1,6 @@
 // Numbers that are only tried stand beside the document's mechanism.
 #include "app/document/document.hpp"
+#include "app/document/formula_edits.hpp"
 #include "app/document/rename.hpp"
 
 #include "engine/mechanism/address.hpp"
@@ -135,6 +136,20 @@ TEST_CASE("an edit leaves beside it what is explored of other numbers") {
     document.undo();
     CHECK(shown(document, mass) == 2);
   }
+}
+
+TEST_CASE("what is explored of a number that is named is explored of the parameter") {
+  Document document = governor();
+  document.explore("Set speed", {{speed, 15}});
+  Mechanism named = document.stored();
+  name_number(named, speed, "n");
+  document.edit("Name", named, {});
+  CHECK(shown(document, speed) == 15);
+  CHECK(stored(document, speed) == 11.0174);
+  CHECK(document.explored() == Explored{{"parameters.n", 15}});
+  document.keep_explored();
+  CHECK(stored(document, "parameters.n") == 15);
+  CHECK(stored(document, speed) == 15);
 }
 
 TEST_CASE("a number that an expression gives is not explored") {

@@ -136,6 +136,10 @@ TEST_CASE("a watched file tells of changes once, and not of its own") {
     const FileWatch::Look look = looks(4);
     CHECK(look.news == FileWatch::News::changed);
     CHECK(look.text == "two");
+    CHECK(watch.differs()); // until somebody takes it
+    CHECK(watch.hash() == text_hash("one"));
+    write_bytes(file, "one");
+    CHECK(looks(4).news == FileWatch::News::none);
     CHECK_FALSE(watch.differs());
   }
   SECTION("changed before the first look") {

@@ -23,10 +23,20 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk is read again where 
     CHECK(app.session.document.unsaved());
   }
   SECTION("no scene: the open one stays") {
+    const std::string before = read_bytes(file);
     write_bytes(file, "{\"flyball\": 1");
     robot.pass(3);
     CHECK(robot.speed_now() == 11.0174);
     CHECK_THAT(app.session.notice, ContainsSubstring("cannot be read"));
+    // Saving over it asks, and a crash meanwhile leaves work that is told to be based on another text.
+    robot.set_speed(9);
+    CHECK(app.session.files.watch.hash() == text_hash(before));
+    robot.key('S', true);
+    CHECK(read_bytes(file) == "{\"flyball\": 1");
+    REQUIRE(robot.shows("banner/keep"));
+    robot.click("banner/keep");
+    CHECK(speed_in(file) == 9);
+    CHECK_FALSE(app.session.document.unsaved());
   }
   SECTION("the same again: nothing happens") {
     app.session.notice.clear();
