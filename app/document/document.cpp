@@ -180,9 +180,9 @@ void Document::mark_saved(std::filesystem::path file) {
   unsaved_ = false;
 }
 
-bool Document::name_untitled(const std::string& name) {
+void Document::name_untitled(const std::string& name) {
   const std::string untitled = empty_mechanism().name;
-  if (stored().name != untitled || name == untitled) return false;
+  if (stored().name != untitled || name == untitled) return;
   std::map<std::shared_ptr<const Mechanism>, std::shared_ptr<const Mechanism>> named; // shared as before
   const auto give_name = [&](std::shared_ptr<const Mechanism>& mechanism) {
     if (mechanism->name != untitled) return;
@@ -200,7 +200,6 @@ bool Document::name_untitled(const std::string& name) {
     give_name(step.tried);
   }
   changed(before.get());
-  return true;
 }
 
 void Document::recover(Mechanism mechanism) {

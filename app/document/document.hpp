@@ -86,8 +86,8 @@ class Document {
   // The present state is what is in the file.
   void mark_saved(std::filesystem::path file);
   // A mechanism that nobody has named is called so, in every step: a name that comes with its file is none
-  // of the edits. Whether it was untitled.
-  bool name_untitled(const std::string& name);
+  // of the edits, and changes nothing that is solved.
+  void name_untitled(const std::string& name);
   // A state that came back from an autosave: unsaved from the start, over what the file says.
   void recover(Mechanism mechanism);
 

@@ -117,7 +117,7 @@ std::string save_to(Session& session, const fs::path& file) {
     const std::string& why = error.where() == own.string() ? error.expected() : error.what();
     return own.filename().string() + " was not saved: " + why + ".";
   }
-  name_untitled(session, written.name);
+  session.document.name_untitled(written.name);
   session.document.mark_saved(own);
   session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
   session.problem.clear();

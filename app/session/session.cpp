@@ -154,10 +154,6 @@ void edit(Session& session, const std::string& name,
   if (session.document.revision() != before) take_document(session, false, false);
 }
 
-void name_untitled(Session& session, const std::string& name) {
-  if (session.document.name_untitled(name)) take_document(session, false, true);
-}
-
 namespace {
 
 // Whether a step changes what the present mode shows: while building, what was tried makes no difference.

@@ -91,8 +91,6 @@ void open_document(Session& session, Document document);
 // name while a button is held (session.gesture) are one step.
 void edit(Session& session, const std::string& name,
           const std::function<void(Mechanism&, Selection&)>& change);
-// What nobody has named is called so from its beginning on: no step. It stays in the state that is shown.
-void name_untitled(Session& session, const std::string& name);
 void undo(Session& session);
 void redo(Session& session);
 void go_to_step(Session& session, std::size_t step);

@@ -24,6 +24,8 @@ const SharedMechanism& VariedMechanism::of(const std::shared_ptr<const Mechanism
       }
     }
   }
+  varied.name.clear();
+  varied.description.clear();
   varied.sliders.clear();
   varied.view.camera.reset();
   varied.simulation = {};

@@ -24,11 +24,11 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   robot.type((folder / "new_arm").string());
   robot.key(key_enter);
   REQUIRE_FALSE(app.dialog.showing);
-  const fs::path file = folder / "new_arm.json";
+  const fs::path file = folder / "new_arm.flyball.json";
   REQUIRE(fs::exists(file));
   CHECK(app.session.document.file() == file);
   CHECK_FALSE(app.session.document.unsaved());
-  CHECK(app.session.notice == "Saved new_arm.json");
+  CHECK(app.session.notice == "Saved new_arm.flyball.json");
   CHECK(app.session.mechanism().name == "New arm");
   // The name is the file's: saving is no edit, and what is undone later keeps it.
   REQUIRE(app.session.document.steps().size() == 2);
@@ -38,7 +38,7 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
   CHECK(app.session.mechanism().name == "New arm");
   robot.key('Y', true);
   CHECK_FALSE(app.session.document.unsaved());
-  CHECK(document_name(app.session) == "new_arm.json");
+  CHECK(document_name(app.session) == "new_arm.flyball.json");
   // Unfinished as it is: the ball hangs on nothing.
   CHECK(parse_scene(read_bytes(file)) == app.session.mechanism());
   CHECK_FALSE(app.session.mistakes.empty());
@@ -61,6 +61,42 @@ TEST_CASE("a new document is built, saved where it is told, and saved again at o
     CHECK(app.session.problem.empty());
     CHECK(app.session.mechanism().bodies.size() == 1);
     CHECK_FALSE(app.session.mistakes.empty());
+  }
+}
+
+TEST_CASE("the name that comes with the first save leaves what was computed as it is") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  App& app = robot.app;
+  robot.key('N', true);
+  edit(app.session, "Build", [](Mechanism& m, Selection&) {
+    const std::string name = m.name;
+    m = test::shipped("governor");
+    m.name = name;
+  });
+  app.session.motion.duration = 0.2;
+  const StudyKind study = GENERATE(StudyKind::states, StudyKind::map, StudyKind::motion);
+  open_study(app.session, study);
+  robot.frames(4);
+  const std::uint64_t ticket = app.session.answer.ticket;
+  const auto* const cells = app.session.study.map.cells.found.get();
+  const MotionRun* const run = shown_motion(app.session);
+  const auto* const samples = run ? run->run.get() : nullptr;
+  robot.key('S', true);
+  robot.type((folder / "named").string());
+  robot.key(key_enter);
+  robot.frames(3);
+  REQUIRE(app.session.mechanism().name == "Named");
+  CHECK(app.session.answer.ticket == ticket);
+  if (study == StudyKind::states) CHECK(states_are_current(app.session));
+  if (study == StudyKind::map) {
+    CHECK(cells);
+    CHECK(app.session.study.map.cells.found.get() == cells);
+    CHECK_FALSE(app.session.study.map.stale);
+  }
+  if (study == StudyKind::motion) {
+    REQUIRE(shown_motion(app.session));
+    CHECK(shown_motion(app.session)->run.get() == samples);
   }
 }
 
@@ -108,7 +144,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.type((folder / "no such folder/x").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("x.json was not saved"));
+    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("x.flyball.json was not saved"));
     CHECK(app.session.document.file() == file);
     CHECK(robot.speed_now() == 5);
     CHECK(app.session.document.unsaved());
@@ -118,7 +154,7 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     robot.type("y");
     robot.key(key_enter);
     CHECK_FALSE(app.dialog.showing);
-    CHECK(speed_in(folder / "y.json") == 5);
+    CHECK(speed_in(folder / "y.flyball.json") == 5);
   }
   SECTION("its own file is no other") {
     robot.key(key_enter);

@@ -11,11 +11,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A name without an ending is one of the program's own files.
+fs::path file_to_save(const FileQuery& query) {
+  const fs::path ending = typed_path(query).extension();
+  return typed_file(query, ending == ".json" || ending == ".flyball" ? ".json" : ".flyball.json");
+}
+
 } // namespace
 
 // Whether it is saved.
 bool SaveDialog::save(Session& session) {
-  const fs::path file = typed_file(query_, ".json");
+  const fs::path file = file_to_save(query_);
   if (!may_replace(session, query_, file)) return false;
   query_.message = save_to(session, file);
   query_.replacing.clear();
@@ -42,7 +48,7 @@ SaveDialog::Answer SaveDialog::draw(Session& session, Ui& ui, DialogState& dialo
   folder_line(ui, query_, "save");
   if (const auto clicked = file_list(ui, query_, "save", ".json", false, 220 * ui.scale))
     query_.path = clicked->filename().string();
-  const fs::path file = typed_file(query_, ".json");
+  const fs::path file = file_to_save(query_);
   const bool replaces = asks_to_replace(ui, query_, file);
   if (!replaces && !query_.message.empty())
     paragraph(query_.message, colors_of(ui).bad);
