@@ -30,6 +30,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <utility>
 
 namespace flyball::cli {
 
@@ -45,6 +47,7 @@ struct Desk {
   WindowInput* input;
   std::atomic<bool>* stirred; // something has happened that may show: set from any thread
   SystemColors* colors = nullptr;
+  std::optional<std::filesystem::path> dropped{}; // to be opened once the keys before it were seen
 };
 
 Desk& desk_of(GLFWwindow* window) {
@@ -101,7 +104,7 @@ void focus_window(GLFWwindow* window, int focused) {
 
 void drop_file(GLFWwindow* window, int count, const char** paths) {
   stir(window);
-  if (count > 0) open_file(*desk_of(window).app, paths[0]);
+  if (count > 0) desk_of(window).dropped = paths[0];
 }
 
 // Those that Dear ImGui's backend would set, too, which are called from these.
@@ -169,15 +172,15 @@ bool take_input(WindowInput& input, App& app, Stage& stage, PixelSize size, doub
   while (input.pending() && !app.quit && !app.export_request) {
     for (int i = 1; i < WindowInput::frames_each; ++i) {
       input.rest();
-      stage.frame(app, size, 0);
+      stage.frame(app, size, 0, true);
     }
     input.read(app.ui.keys);
     changed = true;
-    stage.frame(app, size, 0);
+    stage.frame(app, size, 0, true);
   }
   if (stage.behind(app, size)) {
     input.rest();
-    stage.frame(app, size, 0);
+    stage.frame(app, size, 0, true);
   }
   return changed;
 }
@@ -188,8 +191,9 @@ float window_scale(const Window& window, const App& app, const EditorOptions& op
 }
 
 // Until the person quits or `ends` says so.
-void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, const EditorOptions& options,
-              SystemColors& colors, std::atomic<bool>& stirred, const std::function<bool()>& ends) {
+void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& desk,
+              const EditorOptions& options, SystemColors& colors, std::atomic<bool>& stirred,
+              const std::function<bool()>& ends) {
   const auto scale = [&] { return window_scale(window, app, options); };
   ShownState shown(options.state_file);
   using Clock = std::chrono::steady_clock;
@@ -222,9 +226,9 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, const 
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
     app.ui.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not
-    if (window.should_close()) {
+    const bool closes = window.should_close();
+    if (closes) {
       window.set_should_close(false);
-      quit(app);
       settling = settling_frames;
     }
 
@@ -232,12 +236,16 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, const 
     const PixelSize size{pixels.width, pixels.height};
     if (size.width <= 0 || size.height <= 0) settling = 0;
     if (size.width <= 0 || size.height <= 0 || hidden || (waits && settling == 0)) {
+      if (closes) quit(app);
       shown.tell(app);
       continue;
     }
     if (app.ui.scale != scale()) stage.set_scale(app.ui, scale());
     // What comes while the last thing settles has to settle, too.
     if (take_input(input, app, stage, size, seconds)) settling = settling_frames;
+    // After what was typed before.
+    if (const auto dropped = std::exchange(desk.dropped, std::nullopt)) open_file(app, *dropped);
+    if (closes) quit(app);
     if (!app.quit) note_unsaved_work(app.session);
     stage.render(app.ui, size);
     window.swap();
@@ -310,7 +318,8 @@ Ending run_window(Window& window, const std::filesystem::path& scene, const Edit
   lost_display.emplace(slot);
   signals.emplace(glfwPostEmptyEvent, [slot] { tell_kept(slot->write(), *slot); });
   try {
-    run_loop(window, app, stage, input, options, colors, *stirred, [&] { return signals->came() != 0; });
+    run_loop(window, app, stage, input, desk, options, colors, *stirred,
+             [&] { return signals->came() != 0; });
   } catch (...) {
     tell_kept(keep_unsaved_work(app.session), *slot);
     throw;

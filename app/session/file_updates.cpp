@@ -66,11 +66,20 @@ void keep_beside_later(Session& session, double seconds) {
 
 } // namespace
 
+bool note_explored(Session& session) {
+  FileState& files = session.files;
+  const Explored& explored = session.document.explored();
+  if (!explored.empty()) files.beside_refused = false;
+  if (files.beside_refused) return false;
+  const bool another = files.beside.explored != explored;
+  keep_explored(files.beside, session.document.stored(), explored);
+  return another;
+}
+
 void keep_beside_now(Session& session) {
   FileState& files = session.files;
   files.until_kept = std::numeric_limits<double>::infinity();
-  if (files.beside.explored == session.document.explored() || is_example(session)) return;
-  keep_explored(files.beside, session.document.stored(), session.document.explored());
+  if (is_example(session) || !note_explored(session)) return;
   keep_beside(session.options.state, session.document.file(), files.beside);
 }
 

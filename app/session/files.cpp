@@ -36,6 +36,7 @@ bool is_example(const Session& session) {
 void replace_document(Session& session, Document document, std::string_view text) {
   keep_beside_now(session);
   session.files.beside = {};
+  session.files.beside_refused = false;
   session.files.autosave.remove();
   session.files.conflict = session.files.save_wanted = false;
   open_document(session, std::move(document));
@@ -57,7 +58,8 @@ void bring_back_explored(Session& session) {
     } catch (const SceneError&) { // the file has become another
     }
   }
-  if (!session.document.explored().empty())
+  session.files.beside_refused = session.document.explored().empty();
+  if (!session.files.beside_refused)
     session.notice =
         "Values that were explored last time are back: Keep makes them part of the document, Back "
         "leaves them.";
@@ -125,7 +127,7 @@ std::string save_to(Session& session, const fs::path& file) {
   session.files.aside.clear();
   session.files.autosave.remove();
   if (!session.options.state.empty()) remove_aside(own, session.options.state);
-  keep_explored(session.files.beside, session.document.stored(), session.document.explored());
+  note_explored(session);
   session.files.beside.hues = hues_to_keep(session.document);
   keep_beside(session.options.state, own, session.files.beside);
   note_recent(session, own);

@@ -31,6 +31,7 @@ struct FileState {
   bool save_wanted = false; // he was about to save
 
   KeptBeside beside;                 // what is kept of the open document beside its file
+  bool beside_refused = false;       // what it has explored cannot be, as the scene is now: it stays kept
   std::uint64_t beside_revision = 0; // of the document, last looked at
   double until_kept = std::numeric_limits<double>::infinity(); // s
 
@@ -68,6 +69,8 @@ void find_own_leftovers(Session& session);
 void note_unsaved_work(Session& session);
 // Writes unsaved work where the next start offers it: the program is about to end. Returns why it could not.
 std::string keep_unsaved_work(Session& session);
+// What is explored now takes the place of what is kept so beside the file; whether that is another.
+bool note_explored(Session& session);
 // Keeps beside the open document's file what there is to keep, at once: it is left.
 void keep_beside_now(Session& session);
 // Once a frame, `seconds` after the last: autosaves what changed, and looks whether the file has changed on

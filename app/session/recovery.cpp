@@ -28,6 +28,7 @@ void recover_now(Session& session, const Leftover& leftover) {
     open_document(session, Document());
     session.files.watch = {};
     session.files.beside = {};
+    session.files.beside_refused = false;
     // Over what the file says now; where it says nothing, over nothing.
     if (!file.empty()) open_scene(session, file);
     if (session.document.file() != file) open_document(session, Document(Document::empty_mechanism(), file));

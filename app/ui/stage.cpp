@@ -76,7 +76,7 @@ void Stage::set_scale(Ui& ui, float scale) {
   apply_style(ui.theme, scale);
 }
 
-void Stage::frame(App& app, PixelSize size, double seconds) {
+void Stage::frame(App& app, PixelSize size, double seconds, bool further) {
   ImGui::SetCurrentContext(context_.get());
   const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
   const Layout layout = layout_of(app, width, height);
@@ -111,7 +111,9 @@ void Stage::frame(App& app, PixelSize size, double seconds) {
   io.UserData = &app.ui.tooltip;
   app.ui.tooltip.clock += seconds;
   app.ui.tooltip.due = std::numeric_limits<double>::infinity();
-  io.DeltaTime = std::max(static_cast<float>(seconds), 1.f / 60); // shades behind dialogs fade in with it
+  constexpr float no_time = 1e-6f; // s, as good as none, which ImGui does not take
+  io.DeltaTime =
+      further ? no_time : std::max(static_cast<float>(seconds), 1.f / 60); // dialogs fade in with it
   ImGui::NewFrame();
   build_gui(app);
   ImGui::Render();

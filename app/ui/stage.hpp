@@ -46,8 +46,9 @@ class Stage {
 
   void set_scale(Ui& ui, float scale);
   // One frame: update(), which views have changed, then the interface. ImGui's input must be in place;
-  // `seconds` have passed since the last frame.
-  void frame(App& app, PixelSize size, double seconds);
+  // `seconds` have passed since the last frame. `further`: it is one of several in the place of one, between
+  // which no time passes, so that a key that is held is not held longer.
+  void frame(App& app, PixelSize size, double seconds, bool further = false);
   // Whether the frame has come to another document or other panels than its views were made for, as by a
   // command: another frame puts that right.
   bool behind(const App& app, PixelSize size) const;

@@ -192,6 +192,35 @@ TEST_CASE("what was explored over a number that has become another since does no
   CHECK_FALSE(robot.shows("explored/keep"));
 }
 
+TEST_CASE("what was explored and cannot be, as the file is now, stays kept until something is tried") {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "governor.json";
+  fs::copy_file(shipped_file("governor_parametric"), file);
+  const char* const length = "parameters.L";
+  {
+    FileRobot robot(folder);
+    robot.open(file);
+    change_parameter(robot.app.session, length, 0.2);
+    robot.pass(2);
+  }
+  const std::string before = read_bytes(file);
+  Mechanism shorter = load_scene(file);
+  set_parameter(shorter, "parameters.l", 0.09); // too short for an arm of 0.2 m
+  write_bytes(file, write_scene(shorter));
+  {
+    FileRobot robot(folder);
+    robot.open(file);
+    CHECK(get_parameter(robot.app.session.mechanism(), length) == 0.16);
+    robot.pass(2);
+    robot.key('S', true); // and by saving
+    robot.pass(2);
+  }
+  write_bytes(file, before);
+  FileRobot robot(folder);
+  robot.open(file);
+  CHECK(get_parameter(robot.app.session.mechanism(), length) == 0.2);
+}
+
 TEST_CASE("a body that was renamed has its colour again when the file is opened") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder);

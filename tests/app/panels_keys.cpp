@@ -318,6 +318,16 @@ TEST_CASE("a new document gives the keys to the view") {
   CHECK_FALSE(app.ui.keyboard.ring);
 }
 
+TEST_CASE("further frames in the place of one hold no key longer") {
+  Hand hand;
+  const double before = ImGui::GetTime();
+  for (int i = 0; i < 10; ++i)
+    hand.stage.frame(hand.app, hand.size, 0, true);
+  CHECK(ImGui::GetTime() - before < 1e-4);
+  hand.stage.frame(hand.app, hand.size, 0.02);
+  CHECK(ImGui::GetTime() - before > 0.019);
+}
+
 TEST_CASE("keys that come with the one that opens something do not pass it") {
   Hand hand;
   const Look before = look(hand.app);

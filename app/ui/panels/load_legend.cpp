@@ -27,7 +27,8 @@ const char* load_help(LoadKind kind, bool moment, bool diagram) {
   switch (kind) {
   case LoadKind::reaction:
     return diagram
-               ? "What the guides of joints, and bearings, exert on the body"
+               ? "What the guides of joints, and bearings, exert on the body; of ball, universal, planar and "
+                 "free joints with their springs, dampers and drives"
                : "What each joint's parent exerts on its child, springs, dampers and drives included, and "
                  "each bearing on its second body";
   case LoadKind::drive:
