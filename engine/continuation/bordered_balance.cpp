@@ -2,11 +2,13 @@
 
 #include "engine/continuation/dense_borders.hpp"
 #include "engine/continuation/kkt_borders.hpp"
+#include "engine/continuation/turned_borders.hpp"
 #include "engine/solve/newton.hpp"
 
 namespace flyball {
 
 std::unique_ptr<BorderedBalance> BorderedBalance::make(Family& family, Workspace& w) {
+  if (family.ties()) return std::make_unique<TurnedBorders>(family, w);
   if (family.problem().form == KktForm::dense) return std::make_unique<DenseBorders>(family, w);
   return std::make_unique<KktBorders>(family, w);
 }

@@ -8,7 +8,8 @@
 //       direction
 //
 // It is regular at a fold, where the KKT matrix is singular, and singular where branches cross. All is scaled
-// (Scaling; the parameter by Family::scale()); a step or direction is [x; m], of n + 1 entries.
+// (Scaling; the parameter by Family::scale()); a step or direction is [x; m], of n + 1 entries, and with the
+// angles of what turns between these where it stands turned (turned_borders.hpp).
 #pragma once
 
 #include "engine/continuation/family.hpp"
@@ -22,7 +23,8 @@ namespace flyball {
 
 class BorderedBalance {
  public:
-  // By dense matrices on the null space of the constraints, or by elimination, as the family's problem says.
+  // By dense matrices on the null space of the constraints, or by elimination, as the family's problem says;
+  // with angles among the unknowns where it ties some.
   // Both arguments must outlive it.
   static std::unique_ptr<BorderedBalance> make(Family& family, Workspace& w);
   virtual ~BorderedBalance() = default;

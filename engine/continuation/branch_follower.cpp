@@ -1,6 +1,7 @@
 #include "engine/continuation/branch_follower.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
@@ -62,6 +63,20 @@ Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<Coord
   return q;
 }
 
+Eigen::VectorXd starts_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
+  const System& system = problem.system;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.links.size()));
+  for (const CoordinateInfo& info : system.coordinates) {
+    if (system.links[static_cast<std::size_t>(info.link)].drive < 0) continue;
+    const std::string& joint = system.tree_joints[static_cast<std::size_t>(info.tree_joint)].name;
+    const auto at = std::ranges::find_if(
+        coordinates, [&](const CoordinateSolution& c) { return c.joint == joint && c.index == info.index; });
+    if (at != coordinates.end())
+      out[info.link] = at->value - problem.parameters.links[static_cast<std::size_t>(info.link)].drawn;
+  }
+  return out;
+}
+
 ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem, const Unknowns& z,
                              const Eigen::VectorXd& error, PointDetails details, Workspace& w) {
   ResponsePoint point;
@@ -111,8 +126,28 @@ Problem BranchFollower::problem_at(double parameter) {
   return p;
 }
 
+Problem BranchFollower::problem_at(const BranchState& state) {
+  family_.turn(state.starts);
+  return problem_at(state.parameter);
+}
+
 std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, bool forth) {
-  BranchState state{std::move(z), parameter, {}, 0, 0};
+  return begin(BranchState{std::move(z), parameter, {}, 0, 0}, forth);
+}
+
+std::optional<BranchState> BranchFollower::begin(const TurnedState& turned, double parameter, bool forth) {
+  family_.tie(turned.ties);
+  continuation_.tied();
+  return begin(BranchState{turned.z, parameter, {}, 0, 0, turned.starts}, forth);
+}
+
+void BranchFollower::untie() {
+  if (!family_.ties()) return;
+  family_.tie({});
+  continuation_.tied();
+}
+
+std::optional<BranchState> BranchFollower::begin(BranchState state, bool forth) {
   const double way = (to_ > from_) == forth ? 1 : -1;
   try {
     if (!continuation_.start(state, way)) return {};
@@ -124,7 +159,7 @@ std::optional<BranchState> BranchFollower::begin(Unknowns z, double parameter, b
 }
 
 BranchFollower::Described BranchFollower::describe(const BranchState& state) {
-  const Problem problem = problem_at(state.parameter);
+  const Problem problem = problem_at(state);
   Described d;
   d.point = response_point(family_.mechanism(), problem, state.z, {},
                            {options_.eigenvalues, options_.reactions, &measures_}, w_);
@@ -146,7 +181,7 @@ ResponsePoint BranchFollower::point(const BranchState& state) {
 }
 
 Spectrum BranchFollower::spectrum(const BranchState& state) {
-  const FactoredState at = factor_at(problem_at(state.parameter), state.z, w_);
+  const FactoredState at = factor_at(problem_at(state), state.z, w_);
   return find_stability(at, true).eigenvalues.value_or(Spectrum{});
 }
 
@@ -181,10 +216,21 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
 }
 
 Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchState& b) const {
-  Eigen::VectorXd out(system_.nv + 1);
-  out.head(system_.nv) = scaled_difference(family_.problem(), a.z.q, b.z.q);
-  out[system_.nv] = (b.parameter - a.parameter) / family_.scale();
+  const Eigen::VectorXd turned = angles(a, b);
+  Eigen::VectorXd out(system_.nv + turned.size() + 1);
+  out << scaled_difference(family_.problem(), a.z.q, b.z.q), turned,
+      (b.parameter - a.parameter) / family_.scale();
   return out;
+}
+
+Eigen::VectorXd BranchFollower::angles(const BranchState& a, const BranchState& b) const {
+  if (a.starts.size() == 0) return {};
+  return angles_between(family_.problem(), *family_.ties(), a.starts, b.starts);
+}
+
+bool BranchFollower::same_place(const BranchState& a, const BranchState& b, double near) const {
+  return a.starts.size() == b.starts.size() && same_pose(family_.problem(), a.z.q, b.z.q, near) &&
+         largest_size(angles(a, b)) < near;
 }
 
 double BranchFollower::size_of(const BranchState& at, Eigen::VectorXd step) const {
@@ -197,7 +243,7 @@ double BranchFollower::size_of(const BranchState& at, Eigen::VectorXd step) cons
 
 bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
   return std::abs(a.parameter - b.parameter) < tolerance::same_parameter * family_.scale() &&
-         same_pose(family_.problem(), a.z.q, b.z.q, tolerance::same_branch_pose);
+         same_place(a, b, tolerance::same_branch_pose);
 }
 
 bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& branch) {
@@ -206,7 +252,9 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
   Eigen::VectorXd offset;
   double least = near;
   for (const BranchState& s : branch.states) {
-    if (std::abs(s.parameter - state.parameter) > near * family_.scale()) continue;
+    if (s.starts.size() != state.starts.size() ||
+        std::abs(s.parameter - state.parameter) > near * family_.scale())
+      continue;
     const Eigen::VectorXd d = difference(s, state);
     if (const double size = size_of(s, d); size < least) {
       least = size;
@@ -227,7 +275,7 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
 }
 
 bool BranchFollower::holds_at_every_phase(const BranchState& s) {
-  const Problem problem = problem_at(s.parameter);
+  const Problem problem = problem_at(s);
   return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters, s.z.q), w_).holds;
 }
 
@@ -240,7 +288,7 @@ void BranchFollower::land_on_border(const BranchState& state, double border, Fol
     const bool whole = std::abs(step) >= std::abs(border - near.parameter);
     BranchState last = near;
     last.parameter = whole ? border : near.parameter + step;
-    if (!continuation_.land(last) || !same_pose(family_.problem(), last.z.q, near.z.q, 0.2)) {
+    if (!continuation_.land(last) || !same_place(last, near, 0.2)) {
       step = (last.parameter - near.parameter) / 2;
     } else if (whole) {
       out.points.push_back(point(last));
@@ -332,8 +380,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
     if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
-        same_pose(family_.problem(), next.z.q, origin.z.q, length) &&
-        next.tangent.dot(origin.tangent) > 0.9) {
+        same_place(next, origin, length) && next.tangent.dot(origin.tangent) > 0.9) {
       out.end = closed_branch;
       out.closed = true;
       break;

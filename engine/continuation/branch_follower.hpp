@@ -26,6 +26,9 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
 // The configuration given by a point's free coordinates.
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates);
 
+// Where what is driven stands at a point: Parameters::links[].start by link (rad or m).
+Eigen::VectorXd starts_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates);
+
 struct PointDetails {
   bool eigenvalues = true, reactions = false;
   MeasureSet* measures = nullptr; // to be taken; null: none
@@ -44,6 +47,8 @@ class BranchFollower {
 
   // With the parameter set. Refers to this object, and is good until the parameter is set again.
   Problem problem_at(double parameter);
+  // At the state's, with its angles.
+  Problem problem_at(const BranchState& state);
   const Mechanism& mechanism() const { return family_.mechanism(); }
   Workspace& workspace() { return w_; }
   bool cancelled() const { return options_.cancel && options_.cancel->load(std::memory_order_relaxed); }
@@ -51,6 +56,12 @@ class BranchFollower {
   // The state of a balance that holds at `parameter`, going on with the parameter towards `to` (or back, for
   // `forth` false). Nothing at a singular state that has no single direction.
   std::optional<BranchState> begin(Unknowns z, double parameter, bool forth);
+  // The same of one that stands turned (search/phase_search.hpp): from here on states are followed with the
+  // angles that are tied so among their unknowns.
+  std::optional<BranchState> begin(const TurnedState& state, double parameter, bool forth);
+
+  // From here on states stand as drawn again.
+  void untie();
 
   // Nothing resists some direction: then states form families, along which the determinant is rounding, and
   // folds and crossings are not looked for.
@@ -109,7 +120,11 @@ class BranchFollower {
   void land_on_border(const BranchState& state, double border, FollowedBranch& out);
   bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
-  // Scaled step of q_R from a to b and of the parameter.
+  std::optional<BranchState> begin(BranchState state, bool forth);
+  // Of the angles that are tied, from a to b.
+  Eigen::VectorXd angles(const BranchState& a, const BranchState& b) const;
+  bool same_place(const BranchState& a, const BranchState& b, double near) const;
+  // Scaled step of q_R from a to b, of angles and of the parameter.
   Eigen::VectorXd difference(const BranchState& a, const BranchState& b) const;
   // Of a scaled step; of a speed that is found and has grown beyond its scale, as a share of that.
   double size_of(const BranchState& at, Eigen::VectorXd step) const;

@@ -25,8 +25,8 @@ std::optional<LargestMultiplier> largest_multiplier(const Problem& problem, cons
 
 void BranchFollower::find_multiplier_crossing(const BranchState& state, const BranchState& next,
                                               double length, FollowedBranch& out) {
-  const auto at_start = largest_multiplier(problem_at(state.parameter), state.z, w_);
-  const auto at_end = largest_multiplier(problem_at(next.parameter), next.z, w_);
+  const auto at_start = largest_multiplier(problem_at(state), state.z, w_);
+  const auto at_end = largest_multiplier(problem_at(next), next.z, w_);
   if (!at_start || !at_end) return;
   // A multiplier of a motion without damping lies on the circle until two meet, and leaves it with the root
   // of the distance.
@@ -44,7 +44,7 @@ void BranchFollower::find_multiplier_crossing(const BranchState& state, const Br
     BranchState probe;
     int iterations = 0;
     if (!continuation_.step(state, middle, probe, iterations)) break;
-    const auto here = largest_multiplier(problem_at(probe.parameter), probe.z, w_);
+    const auto here = largest_multiplier(problem_at(probe), probe.z, w_);
     if (!here) break;
     const double value = here->growth - limit;
     if (value > 0) grows = here->value;

@@ -135,7 +135,7 @@ class Diagram {
       out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string unit = parameter_unit(mechanism_, address_);
       std::optional<TurnedState> turned = find_turned(problem, start);
-      if (turned && options_.turned) return follow_turned(std::move(*turned));
+      if (turned && options_.turned) return follow_turned(std::move(*turned), start);
       const std::string why =
           turned
               ? "The steady state stands turned against the drawn pose, and at other values otherwise: it is "
@@ -170,8 +170,34 @@ class Diagram {
     return find_turned_state(dense, start, follower_.workspace());
   }
 
+  void follow_turned(TurnedState state, const Eigen::VectorXd& start) {
+    out_.turned = true;
+    out_.ties_change = !ties_stay(state.ties, start);
+    if (out_.ties_change) return step_turned(std::move(state));
+    out_.status = Status::converged;
+    begun_ = "The steady state stands turned against the drawn pose.";
+    if (const auto first = follower_.begin(state, from_, true))
+      add(follower_.follow(*first, true), true);
+    else
+      out_.message = "The start is a singular state; begin beside it.";
+  }
+
+  // Whether these are the ties in all of the range.
+  bool ties_stay(const AngleTies& ties, const Eigen::VectorXd& start) {
+    bool stay = false;
+    try {
+      const Problem there = follower_.problem_at(to_);
+      const auto others = find_angle_ties({there.system, there.parameters, there.scaling, there.cancel},
+                                          start, follower_.workspace());
+      stay = there.form == KktForm::dense && others && tie_alike(ties, *others);
+    } catch (const SceneError&) { // no mechanism can be made there
+    }
+    follower_.problem_at(from_);
+    return stay;
+  }
+
   // From value to value of the number, in steps in which little changes.
-  void follow_turned(TurnedState state) {
+  void step_turned(TurnedState state) {
     constexpr double first = 1. / 64, longest = 1. / 16, least = 1e-9; // of the range
     const double range = to_ - from_;
     std::vector<ResponsePoint> points;
@@ -235,8 +261,9 @@ class Diagram {
       end = "the largest number of points";
     out_.status = Status::converged;
     out_.branches.push_back({std::move(points), std::move(end), {}, true});
-    out_.message = "1 branch, of states that stand turned against the drawn pose: folds, crossings and Hopf "
-                   "points were not looked for.";
+    out_.message = "1 branch, of states that stand turned against the drawn pose. As " + address_ +
+                   " changes which angles are tied to each other, folds, crossings and Hopf points were not "
+                   "looked for.";
   }
 
   // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.
@@ -360,6 +387,7 @@ class Diagram {
   // At a value of which a mechanism can be made.
   void from_all_equilibria(double value) try {
     if (!going()) return;
+    follower_.untie();
     report_progress(options_.progress, "looking for other branches");
     Workspace& w = follower_.workspace();
     const Problem problem = follower_.problem_at(value);

@@ -62,6 +62,11 @@ struct ResponseDiagram {
   std::vector<SpecialPoint> special;
   std::vector<double> searched; // values of the parameter at which all equilibria were looked for
   int starts = 0;               // Newton-Raphson runs of that search, which is bounded and may miss some
+  // The one connected with the drawn pose is of states that stand turned (Solution::turned).
+  bool turned = false;
+  // Of these: the number changes which angles are tied to each other, as a gear's ratio does. They are then
+  // solved from value to value, as far as that goes, without folds, crossings and Hopf points.
+  bool ties_change = false;
   double run_time_s = 0;
 };
 
@@ -81,8 +86,7 @@ struct BranchOptions {
   // find_all_equilibria finds at the values `all_at`, both ways, where it lies on no branch yet.
   bool all = false;
   std::vector<double> all_at; // values of the parameter; empty: both ends, and the present one where between
-  // Whether a steady state that stands turned against the drawn pose (Solution::turned) is followed: from
-  // value to value, as far as that goes, without folds, crossings and Hopf points.
+  // Whether a steady state that stands turned against the drawn pose (Solution::turned) is followed.
   bool turned = true;
   const std::atomic<bool>* cancel = nullptr;
   ReportProgress progress; // `part` is of the range, along the first branch; else of what is searched

@@ -16,27 +16,46 @@ bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q) {
 
 Continuation::Continuation(Family& family) : family_(family), balance_(BorderedBalance::make(family, w_)) {}
 
-bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::VectorXd& tangent,
-                           double length, BranchState& to, int& iterations) {
+void Continuation::tied() {
+  balance_ = BorderedBalance::make(family_, w_);
+}
+
+Eigen::Index Continuation::unknowns() const {
+  return family_.problem().system.nv + (family_.ties() ? family_.ties()->along.cols() : 0) + 1;
+}
+
+void Continuation::move(const Eigen::VectorXd& step, BranchState& state) const {
   const Problem problem = family_.problem();
-  const Eigen::Index n = problem.system.nv;
-  to.z = from;
-  to.parameter = parameter + length * tangent[n] * family_.scale();
-  Eigen::VectorXd predicted = length * tangent.head(n).cwiseProduct(problem.scaling.column);
-  retract<double>(problem.system, predicted, to.z.q);
-  Eigen::VectorXd moved = Eigen::VectorXd::Zero(n + 1), // corrections so far, kept orthogonal to the tangent
+  const Eigen::Index n = problem.system.nv, last = step.size() - 1;
+  const Eigen::VectorXd moved = step.head(n).cwiseProduct(problem.scaling.column);
+  retract<double>(problem.system, moved, state.z.q);
+  if (last > n) turn_along(*family_.ties(), step.segment(n, last - n), state.starts);
+  state.parameter += step[last] * family_.scale();
+}
+
+double Continuation::linearize(const BranchState& state) {
+  family_.turn(state.starts);
+  return balance_->linearize(state.z, state.parameter);
+}
+
+bool Continuation::correct(const BranchState& from, const Eigen::VectorXd& tangent, double length,
+                           BranchState& to, int& iterations) {
+  to = from;
+  move(length * tangent, to);
+  Eigen::VectorXd moved =
+                      Eigen::VectorXd::Zero(tangent.size()), // corrections so far, orthogonal to the tangent
       step;
   for (iterations = 1; iterations <= 12; ++iterations) {
-    if (!std::isfinite(balance_->linearize(to.z, to.parameter))) return false;
+    if (!std::isfinite(linearize(to))) return false;
     if (!balance_->step(tangent, -tangent.dot(moved), step, to.z.lambda)) return false;
     const double size = step.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(size) || size > 1) return false;
-    Eigen::VectorXd move = step.head(n).cwiseProduct(problem.scaling.column);
-    retract<double>(problem.system, move, to.z.q);
-    to.parameter += step[n] * family_.scale();
+    move(step, to);
     moved += step;
     if (size < tolerance::step) {
+      family_.turn(to.starts);
       family_.set(to.parameter);
+      const Problem problem = family_.problem();
       evaluate(problem, to.z, 0, w_);
       return scaled_residual(problem, w_) < tolerance::balance;
     }
@@ -45,7 +64,7 @@ bool Continuation::correct(const Unknowns& from, double parameter, const Eigen::
 }
 
 bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previous) {
-  balance_->linearize(state.z, state.parameter);
+  linearize(state);
   if (!balance_->direction(previous, state.tangent)) return false;
   const double norm = state.tangent.norm();
   if (!std::isfinite(norm) || norm == 0) return false;
@@ -58,27 +77,35 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
 }
 
 bool Continuation::start(BranchState& state, double direction) {
-  Eigen::VectorXd along = Eigen::VectorXd::Zero(family_.problem().system.nv + 1);
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(unknowns());
   along[along.size() - 1] = direction < 0 ? -1 : 1;
   return find_tangent(state, along);
 }
 
 bool Continuation::step(const BranchState& from, double length, BranchState& to, int& iterations) {
-  return correct(from.z, from.parameter, from.tangent, length, to, iterations) &&
-         find_tangent(to, from.tangent);
+  return correct(from, from.tangent, length, to, iterations) && find_tangent(to, from.tangent);
 }
 
 bool Continuation::land(BranchState& state) {
-  family_.set(state.parameter);
-  return newton(family_.problem(), state.z, w_, {}, nullptr).converged;
+  if (!family_.ties()) {
+    family_.set(state.parameter);
+    return newton(family_.problem(), state.z, w_, {}, nullptr).converged;
+  }
+  BranchState at;
+  int iterations = 0;
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(unknowns(), unknowns() - 1);
+  if (!correct(state, unit, 0, at, iterations)) return false;
+  at.parameter = state.parameter; // without rounding
+  state = std::move(at);
+  return true;
 }
 
 bool Continuation::switch_branch(const BranchState& at, double length, BranchState& to) {
-  balance_->linearize(at.z, at.parameter);
+  linearize(at);
   Eigen::VectorXd other;
   if (!balance_->second_direction(at.tangent, other)) return false;
   int iterations = 0;
-  if (!correct(at.z, at.parameter, other, length, to, iterations)) return false;
+  if (!correct(at, other, length, to, iterations)) return false;
   return find_tangent(to, length > 0 ? other : Eigen::VectorXd(-other));
 }
 

@@ -13,9 +13,11 @@ namespace flyball {
 struct BranchState {
   Unknowns z;
   double parameter = 0;
-  Eigen::VectorXd tangent; // scaled step of q_R, then of the parameter over Family::scale(); unit length
-  double turning = 0;      // the tangent's last entry: changes sign at a fold
-  double determinant = 0;  // of the bordered balance, scaled: changes sign at a branch point
+  Eigen::VectorXd tangent;  // scaled step of q_R, of the angles that are tied (none, but of states that stand
+                            // turned), then of the parameter over Family::scale(); unit length
+  double turning = 0;       // the tangent's last entry: changes sign at a fold
+  double determinant = 0;   // of the bordered balance, scaled: changes sign at a branch point
+  Eigen::VectorXd starts{}; // by link, of one that stands turned: Family::turn()
 };
 
 // Farther than any mechanism goes: a hundred times its reach, or at a found speed that is followed no
@@ -25,6 +27,9 @@ bool out_of_reach(const Problem& problem, const Eigen::VectorXd& q);
 class Continuation {
  public:
   explicit Continuation(Family& family);
+
+  // After the family's angles were tied.
+  void tied();
 
   // Completes a state whose z solves the balance at its parameter: tangent with the parameter growing, or
   // falling for direction < 0. False at a singular state that has no single tangent.
@@ -42,8 +47,13 @@ class Continuation {
   bool switch_branch(const BranchState& at, double length, BranchState& to);
 
  private:
-  bool correct(const Unknowns& from, double parameter, const Eigen::VectorXd& tangent, double length,
-               BranchState& to, int& iterations);
+  // Entries of a tangent.
+  Eigen::Index unknowns() const;
+  // By a step as tangents are.
+  void move(const Eigen::VectorXd& step, BranchState& state) const;
+  double linearize(const BranchState& state); // the scaled residual
+  bool correct(const BranchState& from, const Eigen::VectorXd& tangent, double length, BranchState& to,
+               int& iterations);
   bool find_tangent(BranchState& state, const Eigen::VectorXd& previous);
 
   Family& family_;

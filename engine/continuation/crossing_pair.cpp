@@ -42,7 +42,7 @@ Condition pair_crosses(double scale) {
 
 std::optional<double> pair_product(ExtendedBalance& balance, const ExtendedState& state) {
   Unknowns z = state.z;
-  balance.set(state.parameters);
+  balance.set(state);
   factor_with_multipliers(balance.problem(), z, balance.workspace());
   const auto spectrum = motion_eigenvalues(balance.problem(), z, balance.workspace());
   const auto pair = spectrum ? pair_near(*spectrum, state.pair) : std::nullopt;

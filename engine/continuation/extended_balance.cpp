@@ -6,11 +6,13 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/report/measures.hpp"
+#include "engine/search/turned_balance.hpp"
 #include "engine/solve/refine.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/balance_rate.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace flyball {
@@ -80,12 +82,14 @@ Condition branches_cross(std::size_t parameter) {
 
 ExtendedBalance::ExtendedBalance(const System& system, const Mechanism& mechanism,
                                  std::vector<std::string> addresses, Eigen::VectorXd scales,
-                                 std::vector<Condition> conditions, bool unfolded)
+                                 std::vector<Condition> conditions, bool unfolded,
+                                 std::optional<AngleTies> ties)
     : system_(system), mechanism_(mechanism), addresses_(std::move(addresses)),
       numbers_(mechanism_, addresses_), scales_(std::move(scales)), conditions_(std::move(conditions)),
-      unfolded_(unfolded), form_(KktForm::dense) {
+      unfolded_(unfolded), ties_(std::move(ties)), form_(KktForm::dense) {
   const bool gradients = std::ranges::all_of(conditions_, [](const Condition& c) { return !!c.gradient; });
-  if (system.conservative && system.single_drives && gradients && !unfolded_) form_ = system.kkt_form;
+  if (system.conservative && system.single_drives && gradients && !unfolded_ && !ties_)
+    form_ = system.kkt_form;
   bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
 }
@@ -96,14 +100,18 @@ Problem ExtendedBalance::judged() const {
   return p;
 }
 
-void ExtendedBalance::set(const Eigen::VectorXd& parameters) {
-  numbers_.set({parameters.data(), addresses_.size()});
+void ExtendedBalance::set(const ExtendedState& state) {
+  numbers_.set({state.parameters.data(), addresses_.size()});
   bind(system_, mechanism_, parameters_);
+  if (ties_)
+    for (const int link : ties_->found)
+      parameters_.links[static_cast<std::size_t>(link)].start = state.starts[link];
 }
 
 void ExtendedBalance::move(ExtendedState& state, const Eigen::VectorXd& step) const {
   const Eigen::VectorXd unscaled = step.head(system_.nv).cwiseProduct(scaling_.column);
   retract<double>(system_, unscaled, state.z.q);
+  if (ties_) turn_along(*ties_, step.segment(system_.nv, tied()), state.starts);
   state.parameters += step.tail(scales_.size()).cwiseProduct(scales_);
 }
 
@@ -126,7 +134,10 @@ void ExtendedBalance::evaluate_extended(const Unknowns& z, Eigen::VectorXd& forc
 
 double ExtendedBalance::linearize(const ExtendedState& state) try {
   if (form_ != KktForm::dense) return border(state);
-  assemble(state, assembled_);
+  if (ties_)
+    assemble_turned(state, assembled_);
+  else
+    assemble(state, assembled_);
   return assembled_.matrix.allFinite() ? assembled_.residual : std::numeric_limits<double>::infinity();
 } catch (const SceneError&) { // expressions make no mechanism of these numbers
   return std::numeric_limits<double>::infinity();
@@ -134,7 +145,7 @@ double ExtendedBalance::linearize(const ExtendedState& state) try {
 
 void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   ExtendedState state = start;
-  set(state.parameters);
+  set(state);
   const Problem problem = this->problem();
   factor_with_multipliers(problem, state.z, w_);
   const Eigen::MatrixXd basis = w_.dense.constraints().basis(), stiffness = w_.dense.stiffness();
@@ -168,44 +179,80 @@ void ExtendedBalance::assemble(const ExtendedState& start, Assembled& out) {
   if (k > 0) out.residual = (basis.transpose() * force / size).lpNorm<Eigen::Infinity>();
   if (phi.size() > 0) out.residual = std::max(out.residual, phi.lpNorm<Eigen::Infinity>());
 
-  // Conditions and their rates along every column, by central differences: they steer, the conditions
-  // themselves are exact.
-  for (Eigen::Index c = 0; c < conditions; ++c) {
-    const double value = conditions_[static_cast<std::size_t>(c)].value(*this, state, w_);
-    out.rhs[k + c] = -value;
-    out.residual = std::max(out.residual, std::abs(value));
-  }
-  const bool matrices = std::ranges::any_of(conditions_, &Condition::of_matrix);
-  const double h = 1e-5;
-  for (Eigen::Index j = 0; j < k + count; ++j) {
-    Eigen::VectorXd side[2];
-    for (int i : {0, 1}) {
-      ExtendedState moved = state;
-      move(moved, (i == 0 ? h : -h) * out.columns.col(j));
-      if (j >= k) set(moved.parameters);
-      if (matrices) factor_with_multipliers(this->problem(), moved.z, probe_);
-      side[i].resize(conditions);
-      for (Eigen::Index c = 0; c < conditions; ++c)
-        side[i][c] = conditions_[static_cast<std::size_t>(c)].value(*this, moved, probe_);
-    }
-    out.matrix.col(j).tail(conditions) = (side[0] - side[1]) / (2 * h);
-    if (j >= k) set(state.parameters);
-  }
+  assemble_conditions(state, k, out);
   // Closing the loops moves the conditions, too: a step that does both is quadratic only with this.
   if (out.r0.size() > 0 && out.r0.lpNorm<Eigen::Infinity>() > 1e-12) {
     ExtendedState closed = state;
     Eigen::VectorXd step = Eigen::VectorXd::Zero(n + count);
     step.head(n) = out.r0;
     move(closed, step);
-    if (matrices) factor_with_multipliers(problem, closed.z, probe_);
+    if (any_of_matrix()) factor_with_multipliers(problem, closed.z, probe_);
     for (Eigen::Index c = 0; c < conditions; ++c)
       out.rhs[k + c] = -conditions_[static_cast<std::size_t>(c)].value(*this, closed, probe_);
   }
 }
 
+// By central differences: they steer, the conditions themselves are exact.
+void ExtendedBalance::assemble_conditions(const ExtendedState& state, Eigen::Index k, Assembled& out) {
+  const auto conditions = static_cast<Eigen::Index>(conditions_.size());
+  const Eigen::Index moving = system_.nv;
+  for (Eigen::Index c = 0; c < conditions; ++c) {
+    const double value = conditions_[static_cast<std::size_t>(c)].value(*this, state, w_);
+    out.rhs[k + c] = -value;
+    out.residual = std::max(out.residual, std::abs(value));
+  }
+  const double h = 1e-5;
+  for (Eigen::Index j = 0; j < out.columns.cols(); ++j) {
+    if (out.columns.col(j).isZero(0)) continue; // of multipliers, on which none depends
+    const bool set_again = !out.columns.col(j).tail(out.columns.rows() - moving).isZero(0);
+    Eigen::VectorXd side[2];
+    for (int i : {0, 1}) {
+      ExtendedState moved = state;
+      move(moved, (i == 0 ? h : -h) * out.columns.col(j));
+      if (set_again) set(moved);
+      if (any_of_matrix()) factor_with_multipliers(this->problem(), moved.z, probe_);
+      side[i].resize(conditions);
+      for (Eigen::Index c = 0; c < conditions; ++c)
+        side[i][c] = conditions_[static_cast<std::size_t>(c)].value(*this, moved, probe_);
+    }
+    out.matrix.col(j).tail(conditions) = (side[0] - side[1]) / (2 * h);
+    if (set_again) set(state);
+  }
+}
+
+void ExtendedBalance::assemble_turned(const ExtendedState& start, Assembled& out) {
+  ExtendedState state = start;
+  set(state);
+  const Problem problem = this->problem();
+  factor_with_multipliers(problem, state.z, w_);
+  const TurnedBalance balance(problem, state.z, *ties_, mechanism_, probe_);
+  const Eigen::Index moving = system_.nv + tied(), count = scales_.size();
+  const Eigen::Index k = moving + balance.multipliers();
+  const auto conditions = static_cast<Eigen::Index>(conditions_.size());
+  out.columns = Eigen::MatrixXd::Zero(moving + count, k + count);
+  out.columns.topLeftCorner(moving, moving).setIdentity();
+  out.columns.bottomRightCorner(count, count).setIdentity();
+  out.r0 = Eigen::VectorXd::Zero(system_.nv);
+  out.matrix = Eigen::MatrixXd::Zero(k + conditions, k + count);
+  out.rhs = Eigen::VectorXd::Zero(k + conditions);
+  out.residual = std::numeric_limits<double>::infinity();
+  if (!balance.usable()) return;
+  out.matrix.topLeftCorner(k, k) = balance.matrix();
+  NumberRates numbers;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    numbers_.rates(static_cast<std::size_t>(i), numbers);
+    out.matrix.col(k + i).head(k) = scales_[i] * balance.rate(numbers);
+  }
+  flyball::evaluate_extended(problem, {state.z.q, Eigen::VectorXd::Zero(system_.rows)}, w_);
+  out.rhs.head(k) =
+      -balance.left_of(w_.residual_extended.f.cast<double>(), w_.residual_extended.phi.cast<double>());
+  out.residual = balance.residual();
+  assemble_conditions(state, k, out);
+}
+
 double ExtendedBalance::border(const ExtendedState& start) {
   ExtendedState state = start;
-  set(state.parameters);
+  set(state);
   const Problem problem = this->problem();
   const Eigen::Index n = system_.nv, count = scales_.size();
   const auto conditions = static_cast<Eigen::Index>(conditions_.size());
@@ -248,12 +295,14 @@ double ExtendedBalance::border(const ExtendedState& start) {
       double sides[2];
       for (const int side : {0, 1}) {
         const double step = (side == 0 ? h : -h) * scales_[i];
-        set(state.parameters + step * Eigen::VectorXd::Unit(count, i));
+        ExtendedState moved = state;
+        moved.parameters[i] += step;
+        set(moved);
         sides[side] = value_of(condition);
       }
       rows.m(c, i) = (sides[0] - sides[1]) / (2 * h);
     }
-    set(state.parameters);
+    set(state);
   }
   return residual;
 }
@@ -341,7 +390,7 @@ ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::Vect
     }
   }
   if (outcome.converged) {
-    set(state.parameters);
+    set(state);
     factor_with_multipliers(problem(), state.z, w_);
     outcome.converged = outcome.residual < 1e-8;
   }
@@ -359,7 +408,7 @@ Eigen::VectorXd ExtendedBalance::tangent(const ExtendedState& state, const Eigen
 
 void ExtendedBalance::set_borders(const ExtendedState& state) {
   Unknowns z = state.z;
-  set(state.parameters);
+  set(state);
   if (form_ == KktForm::dense)
     factor_with_multipliers(problem(), z, w_);
   else

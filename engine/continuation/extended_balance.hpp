@@ -2,14 +2,17 @@
 // coordinate has that value", "the balance is singular". Newton-Raphson on all of it together: with the
 // system's own form of the KKT matrix and block elimination (bordered_kkt.hpp) where there is a potential and
 // every condition has a gradient; else by matrices on the null space of the constraints, so that redundant
-// loops do no harm.
+// loops do no harm; and of states that stand turned with the angles of what turns among the unknowns
+// (search/turned_balance.hpp).
 #pragma once
 
 #include "engine/continuation/bordered_kkt.hpp"
 #include "engine/continuation/singularity.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
+#include "engine/search/phase_search.hpp"
 #include "engine/solve/newton.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -22,6 +25,7 @@ struct ExtendedState {
   Eigen::VectorXd parameters; // in their units
   double unfolding = 0;       // see ExtendedBalance; zero in an equilibrium
   double pair = 0;            // 1/s^2: see crossing_pair.hpp
+  Eigen::VectorXd starts{};   // by link, of one that stands turned (TurnedState)
 };
 
 class ExtendedBalance;
@@ -51,29 +55,35 @@ struct ExtendedOutcome {
   bool converged = false;
   int iterations = 0;
   double residual = 0;  // scaled, of balance, loops and conditions; forces in extended precision
-  Eigen::VectorXd step; // the last correction: scaled coordinates, then parameters over their scales
+  Eigen::VectorXd step; // the last correction, see unknowns()
 };
 
 class ExtendedBalance {
  public:
   // `scales` are the parameters' ranges of interest. `unfolded` adds an unknown force along the left border:
-  // at a branch point the equations are regular only with it.
+  // at a branch point the equations are regular only with it. `ties`: of states that stand turned, which none
+  // of the parameters changes; not with conditions on the balance alone (balance_is_singular,
+  // branches_cross).
   ExtendedBalance(const System& system, const Mechanism& mechanism, std::vector<std::string> addresses,
-                  Eigen::VectorXd scales, std::vector<Condition> conditions, bool unfolded = false);
+                  Eigen::VectorXd scales, std::vector<Condition> conditions, bool unfolded = false,
+                  std::optional<AngleTies> ties = {});
   ExtendedBalance(const ExtendedBalance&) = delete;
   ExtendedBalance& operator=(const ExtendedBalance&) = delete;
 
-  void set(const Eigen::VectorXd& parameters);
+  // To the parameters of a state, and its angles.
+  void set(const ExtendedState& state);
   // In the form that is solved.
   Problem problem() const { return {system_, parameters_, scaling_, nullptr, form_}; }
   // By matrices as far as eigenvalues are found without being asked for: what judges the stability.
   Problem judged() const;
   const Mechanism& mechanism() const { return mechanism_; }
   const Eigen::VectorXd& scales() const { return scales_; }
-  int unknowns() const { return system_.nv + static_cast<int>(scales_.size()); }
+  // Entries of a step: scaled coordinates, angles that are tied, parameters over their scales.
+  int unknowns() const { return system_.nv + tied() + static_cast<int>(scales_.size()); }
+  const std::optional<AngleTies>& ties() const { return ties_; }
   Workspace& workspace() { return w_; }
 
-  // From `state`, in place. `row` (by scaled coordinates, then scaled parameters) closes the equations where
+  // From `state`, in place. `row` (as a step) closes the equations where
   // there is one unknown more than conditions: the solution is in the plane through the start across it.
   // Empty where there is none. False where Newton-Raphson fails.
   ExtendedOutcome correct(ExtendedState& state, const Eigen::VectorXd& row);
@@ -98,7 +108,7 @@ class ExtendedBalance {
   // Unknowns y, m (and the unfolding) of the matrices: the scaled step is r0 + N y + R m, and m for the
   // parameters.
   struct Assembled {
-    Eigen::MatrixXd columns; // [N R; 0 I]: (unknowns, k + parameters)
+    Eigen::MatrixXd columns; // [N R; 0 I]: (unknowns, k + parameters); with angles see assemble_turned()
     Eigen::VectorXd r0;
     Eigen::MatrixXd matrix; // without the last row
     Eigen::VectorXd rhs;
@@ -119,6 +129,13 @@ class ExtendedBalance {
   // Returns the residual; not finite where nothing can be solved.
   double linearize(const ExtendedState& state);
   void assemble(const ExtendedState& state, Assembled& out);
+  // With angles: the unknowns are those of TurnedBalance, then the parameters.
+  void assemble_turned(const ExtendedState& state, Assembled& out);
+  // The conditions after the k equations of `out`, at a state whose matrices are in the workspace, and their
+  // rates along its columns.
+  void assemble_conditions(const ExtendedState& state, Eigen::Index k, Assembled& out);
+  bool any_of_matrix() const { return std::ranges::any_of(conditions_, &Condition::of_matrix); }
+  int tied() const { return ties_ ? static_cast<int>(ties_->along.cols()) : 0; }
   double border(const ExtendedState& state);
   // Of what was linearised, with the product `along` of the step and `row`, where that is not empty.
   std::optional<Step> solve(Rhs rhs, const Eigen::VectorXd& row, double along);
@@ -138,6 +155,7 @@ class ExtendedBalance {
   Eigen::VectorXd scales_;
   std::vector<Condition> conditions_;
   bool unfolded_;
+  std::optional<AngleTies> ties_;
   KktForm form_;
   Assembled assembled_;
   Bordered bordered_;

@@ -17,6 +17,20 @@ void Family::set(double value) {
   number_.set({&value, 1});
   bind(system_, mechanism_, parameters_);
   value_ = value;
+  turn(starts_);
+}
+
+void Family::tie(std::optional<AngleTies> ties) {
+  ties_ = std::move(ties);
+  starts_ = {};
+  bind(system_, mechanism_, parameters_);
+}
+
+void Family::turn(const Eigen::VectorXd& starts) {
+  if (!ties_ || starts.size() == 0) return;
+  starts_ = starts;
+  for (const int link : ties_->found)
+    parameters_.links[static_cast<std::size_t>(link)].start = starts_[link];
 }
 
 const NumberRates& Family::rates() {

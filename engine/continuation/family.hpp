@@ -3,7 +3,9 @@
 
 #include "engine/kkt/problem.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
+#include "engine/search/phase_search.hpp"
 
+#include <optional>
 #include <string>
 
 namespace flyball {
@@ -17,6 +19,11 @@ class Family {
   Family& operator=(const Family&) = delete;
 
   void set(double value);
+  // Of states that stand turned (search/phase_search.hpp): with the angles of what turns among the unknowns.
+  void tie(std::optional<AngleTies> ties);
+  const std::optional<AngleTies>& ties() const { return ties_; }
+  // To the angles of such a state, by link, at which it stays.
+  void turn(const Eigen::VectorXd& starts);
   // How fast the mechanism's numbers change with it, here.
   const NumberRates& rates();
   double value() const { return value_; }
@@ -33,6 +40,8 @@ class Family {
   Parameters parameters_;
   Scaling scaling_;
   NumberRates rates_;
+  std::optional<AngleTies> ties_;
+  Eigen::VectorXd starts_; // of turn()
 };
 
 } // namespace flyball

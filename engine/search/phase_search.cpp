@@ -69,6 +69,11 @@ class PhaseSearch {
         if (!take(along_of(found[i]) + side * scattered(count, 1), Way::slowly)) return;
   }
 
+  std::optional<AngleTies> find_ties() {
+    if (!find_directions()) return {};
+    return ties();
+  }
+
   std::optional<TurnedState> run_beside(const TurnedState& other) {
     if (!find_directions()) return {};
     Eigen::VectorXd along = along_of(other);
@@ -496,6 +501,45 @@ Parameters at_angles_of(const Parameters& drawn, const TurnedState& state) {
   for (std::size_t l = 0; l < out.links.size(); ++l)
     out.links[l].start = state.starts[static_cast<Eigen::Index>(l)];
   return out;
+}
+
+std::optional<AngleTies> find_angle_ties(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
+  if (!may_stand_turned(problem)) return {};
+  return PhaseSearch(problem, q, w).find_ties();
+}
+
+bool tie_alike(const AngleTies& a, const AngleTies& b) {
+  if (a.found != b.found || a.given != b.given || a.along.cols() != b.along.cols()) return false;
+  constexpr double alike = 1e-7;
+  // Whatever basis V is.
+  const auto differ = [](const AngleTies& x, const AngleTies& y, const auto& of) {
+    const Eigen::MatrixXd first = of(x), second = of(y);
+    return !((first - second).norm() <= alike * (1 + first.norm()));
+  };
+  return !differ(a, b, [](const AngleTies& t) {
+    return Eigen::MatrixXd(t.along * t.of_found.transpose());
+  }) && !differ(a, b, [](const AngleTies& t) { return Eigen::MatrixXd(t.along * t.of_given.transpose()); });
+}
+
+Eigen::VectorXd angles_between(const Problem& problem, const AngleTies& ties, const Eigen::VectorXd& from,
+                               const Eigen::VectorXd& to) {
+  constexpr double turn = 2 * std::numbers::pi;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(ties.along.cols());
+  for (std::size_t i = 0; i < ties.found.size(); ++i) {
+    const bool turns =
+        problem.system.links[static_cast<std::size_t>(ties.found[i])].type == LinkType::revolute;
+    const double unit = turns ? 1 : problem.parameters.length;
+    double by = (to - from)[ties.found[i]] / unit;
+    if (turns) by -= turn * std::round(by / turn);
+    out += ties.along.row(static_cast<Eigen::Index>(i)).transpose() / unit * by;
+  }
+  return out;
+}
+
+void turn_along(const AngleTies& ties, const Eigen::VectorXd& step, Eigen::VectorXd& starts) {
+  const Eigen::VectorXd by = ties.along * step;
+  for (std::size_t i = 0; i < ties.found.size(); ++i)
+    starts[ties.found[i]] += by[static_cast<Eigen::Index>(i)];
 }
 
 std::optional<TurnedState> find_turned_state(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {

@@ -23,6 +23,16 @@ struct AngleTies {
   Eigen::MatrixXd of_given;      // (given, ties); both in 1/rad, or 1/m
 };
 
+// What they are of this problem; nothing where nothing ties angles, or nobody looks for such states.
+std::optional<AngleTies> find_angle_ties(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+// Whether they tie the same angles alike, which most numbers leave as it is, and ratios of gears do not.
+bool tie_alike(const AngleTies& a, const AngleTies& b);
+// Along V (rad, or parts of the reach), but for whole turns, from one state to another; by link.
+Eigen::VectorXd angles_between(const Problem& problem, const AngleTies& ties, const Eigen::VectorXd& from,
+                               const Eigen::VectorXd& to);
+// Turns what is tied by steps along V.
+void turn_along(const AngleTies& ties, const Eigen::VectorXd& step, Eigen::VectorXd& starts);
+
 struct TurnedState {
   Eigen::VectorXd starts; // by link: rad or m, Parameters::links[].start
   AngleTies ties;

@@ -1,9 +1,6 @@
-// How a steady state that stands turned (phase_search.hpp) moves with a number p of the mechanism. With F its
-// balance and loops and a the angles along V,
-//
-//     F_z dz/dp + F_a da/dp = -F_p,    M dw/dp = -dh/dp
-//
-// V as it is: numbers that tie the angles otherwise, as a gear's ratio does, change it.
+// How a steady state that stands turned (phase_search.hpp) moves with a number of the mechanism, by its
+// balance with the angles among the unknowns (turned_balance.hpp); V as it is: numbers that tie the angles
+// otherwise, as a gear's ratio does, change it.
 #pragma once
 
 #include "engine/mechanism/varied_numbers.hpp"

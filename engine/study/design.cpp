@@ -4,11 +4,14 @@
 #include "engine/continuation/extended_balance.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
+#include "engine/report/turned_measures.hpp"
 #include "engine/search/all_equilibria.hpp"
+#include "engine/search/turned_rates.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/sensitivity.hpp"
 #include "engine/study/wanted.hpp"
@@ -37,7 +40,6 @@ class Designer {
     }
     out_.unit = unit_of(mechanism_, system_, wanted_);
     BranchOptions follow;
-    follow.turned = false;
     follow.largest_step = options_.largest_step;
     follow.eigenvalues = false;
     follow.dense_up_to = 0;
@@ -47,9 +49,13 @@ class Designer {
     diagram_ = follow_branches(mechanism_, address_, from_, to_, follow);
     out_.status = diagram_.status;
     out_.message = diagram_.message;
-    if (!diagram_.branches.empty()) {
+    if (diagram_.ties_change) {
+      out_.status = Status::not_converged;
+      out_.message = "The steady state stands turned against the drawn pose, and " + address_ +
+                     " changes which angles are tied to each other: it is not looked for among such states.";
+    } else if (!diagram_.branches.empty()) {
       find_range();
-      prepare();
+      prepare(diagram_.turned);
       solve_along();
       conclude();
     }
@@ -60,11 +66,24 @@ class Designer {
  private:
   static constexpr double slack = 1e-9; // of unit(): what differs by less is the same
 
-  void prepare() {
+  // For branches of states that stand turned against the drawn pose, or of others.
+  void prepare(bool turned) {
     scale_ = scale_of_measure(value_, out_.lowest, out_.highest);
     balance_.emplace(system_, with_parameter(mechanism_, address_, from_), std::vector{address_},
                      Eigen::VectorXd::Constant(1, std::abs(to_ - from_)),
-                     std::vector{wanted_is(wanted_, value_, out_.lowest, out_.highest)});
+                     std::vector{wanted_is(wanted_, value_, out_.lowest, out_.highest)}, false,
+                     turned ? ties() : std::nullopt);
+  }
+
+  std::optional<AngleTies> ties() const {
+    Parameters parameters;
+    Scaling scaling;
+    Eigen::VectorXd drawn;
+    Workspace w;
+    bind(system_, with_parameter(mechanism_, address_, from_), parameters);
+    set_scaling(system_, parameters, scaling);
+    drawn_configuration(system_, parameters, drawn);
+    return find_angle_ties({system_, parameters, scaling, options_.cancel}, drawn, w);
   }
 
   void solve_along() {
@@ -109,6 +128,9 @@ class Designer {
 
   // Brackets every crossing of the wanted value on a branch, and where it turns close by.
   void along(std::size_t branch) {
+    if (const bool turned = diagram_.turned && diagram_.branches[branch].connected;
+        turned != balance_->ties().has_value())
+      prepare(turned);
     const std::vector<ResponsePoint>& points = diagram_.branches[branch].points;
     std::vector<double> d;
     for (const ResponsePoint& p : points)
@@ -145,8 +167,15 @@ class Designer {
     for (double t : {part, 0., 1., 0.5}) {
       ExtendedState state;
       state.parameters = Eigen::VectorXd::Constant(1, a.parameter + t * (b.parameter - a.parameter));
-      balance_->set(state.parameters);
+      state.starts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.links.size()));
+      balance_->set(state);
       const Problem problem = balance_->problem();
+      if (const auto& ties = balance_->ties()) {
+        state.starts = starts_of(problem, a.coordinates);
+        turn_along(*ties, t * angles_between(problem, *ties, state.starts, starts_of(problem, b.coordinates)),
+                   state.starts);
+        balance_->set(state);
+      }
       state.z.q = configuration_of(problem, a.coordinates);
       const Eigen::VectorXd other = configuration_of(problem, b.coordinates);
       const Eigen::VectorXd step =
@@ -166,7 +195,7 @@ class Designer {
     const Problem problem = balance_->problem();
     for (std::size_t i = 0; i < states_.size(); ++i)
       if (std::abs(states_[i].parameters[0] - state.parameters[0]) < 1e-8 * std::abs(to_ - from_) &&
-          same_pose(problem, states_[i].z.q, state.z.q, 1e-6))
+          same_pose(problem, states_[i].z.q, state.z.q, 1e-6) && same_angles(problem, states_[i], state))
         return;
     states_.push_back(state);
     DesignSolution s;
@@ -184,6 +213,11 @@ class Designer {
     s.at = response_point(balance_->mechanism(), balance_->judged(), state.z, error, {true, true, &measures_},
                           w);
     s.at.parameter = s.parameter;
+    if (balance_->ties()) {
+      s.rate = rate_of_turned(problem, state);
+      out_.solutions.push_back(std::move(s));
+      return;
+    }
     const auto rates = sensitivities(factor_at(problem, state.z, w), balance_->mechanism(), {&address_, 1});
     if (!rates.empty() && rates[0].size() == system_.nv) {
       if (wanted_.coordinate)
@@ -195,6 +229,28 @@ class Designer {
         s.rate = rate;
     }
     out_.solutions.push_back(std::move(s));
+  }
+
+  bool same_angles(const Problem& problem, const ExtendedState& a, const ExtendedState& b) const {
+    const auto& ties = balance_->ties();
+    return !ties || largest_size(angles_between(problem, *ties, a.starts, b.starts)) < 1e-6;
+  }
+
+  // Of what is wanted, by the number; nothing where it is not finite.
+  std::optional<double> rate_of_turned(const Problem& problem, const ExtendedState& state) {
+    Mechanism there = balance_->mechanism();
+    VariedNumbers number(there, {&address_, 1});
+    Workspace& w = balance_->workspace();
+    const auto rates = turned_rates(problem, state.z, *balance_->ties(), there, number, w);
+    if (rates.empty() || rates[0].q.size() == 0) return {};
+    double rate = 0;
+    if (wanted_.coordinate)
+      rate = found_gradient(system_, problem.parameters, state.z.q, *wanted_.coordinate).dot(rates[0].q);
+    else
+      rate = turned_measure_rates(problem, state.z.q, rates[0], measures_, there, number, 0,
+                                  w)[static_cast<Eigen::Index>(wanted_.measure)];
+    if (!std::isfinite(rate)) return {};
+    return rate;
   }
 
   void conclude() {

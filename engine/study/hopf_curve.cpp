@@ -83,8 +83,14 @@ class HopfTeller {
 PlaneCurves hopf_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
                         const PlaneOptions& options) {
   PlaneSearch plane(mechanism, x, y, options);
+  std::optional<AngleTies> ties; // of states that stand turned
   plane.for_lines([&](const PlaneSearch::Line& line) {
-    for (const SpecialPoint& s : plane.branches(line, true).special) {
+    const ResponseDiagram diagram = plane.branches(line, true, true);
+    if (diagram.turned && !ties) ties = plane.ties();
+    if (diagram.turned && !ties)
+      plane.refuse("The steady state stands turned against the drawn pose, and the two numbers change which "
+                   "angles are tied to each other: its curves are not followed.");
+    for (const SpecialPoint& s : diagram.special) {
       if (s.type != SpecialPointType::hopf || s.at.floquet) continue;
       if (plane.system().nv > largest_for_pairs) {
         plane.leave_out();
@@ -92,7 +98,9 @@ PlaneCurves hopf_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
       }
       const double frequency = hopf_frequency(s.at.eigenvalues);
       if (!(frequency > 0)) continue;
-      ExtendedBalance balance = plane.balance({pair_crosses(frequency)});
+      const bool turned = diagram.turned && diagram.branches[static_cast<std::size_t>(s.branch)].connected;
+      if (turned && !ties) continue;
+      ExtendedBalance balance = plane.balance({pair_crosses(frequency)}, false, turned ? ties : std::nullopt);
       if (const auto added = plane.add(balance, PlaneCurveType::hopf, line, s.at.parameter, s.at.coordinates,
                                        frequency * frequency))
         HopfTeller(balance, x, y, options).tell(added->traced, added->curve);

@@ -3,6 +3,7 @@
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/solve/drive_cuts.hpp"
 
 #include <algorithm>
@@ -58,10 +59,10 @@ ReportProgress PlaneSearch::along_line() const {
   };
 }
 
-ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
+ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues, bool turned) {
   const PlaneAxis& along = moving(line);
   BranchOptions follow;
-  follow.turned = false;
+  follow.turned = turned;
   follow.largest_step = options_.largest_step;
   follow.eigenvalues = eigenvalues;
   follow.all = options_.all;
@@ -72,13 +73,36 @@ ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
   return out;
 }
 
-ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unfolded) const {
+ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unfolded,
+                                     std::optional<AngleTies> ties) const {
   return {system_,
           at_corner(),
           {x_.address, y_.address},
           Eigen::Vector2d(x_.to - x_.from, y_.to - y_.from),
           std::move(conditions),
-          unfolded};
+          unfolded,
+          std::move(ties)};
+}
+
+std::optional<AngleTies> PlaneSearch::ties() const {
+  std::optional<AngleTies> out;
+  Workspace w;
+  for (const double x : {x_.from, x_.to})
+    for (const double y : {y_.from, y_.to})
+      try {
+        const Mechanism there = with_parameter(with_parameter(mechanism_, x_.address, x), y_.address, y);
+        Parameters parameters;
+        Scaling scaling;
+        Eigen::VectorXd drawn;
+        bind(system_, there, parameters);
+        set_scaling(system_, parameters, scaling);
+        drawn_configuration(system_, parameters, drawn);
+        const auto ties = find_angle_ties({system_, parameters, scaling, options_.cancel}, drawn, w);
+        if (!ties || (out && !tie_alike(*out, *ties))) return {};
+        out = ties;
+      } catch (const SceneError&) { // no mechanism can be made there
+      }
+  return out;
 }
 
 std::optional<PlaneSearch::Added> PlaneSearch::add(ExtendedBalance& balance, PlaneCurveType type,
@@ -91,7 +115,12 @@ std::optional<PlaneSearch::Added> PlaneSearch::add(ExtendedBalance& balance, Pla
   state.parameters =
       line.varied == 0 ? Eigen::Vector2d(varied, line.value) : Eigen::Vector2d(line.value, varied);
   state.pair = pair;
-  balance.set(state.parameters);
+  state.starts = Eigen::VectorXd::Zero(balance.ties() ? static_cast<Eigen::Index>(system_.links.size()) : 0);
+  balance.set(state);
+  if (balance.ties()) {
+    state.starts = starts_of(balance.problem(), coordinates);
+    balance.set(state);
+  }
   state.z.q = configuration_of(balance.problem(), coordinates);
   if (!tracer.start(state, 1 - line.varied)) return {};
   for (std::size_t i = 0; i < traced_.size(); ++i)
@@ -119,7 +148,16 @@ void PlaneSearch::heard(Status status, const std::string& message) {
   out_.message = message;
 }
 
+void PlaneSearch::refuse(std::string why) {
+  refusal_ = std::move(why);
+}
+
 PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left_out) {
+  if (!refusal_.empty()) {
+    out_ = {};
+    out_.message = refusal_;
+    return std::move(out_);
+  }
   if (out_.status == Status::converged) {
     const std::size_t n = out_.curves.size();
     out_.message = (n == 0 ? "No " + what + " curve"
@@ -141,7 +179,7 @@ Mechanism PlaneSearch::at_corner() const {
 }
 
 ResponsePoint PlaneSearch::response(ExtendedBalance& balance, const ExtendedState& s, bool eigenvalues) {
-  balance.set(s.parameters);
+  balance.set(s);
   return response_point(balance.mechanism(), balance.judged(), s.z, {}, {eigenvalues, false},
                         balance.workspace());
 }

@@ -28,10 +28,14 @@ class PlaneSearch {
   void for_lines(const std::function<void(const Line&)>& search);
   // Of following the branches along the line that is searched: a part of the whole.
   ReportProgress along_line() const;
-  // The branches along a line, of which the search has heard.
-  ResponseDiagram branches(const Line& line, bool eigenvalues);
+  // The branches along a line, of which the search has heard; with `turned` those of states that stand turned
+  // against the drawn pose, too (ResponseDiagram::turned).
+  ResponseDiagram branches(const Line& line, bool eigenvalues, bool turned = false);
 
-  ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false) const;
+  ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false,
+                          std::optional<AngleTies> ties = {}) const;
+  // Of states that stand turned, where they are the same all over the plane.
+  std::optional<AngleTies> ties() const;
 
   // The curve through a point on a line, if it is not known yet; `pair` as in ExtendedState. Nothing where
   // there is none, or it is.
@@ -49,6 +53,8 @@ class PlaneSearch {
   void leave_out() { ++left_out_; }
 
   void heard(Status status, const std::string& message);
+  // There is no answer, whatever else was found.
+  void refuse(std::string why);
 
   // `what` there are curves of; `left_out`, what is said after how many starts were left out.
   PlaneCurves finish(const std::string& what, const std::string& left_out = "");
@@ -67,6 +73,7 @@ class PlaneSearch {
   int left_out_ = 0;
   std::vector<TracedCurve> traced_;
   PlaneCurves out_;
+  std::string refusal_;
 };
 
 } // namespace flyball

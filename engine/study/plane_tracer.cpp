@@ -43,6 +43,8 @@ bool PlaneTracer::lies_on(const ExtendedState& state, const TracedCurve& curve) 
   double least = 2 * options_.largest_step;
   Eigen::VectorXd away;
   for (std::size_t i = 0; i < curve.states.size(); ++i) {
+    if (curve.states[i].starts.size() != state.starts.size())
+      continue; // these stand turned, or the other does
     const Eigen::VectorXd d = difference(curve.states[i], state);
     const double pair = std::max(std::abs(curve.states[i].pair), std::abs(state.pair));
     if (d.norm() >= least || std::abs(curve.states[i].pair - state.pair) > 0.3 * pair) continue;
@@ -71,8 +73,9 @@ bool PlaneTracer::inside(const ExtendedState& s) const {
 }
 
 Eigen::VectorXd PlaneTracer::difference(const ExtendedState& a, const ExtendedState& b) const {
-  Eigen::VectorXd out(balance_.unknowns());
-  out << scaled_difference(balance_.problem(), a.z.q, b.z.q),
+  Eigen::VectorXd out(balance_.unknowns()), turned;
+  if (balance_.ties()) turned = angles_between(balance_.problem(), *balance_.ties(), a.starts, b.starts);
+  out << scaled_difference(balance_.problem(), a.z.q, b.z.q), turned,
       (b.parameters - a.parameters).cwiseQuotient(balance_.scales());
   return out;
 }
@@ -96,7 +99,7 @@ int PlaneTracer::step(const ExtendedState& from, const Eigen::VectorXd& tangent,
   prepare(from);
   to = from;
   balance_.move(to, length * tangent);
-  balance_.set(to.parameters);
+  balance_.set(to);
   const ExtendedOutcome outcome = balance_.correct(to, tangent);
   return outcome.converged && finish_step(from, to) ? std::max(1, outcome.iterations) : 0;
 }
@@ -178,7 +181,7 @@ TracedCurve PlaneTracer::follow(ExtendedState state, Eigen::VectorXd tangent) {
 // each.
 bool PlaneTracer::one_motion(const ExtendedState& s) {
   if (type_ != PlaneCurveType::hopf) return true;
-  balance_.set(s.parameters);
+  balance_.set(s);
   const Problem p = balance_.problem();
   const std::vector<double> phases = sample_phases(p.system, p.parameters, s.z.q);
   return check_existence(p, s.z.q, phases, balance_.workspace()).holds &&
@@ -235,7 +238,7 @@ void PlaneTracer::land_on_border(const ExtendedState& state, const Eigen::Vector
   balance_.move(last, part * length * tangent);
   const double at_border = there[border] > 1 ? high_[border] : low_[border];
   last.parameters[border] = at_border;
-  balance_.set(last.parameters);
+  balance_.set(last);
   if (!balance_.correct(last, unit(border)).converged) return;
   last.parameters[border] = at_border; // without the rounding of the corrections
   if (!inside(last)) return;

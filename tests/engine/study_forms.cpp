@@ -188,7 +188,7 @@ Corrected fold(const Mechanism& m, System& system, KktForm form, double at, doub
   ExtendedBalance balance(system, m, {speed, gravity}, Eigen::Vector2d(4, 10), {balance_is_singular()});
   Corrected out;
   out.state.parameters = Eigen::Vector2d(at, pull);
-  balance.set(out.state.parameters);
+  balance.set(out.state);
   out.state.z.q = configuration_of(balance.problem(), coordinates);
   balance.set_borders(out.state);
   const Eigen::VectorXd fixed = Eigen::VectorXd::Unit(balance.unknowns(), balance.unknowns() - 1);
