@@ -197,7 +197,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
     const bool any = diagram.response.status == Status::converged && !diagram.branches.empty();
     if (any && !options->svg.empty())
       write_bytes(options->svg,
-                  to_svg(campbell_plot(mechanism, range.address, diagram, 0,
+                  to_svg(campbell_plot(mechanism, range.address, diagram, 0, diagram.branches[0].names,
                                        {std::min(range.from, range.to), std::max(range.from, range.to)},
                                        orders, true)));
     if (any && !options->csv.empty()) write_bytes(options->csv, diagram_csv(diagram, range.address));

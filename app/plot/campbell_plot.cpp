@@ -44,11 +44,12 @@ void break_line(Segment& segment) {
     if (!points->empty()) points->push_back({no_value, no_value});
 }
 
-void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch& branch, double factor) {
+void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch& branch,
+               std::span<const std::string> names, double factor) {
   const double zero = rounding(branch);
   int number = 0;
-  for (std::size_t l = 0; l < branch.names.size(); ++l) {
-    if (branch.names[l].empty()) continue;
+  for (std::size_t l = 0; l < names.size(); ++l) {
+    if (names[l].empty()) continue;
     const auto mode = [&](std::size_t i) { return branch.points[i].on(l); };
     const auto swings = [&](std::size_t i) { return mode(i) && mode(i)->eigenvalue.imag() > zero; };
     Segment segment;
@@ -71,9 +72,9 @@ void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch&
       if (stands(i + 1)) add(segment, stable, foot(i + 1));
     }
     if (!segment.stable.empty())
-      plot.curves.push_back({.name = branch.names[l], .points = std::move(segment.stable), .color = number});
+      plot.curves.push_back({.name = names[l], .points = std::move(segment.stable), .color = number});
     if (!segment.unstable.empty())
-      plot.curves.push_back({.name = branch.names[l],
+      plot.curves.push_back({.name = names[l],
                              .points = std::move(segment.unstable),
                              .line = PlotLine::dashed,
                              .color = number});
@@ -165,12 +166,13 @@ std::string order_text(double order) {
 }
 
 Plot campbell_plot(const Mechanism& mechanism, const std::string& address, const CampbellDiagram& diagram,
-                   std::size_t branch, PlotRange speeds, std::span<const double> orders, bool hertz) {
+                   std::size_t branch, std::span<const std::string> names, PlotRange speeds,
+                   std::span<const double> orders, bool hertz) {
   Plot plot;
   const double factor = hertz ? 1 / (2 * std::numbers::pi) : 1;
   plot.x = {.label = address, .unit = parameter_unit(mechanism, address), .range = speeds, .room = 0};
   plot.y = {.label = "frequency", .unit = hertz ? "Hz" : "rad/s"};
-  add_lines(plot, diagram.response.branches[branch], diagram.branches[branch], factor);
+  add_lines(plot, diagram.response.branches[branch], diagram.branches[branch], names, factor);
   const double highest = highest_of(plot);
   plot.y.range = PlotRange{0, highest > 0 ? 1.1 * highest : 1};
   if (highest > 0 && !driven_joint(mechanism, address).empty())

@@ -6,12 +6,15 @@
 #include "engine/study/campbell.hpp"
 
 #include <span>
+#include <string>
 
 namespace flyball {
 
-// In Hz or rad/s. `from` and `to` are the axis' ends; `orders` the lines of so many oscillations a turn.
+// In Hz or rad/s. `names` are those of the branch's lines, empty for those that are left out; `speeds` the
+// axis' ends; `orders` the lines of so many oscillations a turn.
 Plot campbell_plot(const Mechanism& mechanism, const std::string& address, const CampbellDiagram& diagram,
-                   std::size_t branch, PlotRange speeds, std::span<const double> orders, bool hertz);
+                   std::size_t branch, std::span<const std::string> names, PlotRange speeds,
+                   std::span<const double> orders, bool hertz);
 
 // "2×"
 std::string order_text(double order);

@@ -19,31 +19,27 @@ struct State {
   std::vector<CoordinateSolution> coordinates;
 };
 
-// How far (scaled) the branch passes by the state at its speed.
-double distance(const ResponseBranch& branch, const State& state) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < branch.points.size(); ++i) {
-    const ResponsePoint &a = branch.points[i - 1], &b = branch.points[i];
-    const double span = b.parameter - a.parameter;
-    const double part = span == 0 ? 0 : (state.speed - a.parameter) / span;
-    if (part < -1e-6 || part > 1 + 1e-6) continue;
-    least = std::min(
-        least, scaled_distance(coordinates_between(a.coordinates, b.coordinates, std::clamp(part, 0., 1.)),
-                               state.coordinates));
-  }
-  return least;
+// How far (scaled) the branch passes by the state at its speed between points i and i + 1.
+double distance(const ResponseBranch& branch, std::size_t i, const State& state) {
+  const ResponsePoint &a = branch.points[i], &b = branch.points[i + 1];
+  const double span = b.parameter - a.parameter;
+  const double part = span == 0 ? 0 : (state.speed - a.parameter) / span;
+  if (part < -1e-6 || part > 1 + 1e-6) return std::numeric_limits<double>::infinity();
+  return scaled_distance(coordinates_between(a.coordinates, b.coordinates, std::clamp(part, 0., 1.)),
+                         state.coordinates);
 }
 
-// The branch that the state lies on, between whose points it may be off by a little.
-std::optional<std::size_t> branch_through(const std::vector<ResponseBranch>& branches, const State& state) {
+// Where the state lies on one of them, between whose points it may be off by a little.
+std::optional<CampbellPlace> place_on(const std::vector<ResponseBranch>& branches, const State& state) {
   constexpr double near = 0.03; // scaled
-  std::optional<std::size_t> best;
+  std::optional<CampbellPlace> best;
   double least = near;
   for (std::size_t b = 0; b < branches.size(); ++b)
-    if (const double apart = distance(branches[b], state); apart < least) {
-      least = apart;
-      best = b;
-    }
+    for (std::size_t i = 0; i + 1 < branches[b].points.size(); ++i)
+      if (const double apart = distance(branches[b], i, state); apart < least) {
+        least = apart;
+        best = {b, i};
+      }
   return best;
 }
 
@@ -57,7 +53,7 @@ CampbellDiagram follow(const Mechanism& mechanism, const CampbellRequest& reques
   ResponseDiagram response = follow_branches(mechanism, request.drive, from, to, options);
   // Nothing may connect the state with what the drawn pose leads to.
   const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
-  if (inside && !state.coordinates.empty() && !branch_through(response.branches, state) && !context.cancel) {
+  if (inside && !state.coordinates.empty() && !place_on(response.branches, state) && !context.cancel) {
     options.all = true;
     options.all_at = {state.speed};
     response = follow_branches(mechanism, request.drive, from, to, options);
@@ -130,7 +126,7 @@ void update_campbell(Session& session) {
     diagram.found.reset();
   if (diagram.found && !solving(session) &&
       (campbell.judged != diagram.found || campbell.judged_ticket != session.answer.ticket)) {
-    campbell.on_branch = campbell_branch(session).has_value();
+    campbell.on_branch = campbell_place(session).has_value();
     campbell.judged = diagram.found;
     campbell.judged_ticket = session.answer.ticket;
   }
@@ -157,10 +153,30 @@ void update_campbell(Session& session) {
   if (!same_axis || !diagram.found || diagram.quick()) follow_campbell(session);
 }
 
-std::optional<std::size_t> campbell_branch(const Session& session) {
+std::optional<CampbellPlace> campbell_place(const Session& session) {
   const auto& found = session.study.modes.campbell.diagram.found;
   if (!found) return std::nullopt;
-  return branch_through(found->result.response.branches, present(session, found->of.drive));
+  return place_on(found->result.response.branches, present(session, found->of.drive));
+}
+
+std::vector<std::string> campbell_names(const Session& session, const CampbellPlace& place) {
+  const auto& diagram = session.study.modes.campbell.diagram.found;
+  const CampbellBranch& branch = diagram->result.branches[place.branch];
+  std::vector<int> listed(branch.names.size(), -1);
+  if (const auto& list = session.study.modes.list.found)
+    listed = modes_on_lines(diagram->result.response.branches[place.branch], branch, place.after,
+                            get_parameter(session.mechanism(), diagram->of.drive), list->result.modes);
+  std::vector<std::string> names = branch.names;
+  for (std::size_t l = 0; l < names.size(); ++l) {
+    if (names[l].empty()) continue;
+    if (listed[l] < 0) {
+      names[l].replace(0, names[l].find(' '), "line");
+    } else {
+      names[l] = "mode " + std::to_string(listed[l] + 1) +
+                 names[l].substr(std::min(names[l].find(','), names[l].size()));
+    }
+  }
+  return names;
 }
 
 } // namespace flyball

@@ -49,7 +49,13 @@ void follow_campbell(Session& session);
 // Takes what was followed; follows anew after changes of anything but the speed where that takes no time to
 // speak of.
 void update_campbell(Session& session);
-// The branch that the state lies on.
-std::optional<std::size_t> campbell_branch(const Session& session);
+// Where the state lies on a branch of the diagram: between its points `after` and `after + 1`.
+struct CampbellPlace {
+  std::size_t branch = 0, after = 0;
+};
+std::optional<CampbellPlace> campbell_place(const Session& session);
+// What the lines of the branch there are called: by the list's number of the mode that lies on each at the
+// present speed, "mode 3, tilt.1", and "line 2, tilt.0" where that is none of the list.
+std::vector<std::string> campbell_names(const Session& session, const CampbellPlace& place);
 
 } // namespace flyball

@@ -1,5 +1,6 @@
 #include "engine/study/campbell.hpp"
 
+#include "engine/linear/assignment.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
@@ -108,6 +109,14 @@ class Describer {
   const std::atomic<bool>* cancel_;
   Solution solution_;
 };
+
+// How unlike a mode is to the one that is `part` of the way along a line from its mode `a` to its mode `b`.
+double unlikeness(const VibrationMode& mode, const VibrationMode& a, const VibrationMode& b, double part) {
+  const std::complex<double> expected = a.eigenvalue + part * (b.eigenvalue - a.eigenvalue);
+  const double size = 0.2 * std::abs(expected) + std::abs(b.eigenvalue - a.eigenvalue) + 1e-300;
+  return std::abs(mode.eigenvalue - expected) / size + 1 -
+         std::max(modal_assurance(mode, a), modal_assurance(mode, b));
+}
 
 std::vector<std::string> names_of(const CampbellBranch& branch, std::size_t lines) {
   std::vector<std::string> names(lines);
@@ -350,15 +359,11 @@ class CrossingFinder {
   }
 
   std::optional<VibrationMode> nearest(const Way& way, double speed) {
-    const VibrationMode &at_a = *way.a.mode, &at_b = *way.b.mode;
     const double part = (speed - way.a.speed()) / (way.b.speed() - way.a.speed());
-    const std::complex<double> expected = at_a.eigenvalue + part * (at_b.eigenvalue - at_a.eigenvalue);
-    const double size = 0.2 * std::abs(expected) + std::abs(at_b.eigenvalue - at_a.eigenvalue) + 1e-300;
     std::optional<VibrationMode> best;
     double least = 0;
     for (VibrationMode& mode : describer_.modes_between(*way.a.at, *way.b.at, speed)) {
-      const double cost = std::abs(mode.eigenvalue - expected) / size + 1 -
-                          std::max(modal_assurance(mode, at_a), modal_assurance(mode, at_b));
+      const double cost = unlikeness(mode, *way.a.mode, *way.b.mode, part);
       if (best && cost >= least) continue;
       least = cost;
       best = std::move(mode);
@@ -424,6 +429,33 @@ std::string driven_joint(const Mechanism& mechanism, const std::string& address)
     if (speed.angle && (speed.address == address || number_alone(mechanism, speed.address) == address))
       return speed.joint;
   return {};
+}
+
+std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBranch& branch,
+                                std::size_t after, double speed, std::span<const VibrationMode> modes) {
+  constexpr double none = 2, most = 9; // unlikeness of what lies on no line, and of what is farthest from one
+  const std::size_t lines = branch.names.size();
+  const double from = followed.points[after].parameter, to = followed.points[after + 1].parameter;
+  const double part = from == to ? 0 : (speed - from) / (to - from);
+  Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(modes.size()),
+                                                   static_cast<Eigen::Index>(lines + modes.size()), none);
+  for (std::size_t l = 0; l < lines; ++l) {
+    const VibrationMode *a = branch.points[after].on(l), *b = branch.points[after + 1].on(l);
+    for (std::size_t k = 0; k < modes.size(); ++k)
+      cost(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) =
+          a || b ? std::min(most, unlikeness(modes[k], a ? *a : *b, b ? *b : *a, part)) : most;
+  }
+  const std::vector<Eigen::Index> line = assign(cost);
+  std::vector<int> out(lines, -1);
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    if (line[k] < static_cast<Eigen::Index>(lines))
+      out[static_cast<std::size_t>(line[k])] = static_cast<int>(k);
+  return out;
+}
+
+bool unbalance_excites(const CriticalSpeed& critical) {
+  constexpr double circle = 0.999; // as of Whirl::direction()
+  return critical.order == 1 && critical.whirl && !critical.whirl->turning && critical.whirl->value > -circle;
 }
 
 std::string left_out(const ResponseBranch& branch, const std::function<std::string(double)>& speed_text,

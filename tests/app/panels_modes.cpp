@@ -216,6 +216,45 @@ TEST_CASE("Campbell lines are continuous, and agree with the modes where the mec
   CHECK(angular == Approx(2 * std::numbers::pi * highest));
 }
 
+TEST_CASE(
+    "the Campbell diagram calls the modes by the list's numbers, and tells which critical speeds count") {
+  // With speed the backward tilting mode falls below the two that are lowest at first.
+  ModesRobot robot("rotor_oil_whip");
+  App& app = robot.app;
+  const CampbellView& drawn = app.panels->studies.shown().campbell;
+  for (const double n : {20., 240.}) {
+    change_parameter(app.session, "parameters.n", n);
+    robot.frames(4);
+    REQUIRE(modes_are_current(app.session));
+    int told = 0;
+    for (const PlotCurve& curve : drawn.plot.curves) {
+      if (!curve.name.starts_with("mode ")) continue;
+      const VibrationMode& mode = robot.modes().at(std::stoul(curve.name.substr(5)) - 1);
+      for (std::size_t i = 1; i < curve.points.size(); ++i) {
+        const auto &a = curve.points[i - 1], &b = curve.points[i];
+        if (!(a[0] <= n && n < b[0]) || !std::isfinite(a[1] + b[1])) continue;
+        ++told;
+        CHECK(a[1] + (b[1] - a[1]) * (n - a[0]) / (b[0] - a[0]) ==
+              Approx(hertz(mode.frequency)).epsilon(2e-3));
+      }
+    }
+    CHECK(told == 4);
+  }
+  REQUIRE(drawn.critical);
+  REQUIRE_FALSE(drawn.critical->empty());
+  std::vector<double> unbalance;
+  for (const CriticalRow& row : *drawn.critical) {
+    CHECK(row.unbalance == (row.order == "1×" && row.whirl == "forward"));
+    if (row.unbalance) unbalance.push_back(row.at);
+  }
+  REQUIRE(unbalance.size() == 1); // the next is beyond the slider's range
+  CHECK(unbalance[0] == Approx(68.2320470519));
+  CHECK(std::ranges::is_sorted(*drawn.critical, {}, &CriticalRow::order));
+  robot.click("campbell/critical/1");
+  robot.frames(2);
+  CHECK(get_parameter(app.session.mechanism(), "parameters.n") == Approx(68.2320470519));
+}
+
 TEST_CASE("only of the branch that is shown is it said where it has no modes") {
   // The arms of the other branch hang straight down, and are without modes at every speed.
   ModesRobot robot("governor");

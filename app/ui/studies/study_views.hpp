@@ -79,12 +79,21 @@ struct TransferView {
   TransferChoice fitted; // what was chosen when all of the plots was last in view
 };
 
+// A critical speed as it is written into the table.
+struct CriticalRow {
+  std::string order, mode, whirl, speed;
+  bool unbalance = false; // it excites it
+  double at = 0;          // rad/s
+  std::string help;
+};
+
 struct CampbellView {
   bool hertz = true; // or rad/s
   PlotView view;
   Plot plot;
-  std::string critical;      // the speeds, in words; empty: the axis is no speed of turning
-  std::string without_modes; // where the branch that is shown has none; empty: nowhere
+  std::optional<std::vector<CriticalRow>> critical; // none: the axis is no speed of turning
+  ShownUnit unit;                                   // of the axis
+  std::string without_modes;                        // where the branch that is shown has none; empty: nowhere
   struct Of {
     std::shared_ptr<const void> diagram, modes; // what was found
     std::uint64_t answer = 0;                   // its ticket

@@ -6,6 +6,7 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/studies/modes/campbell_plot.hpp"
+#include "app/ui/studies/modes/critical_speeds.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
@@ -56,7 +57,9 @@ std::string whirl_words(const Whirl& whirl, double frequency) {
   const bool forward = direction == WhirlDirection::forward;
   std::string text =
       forward ? "\nWhirls forward, as the drive turns" : "\nWhirls backward, against the drive";
-  text += " (" + short_text(std::abs(whirl.value), 3) + " of a circle)";
+  const double round = std::abs(whirl.value); // of a circle
+  text +=
+      round > 0.999 ? ", in circles" : ", in ellipses (" + short_text(round, 3) + ", where 1 is a circle)";
   if (!whirl.turning) return text + ".";
   const double seen = standing_frequencies(whirl, frequency)[forward ? 0 : 1];
   return text + ", as seen from what turns with it; from the ground at " + short_text(hertz(seen), 6) +
@@ -169,10 +172,10 @@ std::string largest_movement(const Session& session, const VibrationMode& mode) 
 
 std::string speed_words(const VibrationMode& mode) {
   const std::optional<double> slower = shown_slower(mode);
-  if (!slower) return "Does not swing: shown swaying.";
-  if (*slower == 1) return "Shown as fast as it is.";
-  if (*slower > 1) return "Shown " + short_text(*slower, 3) + " times slower than it is.";
-  return "Shown " + short_text(1 / *slower, 3) + " times faster than it is.";
+  if (!slower) return "Shown swaying: no swing";
+  if (*slower == 1) return "As fast as it is";
+  return "Shown " + short_text(*slower > 1 ? *slower : 1 / *slower, 3) +
+         (*slower > 1 ? "× slower" : "× faster");
 }
 
 void transport(Session& session, Ui& ui, const CommandRunner& commands) {
@@ -323,6 +326,32 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   }
 }
 
+// Beside the plot where there is room for both, or else above it. Returns the plot's width (pixels).
+float show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive) {
+  constexpr float least_plot = 360; // points
+  constexpr std::size_t most_above = 3;
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  if (!drawn.critical) return room.x;
+  const std::vector<CriticalRow>& rows = *drawn.critical;
+  if (rows.empty()) {
+    paragraph("No critical speed in this range.", colors_of(ui).dim);
+    note_widget(ui.widgets, "campbell/no_critical");
+    return room.x;
+  }
+  const float width = critical_table_width(ui), gap = 10 * ui.scale;
+  const float line = ImGui::GetTextLineHeight() + 4 * ui.scale;
+  if (room.x < width + gap + least_plot * ui.scale) {
+    critical_table(session, ui, rows, drawn.unit, drive,
+                   line * static_cast<float>(1 + std::min(rows.size(), most_above)));
+    return room.x;
+  }
+  const ImVec2 at = ImGui::GetCursorPos();
+  ImGui::SetCursorPos({at.x + room.x - width, at.y});
+  critical_table(session, ui, rows, drawn.unit, drive, room.y);
+  ImGui::SetCursorPos(at);
+  return room.x - width - gap;
+}
+
 void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   CampbellState& campbell = session.study.modes.campbell;
   const UiColors& colors = colors_of(ui);
@@ -343,19 +372,16 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   }
   if (!diagram.found || turns) return;
   draw_campbell(session, drawn);
-  if (const std::string& words = drawn.critical; !words.empty()) {
-    clipped_text(words, ImGui::GetContentRegionAvail().x);
-    note_widget(ui.widgets, "campbell/critical");
-  }
   if (!drawn.without_modes.empty()) {
     paragraph(drawn.without_modes, colors.dim);
     note_widget(ui.widgets, "campbell/without");
   }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
-  const PlotEvents events = plot_view(
-      session, ui, "campbell", drawn.view, drawn.plot,
-      {std::max(ImGui::GetContentRegionAvail().x, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+  const float room = show_critical(session, ui, drawn, diagram.found->of.drive);
+  const PlotEvents events =
+      plot_view(session, ui, "campbell", drawn.view, drawn.plot,
+                {std::max(room, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
   const auto set = [&](double speed) {
     later(ui, [&session, drive, speed] { change_parameter(session, drive, speed); });
   };

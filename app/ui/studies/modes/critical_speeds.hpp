@@ -1,0 +1,23 @@
+// The critical speeds of the branch that a Campbell diagram shows, as a table.
+#pragma once
+
+#include "app/session/session.hpp"
+#include "app/ui/studies/study_views.hpp"
+#include "app/ui/ui.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace flyball {
+
+// Of a branch whose lines have these names: by order, then by speed.
+std::vector<CriticalRow> critical_rows(const CampbellDiagram& diagram, std::size_t branch,
+                                       std::span<const std::string> names, const ShownUnit& unit);
+// Pixels, of all columns.
+float critical_table_width(const Ui& ui);
+// From here on, `height` (pixels) of it. A click on a row sets the number at `address` to its speed.
+void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& rows, const ShownUnit& unit,
+                    const std::string& address, float height);
+
+} // namespace flyball
