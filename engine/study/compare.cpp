@@ -3,11 +3,14 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/dynamics/watch.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/report/report.hpp"
 #include "engine/search/steady_state.hpp"
+#include "engine/search/turned_balance.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/refine.hpp"
 #include "engine/stability/stability.hpp"
@@ -63,30 +66,35 @@ double time_of(int repeats, const Time& time, Work work) {
 
 class Direct {
  public:
-  Direct(const Mechanism& mechanism, const std::atomic<bool>* cancel) : cancel_(cancel) {
+  Direct(const Mechanism& mechanism, const std::atomic<bool>* cancel)
+      : mechanism_(mechanism), cancel_(cancel) {
     system_ = compile_for_drives(mechanism);
     bind(system_, mechanism, parameters_);
     set_scaling(system_, parameters_, scaling_);
     drawn_configuration(system_, parameters_, drawn_);
     measures_.bind(mechanism, system_, parameters_);
+    as_drawn_ = parameters_;
   }
 
   const System& system() const { return system_; }
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
   bool answer(Unknowns& z) {
+    parameters_ = as_drawn_;
     steady_.find(problem(), drawn_, drawn_, {.seconds = SolveOptions{}.search});
-    if (!steady_.holds) return false;
+    if (!steady_.holds) return answer_turned(z);
     if (!steady_.found.minimum || !steady_.phases.empty())
       stability_ =
           steady_.stability ? *steady_.stability : find_stability(steady_.factored(classified()), false);
     z = steady_.found.z;
     return true;
   }
-  int iterations() const { return steady_.found.iterations; }
+  int iterations() const { return turned_ ? turned_->iterations : steady_.found.iterations; }
+  bool turned() const { return turned_.has_value(); }
 
   // q* by Newton's steps on the balance in extended precision, from an answer, until nothing moves.
   void settle_reference(const Unknowns& answer, Comparison& out) {
+    if (turned_) return settle_turned_reference(out);
     Unknowns z = answer;
     factor_with_multipliers(problem(), z, w_);
     reference_ = z.q.cast<Extended>();
@@ -111,10 +119,36 @@ class Direct {
       previous = size;
     }
     if (correction.size() == 0) correction.setZero(system_.nv);
-    const Eigen::VectorXd q = reference_.cast<double>();
-    forward<double>(system_, parameters_, q, 0, w_.kinematics);
-    out.reference = coordinate_solutions(system_, parameters_, q, correction.cwiseAbs(), w_.kinematics);
-    measured_ = measures_.evaluate_at(problem(), q, w_);
+    tell_reference(correction, out);
+  }
+
+  // How far along V (AngleTies) what turned by `angles` (by link, of the motion, `time` s from its beginning)
+  // is from q*, but for whole turns of each: rad, or parts of the reach. Takes these angles for
+  // measure_errors.
+  double take_angles(const Eigen::VectorXd& angles, double time) {
+    if (!turned_) return 0;
+    const AngleTies& ties = turned_->ties;
+    Eigen::VectorXd away = Eigen::VectorXd::Zero(ties.along.cols());
+    std::vector<Eigen::VectorXd> turns; // along V, of a whole one of each
+    for (std::size_t i = 0; i < ties.found.size(); ++i) {
+      const auto l = static_cast<std::size_t>(ties.found[i]);
+      const bool revolute = system_.links[l].type == LinkType::revolute;
+      const double unit = revolute ? 1 : parameters_.length;
+      const Eigen::VectorXd along = ties.along.row(static_cast<Eigen::Index>(i)).transpose() / unit;
+      const double stood =
+          turned_->starts[ties.found[i]] + static_cast<double>(reference_[system_.links[l].q]) * time;
+      away += along * (angles[ties.found[i]] - parameters_.links[l].drawn - stood) / unit;
+      if (revolute && along.squaredNorm() > 0) turns.push_back(2 * std::numbers::pi * along);
+    }
+    constexpr int rounds = 4;
+    for (int i = 0; i < rounds; ++i)
+      for (const Eigen::VectorXd& turn : turns)
+        away -= std::round(turn.dot(away) / turn.squaredNorm()) * turn;
+    Eigen::VectorXd starts = turned_->starts;
+    turn_along(ties, away, starts);
+    for (const int link : ties.found)
+      parameters_.links[static_cast<std::size_t>(link)].start = starts[link];
+    return largest_size(away);
   }
 
   // The largest difference from q*, in radians or relative to the reach.
@@ -168,9 +202,62 @@ class Direct {
     return p;
   }
 
+  bool answer_turned(Unknowns& z) {
+    turned_ = find_turned_state({system_, parameters_, scaling_, cancel_}, drawn_, w_);
+    if (!turned_) return false;
+    parameters_ = at_angles_of(as_drawn_, *turned_);
+    z = turned_->z;
+    stability_ = find_stability(factor_at({system_, parameters_, scaling_, cancel_}, z, w_), false);
+    return true;
+  }
+
+  // By steps of the balance with the angles among its unknowns.
+  void settle_turned_reference(Comparison& out) {
+    Unknowns z = turned_->z;
+    reference_ = z.q.cast<Extended>();
+    ExtendedVector step;
+    Eigen::VectorXd correction = Eigen::VectorXd::Zero(system_.nv);
+    double previous = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 12; ++i) {
+      const Problem at{system_, parameters_, scaling_, cancel_};
+      const TurnedBalance balance(at, z, turned_->ties, mechanism_, w_);
+      if (!balance.usable()) break;
+      w_.q_extended = reference_;
+      w_.lambda_extended = ExtendedVector::Zero(system_.rows);
+      evaluate_extended(at, w_);
+      const auto solved =
+          solve_square(balance.matrix(), -balance.left_of(w_.residual_extended.f.cast<double>(),
+                                                          w_.residual_extended.phi.cast<double>()));
+      if (!solved) break;
+      const Eigen::Index angles = balance.angles();
+      const double size = largest_size(solved->head(system_.nv + angles));
+      out.reference_error = size;
+      out.reference_residual = balance.residual();
+      if (!std::isfinite(size) || (i > 1 && size >= previous / 2)) break; // rounding is all that is left
+      correction = solved->head(system_.nv).cwiseProduct(scaling_.column);
+      step = correction.cast<Extended>();
+      retract<Extended>(system_, step, reference_);
+      turn_along(turned_->ties, solved->segment(system_.nv, angles), turned_->starts);
+      parameters_ = at_angles_of(as_drawn_, *turned_);
+      z = {reference_.cast<double>(), balance.lambda_of(solved->tail(balance.multipliers()))};
+      previous = size;
+    }
+    tell_reference(correction, out);
+  }
+
+  void tell_reference(const Eigen::VectorXd& correction, Comparison& out) {
+    const Eigen::VectorXd q = reference_.cast<double>();
+    forward<double>(system_, parameters_, q, 0, w_.kinematics);
+    out.reference = coordinate_solutions(system_, parameters_, q, correction.cwiseAbs(), w_.kinematics);
+    measured_ = measures_.evaluate_at(problem(), q, w_);
+  }
+
+  const Mechanism& mechanism_;
   const std::atomic<bool>* cancel_;
   System system_;
-  Parameters parameters_;
+  Parameters parameters_; // at the angles of a state that stands turned
+  Parameters as_drawn_;
+  std::optional<TurnedState> turned_;
   Scaling scaling_;
   Eigen::VectorXd drawn_;
   Workspace w_;
@@ -236,16 +323,25 @@ Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
   return simulate(mechanism, options);
 }
 
+struct RunEnd {
+  Eigen::VectorXd q;
+  Eigen::VectorXd angles; // by link, of what torques drive
+};
+
 // Where a run ended.
-Eigen::VectorXd end_of(const Run& run, const Direct& direct) {
+RunEnd end_of(const Run& run, const Direct& direct) {
   const auto nq = static_cast<std::ptrdiff_t>(direct.system().nq);
   const auto sample =
       static_cast<std::ptrdiff_t>(run.states.size()) - (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
   Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq);
   // What torques drive is compared by its speed; the motion's coordinates are in the same order.
-  for (const Link& link : direct.system().links)
-    if (finds_speed(link)) q[link.q] = run.states[static_cast<std::size_t>(sample + nq + link.v)];
-  return q;
+  Eigen::VectorXd angles = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(direct.system().links.size()));
+  for (std::size_t l = 0; l < direct.system().links.size(); ++l)
+    if (const Link& link = direct.system().links[l]; finds_speed(link)) {
+      angles[static_cast<Eigen::Index>(l)] = q[link.q];
+      q[link.q] = run.states[static_cast<std::size_t>(sample + nq + link.v)];
+    }
+  return {std::move(q), std::move(angles)};
 }
 
 // One run and its repeats. Nothing where nobody waits for it any more.
@@ -262,8 +358,8 @@ std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationO
     if (i == 0) {
       point.error = std::numeric_limits<double>::quiet_NaN();
       if (run.status == RunStatus::completed) {
-        const Eigen::VectorXd q = end_of(run, direct);
-        point.error = direct.error_of(q, neutral);
+        const auto [q, angles] = end_of(run, direct);
+        point.error = std::max(direct.error_of(q, neutral), direct.take_angles(angles, simulation.duration));
         point.measure_errors = direct.measure_errors(q);
       }
       point.steps = run.statistics.steps;
@@ -324,13 +420,6 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   out.message = steady.message;
   if (time.watch.over()) broken_off();
   if (out.status != Status::converged || !out.complete) return;
-  if (steady.turned) {
-    out.complete = false;
-    out.message = "The steady state stands turned against the drawn pose: the direct solution from there is "
-                  "not compared with motions.";
-    return;
-  }
-
   Direct direct(mechanism, options.cancel);
   Unknowns answer;
   if (!direct.answer(answer)) { // found above, unless it is all too long
@@ -348,7 +437,8 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
     const double value = direct.measured()[static_cast<Eigen::Index>(i)];
     if (std::isfinite(value)) measure.value = value;
   }
-  for (int i = 0; i <= 30 && !time.watch.over(); ++i) {
+  // Where the angles are looked for, too, there is no one line of iterations.
+  for (int i = 0; i <= 30 && !direct.turned() && !time.watch.over(); ++i) {
     Unknowns z;
     const bool converged = direct.iterate(i, z);
     const double error = direct.error_of(z.q, steady.neutral);

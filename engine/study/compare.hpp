@@ -66,8 +66,8 @@ struct Comparison {
   std::vector<MeasureSolution> measures; // there, rounded; without errors
   double reference_error = 0;            // the largest of these, scaled
   double reference_residual = 0;         // of q* in extended precision, scaled
-  std::vector<DirectMark> direct;        // by iteration; without the iterations where a fallback was needed
-  DirectMark answer;                     // with refinement, existence and the sign of stability
+  std::vector<DirectMark> direct; // by iteration; none where a fallback was needed, or it stands turned
+  DirectMark answer;              // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;
   std::optional<SpeedRatio> best; // where a motion comes within 0.01 of it; else the message says so
 };
