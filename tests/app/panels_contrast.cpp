@@ -56,6 +56,23 @@ TEST_CASE("words have a contrast of 4.5 in every theme, of 7 in the high-contras
   }
 }
 
+TEST_CASE("words on a bar are read in every theme, however full it is") {
+  ImGuiContext* const former = ImGui::GetCurrentContext();
+  ImGuiContext* const context = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context);
+  for (const Theme theme : {Theme::light, Theme::dark, Theme::high_contrast}) {
+    apply_style(theme, 1);
+    const ImVec4* const colors = ImGui::GetStyle().Colors;
+    const auto color = [](const ImVec4& c) { return Color{c.x, c.y, c.z, c.w}; };
+    const ImVec4 full = over(color(colors[ImGuiCol_PlotHistogram]), color(colors[ImGuiCol_FrameBg]));
+    const double least = theme == Theme::high_contrast ? 7 : 4.5;
+    CHECK(contrast(colors[ImGuiCol_Text], full) >= least);
+    CHECK(contrast(full, colors[ImGuiCol_FrameBg]) >= 1.15); // and tells how full it is
+  }
+  ImGui::DestroyContext(context);
+  ImGui::SetCurrentContext(former);
+}
+
 TEST_CASE("the ring of the keyboard's focus has a contrast of 3 in every theme") {
   for (const Theme theme : {Theme::light, Theme::dark, Theme::high_contrast}) {
     const UiColors& c = ui_colors(theme);

@@ -549,6 +549,9 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
   CHECK(answer.solutions[0].at.stable == true);
   for (const char* arm : {"arm1", "arm2"})
     CHECK(value(answer.solutions[0].at.coordinates, arm) == Approx(present(app, arm)).margin(0.5));
+  // What is told ends where the fields do.
+  for (const char* told : {"response/solution/1", "response/run time"})
+    CHECK(robot.widget(told).to.x <= robot.widget("response/find").to.x + 1);
   const double found = answer.solutions[0].parameter;
   // Solved at that speed, the collar is there.
   Mechanism mechanism = app.session.mechanism();

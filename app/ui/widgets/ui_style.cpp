@@ -138,6 +138,7 @@ void apply_style(Theme theme, float scale) {
   colors[ImGuiCol_ScrollbarGrab] = c.faint;
   colors[ImGuiCol_ScrollbarGrabHovered] = colors[ImGuiCol_ScrollbarGrabActive] = c.dim;
   colors[ImGuiCol_TextSelectedBg] = with_alpha(c.accent, 0.35f);
+  colors[ImGuiCol_PlotHistogram] = with_alpha(c.accent, 0.3f); // of bars that words are read on
   colors[ImGuiCol_NavHighlight] = c.accent;
   colors[ImGuiCol_ModalWindowDimBg] = theme == Theme::light  ? hex(0x20262D, 0.28f)
                                       : theme == Theme::dark ? hex(0x000000, 0.5f)

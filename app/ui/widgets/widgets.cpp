@@ -121,11 +121,11 @@ void right_digits(Ui& ui, const std::string& text, const ImVec4& color) {
   text_in(font, color, text);
 }
 
-void row(const Ui& ui, const std::string& label, const std::string& value, const char* unit,
-         const char* help) {
+void row(const Ui& ui, const std::string& label, const std::string& value, const char* unit, const char* help,
+         float margin) {
   const UiColors& colors = colors_of(ui);
   ImGui::BeginGroup();
-  const float room = ImGui::GetContentRegionAvail().x;
+  const float room = ImGui::GetContentRegionAvail().x - margin;
   const float start = ImGui::GetCursorPosX();
   const float unit_width = unit && *unit ? ImGui::CalcTextSize(unit).x + 5 * ui.scale : 0;
   const ImFont* digits = ui.fonts.digits;

@@ -184,6 +184,11 @@ void ribbon_choice(Session& session, Ui& ui) {
   note_widget(ui.widgets, "response/ribbon/none");
 }
 
+// Of the fields above and below, which leave a margin.
+float column_width(const Ui& ui) {
+  return ImGui::GetContentRegionAvail().x - margin_width(ui);
+}
+
 // A bar for what takes long; false where there is none.
 bool progress(Session& session, Ui& ui, ResponseView& drawn) {
   ResponseState& state = session.study.response;
@@ -198,7 +203,9 @@ bool progress(Session& session, Ui& ui, ResponseView& drawn) {
   }
   if (waiting_since < 0) waiting_since = ImGui::GetTime();
   if (ImGui::GetTime() - waiting_since < curve_patience) return false;
-  const float room = ImGui::GetContentRegionAvail().x - 70 * ui.scale;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float button = ImGui::CalcTextSize("Cancel").x + 2 * style.FramePadding.x + style.ItemSpacing.x;
+  const float room = std::max(column_width(ui) - button, 20 * ui.scale);
   const auto bar = [&](const auto& study) {
     task_bar(ui, "response/progress", study.progress(), study.seconds(), room);
   };
@@ -293,16 +300,17 @@ void solution_row(Session& session, Ui& ui, const DesignRequest& of, const Share
   const std::string& unit = parameter.text;
   const std::string name = "response/solution/" + std::to_string(i + 1);
   const ImVec2 from = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
-  const bool clicked = ImGui::InvisibleButton(name.c_str(), {std::max(width, 1.f), height});
+  const float width = std::max(column_width(ui), 1.f), height = ImGui::GetFrameHeight();
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), {width, height});
   note_widget(ui.widgets, name, KeyUse::row);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float s1 = ui.scale, y = from.y + (height - ImGui::GetFontSize()) / 2;
   list.AddRectFilled(from, {from.x + width, from.y + height},
                      packed(ImGui::IsItemHovered() ? colors.border : colors.raised),
                      ImGui::GetStyle().FrameRounding);
-  const std::string value = value_text(
-      parameter.shown(s.parameter), std::max(s.parameter_error, numbers.noise) * parameter.factor, numbers);
+  // As there is no error beside it, down to the last place that is true.
+  const double error = 10 * std::max(s.parameter_error, numbers.noise) * parameter.factor;
+  const std::string value = value_text(parameter.shown(s.parameter), error, numbers);
   float x = from.x + 8 * s1;
   list.PushClipRect(from, {from.x + width, from.y + height}, true);
   list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {x, y + digits_drop(ui)}, packed(colors.text),
@@ -361,9 +369,10 @@ void design_answer(Session& session, Ui& ui) {
   const std::vector<SharedNumber> numbers = shared_numbers(answer);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     solution_row(session, ui, design.answer.found->of, numbers[i], i, control ? control->unit : "");
-  if (session.options.numbers.run_times)
-    row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "",
-        design_words(session).c_str());
+  if (!session.options.numbers.run_times) return;
+  row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "",
+      design_words(session).c_str(), margin_width(ui));
+  note_widget(ui.widgets, "response/run time");
 }
 
 // What is chosen as long as nobody has: what is shown, or else the last coordinate.
