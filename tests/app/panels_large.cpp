@@ -102,6 +102,21 @@ TEST_CASE("a quiet frame of ten thousand bodies costs what one of a hundred does
   }
 }
 
+TEST_CASE("of a thousand coordinates the first are told, and what comes below is in reach") {
+  Robot robot({1280, 800});
+  open_large(robot, long_chain(1000));
+  robot.app.panels->results.sections().reactions = false;
+  robot.frames(3);
+  CHECK(widgets(robot, "results/hinge") >= 12);
+  CHECK(robot.app.ui.widgets.contains("results/reactions"));
+  robot.click("results/coordinates/all");
+  robot.frames(3);
+  CHECK_FALSE(robot.app.ui.widgets.contains("results/reactions"));
+  robot.click("results/coordinates/all");
+  robot.frames(3);
+  CHECK(robot.app.ui.widgets.contains("results/reactions"));
+}
+
 TEST_CASE("the lists of a view are made once and drawn once while nothing changes") {
   Robot robot;
   open_large(robot, long_chain(500));

@@ -15,6 +15,8 @@ namespace {
 
 // With more coordinates than this each takes one line, and the rest appears over it.
 constexpr int spacious = 8;
+// With more than this the first ones are told until all are asked for, so that what comes below is in reach.
+constexpr std::ptrdiff_t unfolded = 30, told_at_first = 12;
 
 void free_coordinate(Session& session, Ui& ui, const CoordinateSolution& c, bool compact) {
   const auto [name, value, error, si] = *found_number(c);
@@ -51,7 +53,7 @@ void free_coordinate(Session& session, Ui& ui, const CoordinateSolution& c, bool
 
 } // namespace
 
-void coordinate_results(Session& session, Ui& ui) {
+void coordinate_results(Session& session, Ui& ui, ResultSections& open) {
   const auto& all = session.answer.solution.coordinates;
   const auto free = std::ranges::count_if(all, is_found);
   if (free == 0) return;
@@ -61,11 +63,18 @@ void coordinate_results(Session& session, Ui& ui) {
       if (is_found(c)) free_coordinate(session, ui, c, false);
     return;
   }
+  std::ptrdiff_t told = free;
+  if (free > unfolded) {
+    const std::string text = open.coordinates ? "The first " + std::to_string(told_at_first) + " alone"
+                                              : "All " + std::to_string(free) + " coordinates";
+    if (text_button(ui, "results/coordinates/all", text.c_str())) open.coordinates = !open.coordinates;
+    if (!open.coordinates) told = told_at_first;
+  }
   // Of thousands only those that are in sight; the driven ones among them, which are few, take no line.
   auto next = all.begin();
   std::ptrdiff_t passed = 0; // free ones before `next`
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(free));
+  clipper.Begin(static_cast<int>(told));
   while (clipper.Step())
     for (; next != all.end() && passed < clipper.DisplayEnd; ++next) {
       if (!is_found(*next)) continue;

@@ -11,9 +11,10 @@ struct Ui;
 // Which are open.
 struct ResultSections {
   bool torques = true, reactions = false, eigenvalues = false, system = false;
+  bool coordinates = false; // all of many
 };
 
-void coordinate_results(Session& session, Ui& ui);
+void coordinate_results(Session& session, Ui& ui, ResultSections& open);
 void measure_results(Session& session, Ui& ui);
 // Of a mechanism with friction: its band, and what holding takes.
 void friction_results(const Session& session, Ui& ui);

@@ -147,7 +147,7 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, InBearings&
     warning_rows(session, ui, "results/warnings", 3);
     pull_results(session, ui, tool);
     neutral_joints(session, ui);
-    coordinate_results(session, ui);
+    coordinate_results(session, ui, open);
     friction_results(session, ui);
     measure_results(session, ui);
     cycle_results(session, ui);
