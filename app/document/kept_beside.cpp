@@ -4,6 +4,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,11 @@ std::optional<double> number_at(const Mechanism& mechanism, const std::string& a
   return {};
 }
 
+// In JSON, which has UTF-8 alone.
+bool can_be_named(const fs::path& file) {
+  return !file.empty() && find_invalid_utf8(file.string()) == std::string::npos;
+}
+
 bool is_of(const json& entry, const fs::path& file) {
   if (!entry.is_object()) return false;
   const auto name = entry.find("file");
@@ -76,7 +82,7 @@ Explored still_explored(const KeptBeside& kept, const Mechanism& mechanism) {
 
 KeptBeside read_beside(const fs::path& state_folder, const fs::path& file) {
   KeptBeside kept;
-  if (state_folder.empty() || file.empty()) return kept;
+  if (state_folder.empty() || !can_be_named(file)) return kept;
   for (const json& entry : read_store(state_folder)) {
     if (!is_of(entry, file)) continue;
     kept.explored = read_numbers(entry, "explored");
@@ -91,7 +97,7 @@ KeptBeside read_beside(const fs::path& state_folder, const fs::path& file) {
 }
 
 void keep_beside(const fs::path& state_folder, const fs::path& file, const KeptBeside& kept) {
-  if (state_folder.empty() || file.empty()) return;
+  if (state_folder.empty() || !can_be_named(file)) return;
   const json store = read_store(state_folder);
   json left = json::array();
   if (kept != KeptBeside()) {
@@ -109,7 +115,6 @@ void keep_beside(const fs::path& state_folder, const fs::path& file, const KeptB
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);
   try {
-    // A name that is not UTF-8 is kept as one that does not exist.
     replace_file(store_in(state_folder), left.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   } catch (const SceneError&) { // a convenience
   }

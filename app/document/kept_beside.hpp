@@ -23,8 +23,8 @@ Explored still_explored(const KeptBeside& kept, const Mechanism& mechanism);
 
 // Nothing where nothing is kept of the file, or what is cannot be read.
 KeptBeside read_beside(const std::filesystem::path& state_folder, const std::filesystem::path& file);
-// In the place of what was kept; of the files that this was last done for. Where it cannot be kept nobody is
-// disturbed.
+// In the place of what was kept; of the files that this was last done for. Where it cannot be kept, as of a
+// file whose name is not UTF-8, nobody is disturbed.
 void keep_beside(const std::filesystem::path& state_folder, const std::filesystem::path& file,
                  const KeptBeside& kept);
 inline constexpr std::size_t most_kept_beside = 100; // files

@@ -3,6 +3,7 @@
 #include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/dialog_state.hpp"
+#include "app/ui/keyboard/focus_order.hpp"
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -53,6 +54,12 @@ bool edits_text(const KeyPress& key) {
   return key.key == keys::del || key.key == keys::backspace;
 }
 
+// Nothing is typed in the row of a list: what it stands for is chosen, and keys are commands for that.
+bool row_clicked(const KeyboardState& keyboard) {
+  const KeyStop* stop = stop_named(keyboard.stops, keyboard.at);
+  return stop && stop->use == KeyUse::row;
+}
+
 } // namespace
 
 void notice_key_focus(Ui& ui) {
@@ -69,7 +76,7 @@ void notice_key_focus(Ui& ui) {
   else if (holds_plots(window))
     focus = {.in_panel = true, .among_fields = true, .letters = true};
   else
-    focus = {.in_panel = window == "outline" || window == "History"};
+    focus = {.in_panel = (window == "outline" || window == "History") && !row_clicked(ui.keyboard)};
 }
 
 bool may_command(Session& session, Ui& ui, const KeyPress& key) {

@@ -2,6 +2,7 @@
 #include "app/document/autosave.hpp"
 #include "app/document/autosaver.hpp"
 #include "app/document/file_watch.hpp"
+#include "app/document/kept_beside.hpp"
 #include "app/document/recent_files.hpp"
 #include "app/platform/change_watch.hpp"
 #include "app/platform/process.hpp"
@@ -169,6 +170,21 @@ TEST_CASE("a watched file tells of changes once, and not of its own") {
     CHECK(looks(4).news == FileWatch::News::none);
     CHECK_FALSE(watch.vanished());
   }
+}
+
+TEST_CASE("what is kept beside files is not pushed out by one whose name is not UTF-8") {
+  const TemporaryFolder folder;
+  const fs::path other = folder / "g.json", odd = folder / "g\xE9.json";
+  KeptBeside kept;
+  keep_explored(kept, shipped("governor"), {{"joints.spin.drive.speed", 15}});
+  keep_beside(folder.path(), other, kept);
+  for (std::size_t i = 0; i < most_kept_beside; ++i) {
+    kept.explored[0].value = 16 + static_cast<double>(i);
+    keep_beside(folder.path(), odd, kept);
+  }
+  CHECK(read_beside(folder.path(), odd) == KeptBeside());
+  REQUIRE(read_beside(folder.path(), other).explored.size() == 1);
+  CHECK(read_beside(folder.path(), other).explored[0].value == 15);
 }
 
 TEST_CASE("a process is known to run, and to run no longer") {

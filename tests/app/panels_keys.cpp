@@ -154,12 +154,30 @@ TEST_CASE("right after the start keys are commands wherever the pointer is") {
   CHECK(hand.app.tool.tool == Tool::joint);
 }
 
-TEST_CASE("in the list of parts Delete means the part, letters mean nothing") {
+TEST_CASE(
+    "keys are commands for the part that was chosen in the list; beside its rows letters mean nothing") {
   Hand hand;
+  float below = 0;
+  for (const auto& [name, rect] : hand.app.ui.widgets)
+    if (name.starts_with("outline/")) below = std::max(below, rect.to.y);
+  const float x = hand.widget("outline/bodies/ball1").from.x;
   hand.click("outline/bodies/ball1");
   REQUIRE(hand.app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  hand.click(ImVec2{x + 20, below + 15});
   hand.key('J');
   CHECK(hand.app.tool.tool == Tool::select);
+  CHECK_THAT(hand.app.session.notice, ContainsSubstring("the panel has the keys"));
+  hand.click("outline/bodies/ball1");
+  const auto eye = hand.app.view.camera.eye();
+  hand.key('1');
+  hand.frames(60, 0.05);
+  CHECK(hand.app.view.camera.eye() != eye);
+  hand.key('H', false, true);
+  CHECK_FALSE(hand.app.view.hidden.empty());
+  hand.key('J');
+  CHECK(hand.app.tool.tool == Tool::joint);
+  hand.key(key_escape);
+  hand.click("outline/bodies/ball1");
   hand.key(keys::del);
   CHECK(body_index(hand.app.session.mechanism(), "ball1") < 0);
 }
@@ -448,7 +466,10 @@ TEST_CASE(
   App& app = robot.app;
   robot.key(keys::tab);
   REQUIRE(app.session.mode == Mode::build);
-  robot.click("outline/bodies/ball1");
+  float below = 0;
+  for (const auto& [name, rect] : robot.app.ui.widgets)
+    if (name.starts_with("outline/")) below = std::max(below, rect.to.y);
+  robot.click(ImVec2{robot.widget("outline/bodies/ball1").center().x, below + 15});
   // Where the motion's panel will be.
   const WidgetRect view = robot.widget("view");
   robot.point({view.center().x, view.to.y - 60});

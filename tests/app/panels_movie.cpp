@@ -14,6 +14,7 @@
 #include "engine/mechanism/scene.hpp"
 #include "tests/catch.hpp"
 
+#include <array>
 #include <numbers>
 #include <set>
 
@@ -111,6 +112,26 @@ TEST_CASE("frames show the moments and the part of the run that were asked for")
   Framebuffer target(160, 91, robot.app.view.samples);
   renderer.draw(frame, target);
   CHECK(target.read() == read_png(folder / "run-0003.png"));
+}
+
+TEST_CASE("a film has no forces of the moment it was begun at, whatever the window goes on to") {
+  const auto begun = [](bool forces) {
+    const TemporaryFolder folder;
+    MovieRobot robot;
+    robot.app.view.loads = forces;
+    robot.name(folder / "run.png");
+    robot.click("movie/save");
+    robot.frames(1);
+    REQUIRE(robot.app.movie.progress);
+    // Another answer takes the place of the one whose forces were seen.
+    edit_parameter(robot.app.session, "bodies.collar.mass", 2);
+    robot.wait();
+    return std::array{read_png(frame_file(folder / "run.png", 0, 6)),
+                      read_png(frame_file(folder / "run.png", 5, 6))};
+  };
+  const auto with = begun(true), without = begun(false);
+  CHECK(with[0] == without[0]);
+  CHECK(with[1] == without[1]);
 }
 
 TEST_CASE("the mode that is shown is exported as it is shown") {

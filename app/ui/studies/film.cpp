@@ -39,6 +39,9 @@ Film::Film(std::unique_ptr<FilmedScene> scene, std::vector<double> moments, cons
   look_.ghost = ghost_;
   look_.selected.clear();
   look_.hovered = {};
+  look_.loads = nullptr; // of the one moment that is seen, and the window's
+  look_.loads_turning = {};
+  look_.cut_joints = {};
 }
 
 bool Film::step(ViewRenderer& renderer, double seconds) {

@@ -28,8 +28,8 @@ std::optional<Analysis> analysis_at(std::shared_ptr<const Mechanism> mechanism, 
 
 class Film {
  public:
-  // format.frames is that of the moments. Of `look` count the camera, the colours and the options, and the
-  // ghost where the scene shows it. Throws SceneError.
+  // format.frames is that of the moments. Of `look` count the camera, the colours, what is hidden and the
+  // options, and the ghost where the scene shows it; forces are not filmed. Throws SceneError.
   Film(std::unique_ptr<FilmedScene> scene, std::vector<double> moments, const std::filesystem::path& file,
        const MovieFormat& format, const ViewFrame& look, int samples);
 
