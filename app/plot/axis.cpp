@@ -41,7 +41,7 @@ Extent shown_extent(const Plot& plot, const PlotLook& look, int axis) {
   for (const PlotMark& mark : plot.marks)
     if (std::isfinite(mark.at[1 - k])) extent.add(mark.at[k]);
   for (const PlotReference& reference : plot.references)
-    if (reference.axis == axis) extent.add(reference.at);
+    if (reference.axis == axis && is_shown(reference, look)) extent.add(reference.at);
   if (plot.marker) extent.add(axis == 0 ? plot.marker->x : plot.marker->y);
   return extent;
 }

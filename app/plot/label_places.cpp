@@ -146,7 +146,7 @@ void place_labels(const Plot& plot, PlotLayout& layout, const PlotMetrics& metri
     taken.push_back({around(mark.x, mark.y, 4 * metrics.scale), &mark});
   for (PlotPlaced& placed : layout.references) {
     const PlotReference& reference = plot.references[placed.index];
-    if (reference.label.empty()) continue;
+    if (reference.label.empty() || reference.in_legend) continue;
     const double at = reference.axis == 1 ? placed.y : placed.x;
     placed.label = best_place(layout, places_along(layout, reference, at, metrics), taken, nullptr);
     if (placed.label) taken.push_back({placed.label->box, nullptr});

@@ -135,7 +135,8 @@ struct Builder {
     double x = out.area.left;
     int row = 0;
     std::set<std::string> known;
-    const auto add = [&](const std::string& full, std::size_t i, bool band) {
+    using Of = PlotLegendEntry::Of;
+    const auto add = [&](const std::string& full, std::size_t i, Of of) {
       if (full.empty() || !known.insert(full).second) return;
       const double room = out.area.width() - sample - gap;
       const std::string name = cut_text(metrics, PlotFont::words, full, room);
@@ -147,16 +148,18 @@ struct Builder {
       const double y = top + row * height;
       out.legend.push_back({full,
                             i,
-                            band,
+                            of,
                             {x - 3 * s(), y, x + width + 3 * s(), y + height},
                             {x, y, x + sample, y + height},
                             text(PlotFont::words, name, x + sample + gap, y + 2 * s(), -1)});
       x += width + 16 * s();
     };
     for (std::size_t i = 0; i < plot.curves.size(); ++i)
-      if (!plot.curves[i].hidden) add(plot.curves[i].name, i, false);
+      if (!plot.curves[i].hidden) add(plot.curves[i].name, i, Of::curve);
     for (std::size_t i = 0; i < plot.bands.size(); ++i)
-      add(plot.bands[i].name, i, true);
+      add(plot.bands[i].name, i, Of::band);
+    for (std::size_t i = 0; i < plot.references.size(); ++i)
+      if (plot.references[i].in_legend) add(plot.references[i].label, i, Of::reference);
     return out.legend.empty() ? 0 : row + 1;
   }
 
@@ -325,6 +328,7 @@ struct Builder {
     }
     for (std::size_t i = 0; i < plot.references.size(); ++i) {
       const PlotReference& reference = plot.references[i];
+      if (!is_shown(reference, look)) continue;
       const double at = out.ruler(reference.axis).pixel(reference.at);
       if (reference.axis == 1 ? at >= out.area.top && at <= out.area.bottom
                               : at >= out.area.left && at <= out.area.right)
@@ -350,6 +354,23 @@ PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, dou
   builder.lay_all();
   if (builder.out.drawable()) builder.lay_contents();
   return std::move(builder.out);
+}
+
+PlotCurve legend_line(const Plot& plot, const PlotLegendEntry& entry) {
+  PlotCurve line;
+  if (entry.of == PlotLegendEntry::Of::reference) {
+    line.color = plot.references[entry.index].color;
+    line.line = plot.references[entry.index].line;
+    line.width = reference_width;
+    return line;
+  }
+  const PlotCurve& curve = plot.curves[entry.index];
+  line.color = curve.color;
+  line.line = curve.line;
+  line.width = curve.width;
+  line.shape = curve.shape;
+  line.shape_size = curve.shape_size;
+  return line;
 }
 
 std::vector<const PlotText*> texts_of(const PlotLayout& layout) {

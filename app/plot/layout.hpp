@@ -37,9 +37,10 @@ struct PlotTick {
 };
 
 struct PlotLegendEntry {
+  enum class Of { curve, band, reference };
   std::string name;
-  std::size_t curve = 0; // the first of that name; of the bands where it is one
-  bool band = false;
+  std::size_t index = 0; // the first of that name among these
+  Of of = Of::curve;
   PlotBox box;    // for clicking
   PlotBox sample; // the piece of line before the text
   PlotText text;
@@ -115,6 +116,10 @@ struct PlotLayout {
 // there is in any case.
 PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, double height,
                        const PlotMetrics& metrics, const PlotSides& least = {});
+
+// The line and sign, without points, that stand before the text of an entry that is of a curve or a reference
+// line.
+PlotCurve legend_line(const Plot& plot, const PlotLegendEntry& entry);
 
 // All texts that the layout has placed.
 std::vector<const PlotText*> texts_of(const PlotLayout& layout);

@@ -22,6 +22,10 @@ bool is_shown(const PlotBand& band, const PlotLook& look) {
   return !look.hidden.contains(band.name);
 }
 
+bool is_shown(const PlotReference& reference, const PlotLook& look) {
+  return !reference.in_legend || !look.hidden.contains(reference.label);
+}
+
 double rim_of(const Plot& plot, const PlotCurve& curve) {
   constexpr double line = 1, hatched = 0.7; // points
   return !plot.heat ? 0 : curve.hatching ? hatched : line;

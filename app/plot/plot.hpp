@@ -62,6 +62,8 @@ struct PlotBand {
   int color = plot_color::blue;
 };
 
+inline constexpr double reference_width = 1.2; // points
+
 // A line from edge to edge, such as a steady value.
 struct PlotReference {
   int axis = 1; // whose value it stands at; 1: a horizontal line
@@ -69,6 +71,7 @@ struct PlotReference {
   std::string label;
   int color = plot_color::neutral;
   PlotLine line = PlotLine::dashed;
+  bool in_legend = false; // its label is there, as of curves, and not beside it where they are everywhere
 };
 
 // A point with a label, which finds its place beside it.
@@ -113,7 +116,7 @@ struct Plot {
   std::uint64_t version = 0;
 };
 
-// How a person looks at a plot: by axis (0: x, 1: y), and the names of curves he has switched off.
+// How a person looks at a plot: by axis (0: x, 1: y), and the names in the legend that he has switched off.
 struct PlotLook {
   std::array<std::optional<PlotRange>, 2> range{};
   std::array<std::optional<bool>, 2> logarithmic{};
@@ -127,6 +130,7 @@ std::string axis_text(const std::string& label, const std::string& unit);
 bool is_logarithmic(const Plot& plot, const PlotLook& look, int axis);
 bool is_shown(const PlotCurve& curve, const PlotLook& look);
 bool is_shown(const PlotBand& band, const PlotLook& look);
+bool is_shown(const PlotReference& reference, const PlotLook& look);
 // The rim of the ground that the line has at either side, in points: over a map's colours, of which some are
 // near its own. 0: none.
 double rim_of(const Plot& plot, const PlotCurve& curve);

@@ -188,23 +188,24 @@ struct Drawing {
       const std::string path = reference.axis == 1
                                    ? fmt::format("M{} {}H{}", px(a.left), px(r.y), px(a.right))
                                    : fmt::format("M{} {}V{}", px(r.x), px(a.top), px(a.bottom));
-      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"{}/>\n", path,
-                         hex(curve_color(reference.color, ground)), dash_of(reference.line));
+      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n", path,
+                         hex(curve_color(reference.color, ground)), px(reference_width),
+                         dash_of(reference.line));
     }
   }
 
   void legend() {
     for (const PlotLegendEntry& entry : layout.legend) {
-      if (entry.band) {
+      if (entry.of == PlotLegendEntry::Of::band) {
         const PlotBox& box = entry.sample;
         out += fmt::format(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"10\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
             px(box.left), px((box.top + box.bottom) / 2 - 5), px(box.width()),
-            hex(curve_color(plot.bands[entry.curve].color, ground)), px(2 * band_fill(ground)));
+            hex(curve_color(plot.bands[entry.index].color, ground)), px(2 * band_fill(ground)));
         text(entry.text, colors.text);
         continue;
       }
-      const PlotCurve& c = plot.curves[entry.curve];
+      const PlotCurve c = legend_line(plot, entry);
       const std::uint32_t color = curve_color(c.color, ground);
       const double y = (entry.sample.top + entry.sample.bottom) / 2;
       if (c.line != PlotLine::none)

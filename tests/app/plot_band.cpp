@@ -42,7 +42,7 @@ TEST_CASE("a band takes its room, is broken where it has no values, and stands i
   CHECK(upper[1][1] == Approx(layout.y.pixel(4)));
   CHECK(lower[1][1] == Approx(layout.y.pixel(2)));
   REQUIRE(layout.legend.size() == 1);
-  CHECK(layout.legend[0].band);
+  CHECK(layout.legend[0].of == PlotLegendEntry::Of::band);
   CHECK(layout.legend[0].name == "range");
   PlotLook hidden;
   hidden.hidden.insert("range");

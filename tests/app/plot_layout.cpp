@@ -278,6 +278,24 @@ TEST_CASE("the heat map's colours rise evenly in lightness", "[plot]") {
     CHECK(lightness(heat_color(i / 20.)) == Approx(first + (last - first) * i / 20.).margin(2.5));
 }
 
+TEST_CASE(
+    "a reference line that is told in the legend has no label among the curves, and is switched off there") {
+  Plot plot;
+  plot.curves.push_back({.name = "damped", .points = {{0, 0}, {4, 1}}});
+  plot.references.push_back({.axis = 1, .at = 0.5, .label = "steady", .in_legend = true});
+  const PlotLayout layout = plot_layout(plot, {}, 400, 300, {});
+  REQUIRE(layout.legend.size() == 2);
+  CHECK(layout.legend[1].name == "steady");
+  CHECK(legend_line(plot, layout.legend[1]).line == PlotLine::dashed);
+  REQUIRE(layout.references.size() == 1);
+  CHECK_FALSE(layout.references[0].label);
+  PlotLook without;
+  without.hidden = {"steady"};
+  const PlotLayout off = plot_layout(plot, without, 400, 300, {});
+  CHECK(off.references.empty());
+  CHECK(off.legend.size() == 2); // to bring it back
+}
+
 TEST_CASE("a label that curves cross has a ground of its own") {
   Plot plot;
   PlotCurve fast; // fills everything

@@ -134,9 +134,9 @@ void draw_references(const PlotPen& pen, const Plot& plot, const PlotLayout& lay
     // In the middle of a pixel, or it would be a blur two pixels wide.
     const double x = std::floor(placed.x) + 0.5, y = std::floor(placed.y) + 0.5;
     if (r.axis == 1)
-      draw_line(pen, {{a.left, y}, {a.right, y}}, r.line, 1.2, color);
+      draw_line(pen, {{a.left, y}, {a.right, y}}, r.line, reference_width, color);
     else
-      draw_line(pen, {{x, a.top}, {x, a.bottom}}, r.line, 1.2, color);
+      draw_line(pen, {{x, a.top}, {x, a.bottom}}, r.line, reference_width, color);
   }
 }
 
@@ -162,8 +162,8 @@ void draw_legend(const PlotPen& pen, const Plot& plot, const PlotLook& look, con
                  const PlotColors& colors) {
   for (const PlotLegendEntry& entry : layout.legend) {
     const bool hidden = look.hidden.contains(entry.name);
-    if (entry.band) {
-      const std::uint32_t own = curve_color(plot.bands[entry.curve].color, pen.ground);
+    if (entry.of == PlotLegendEntry::Of::band) {
+      const std::uint32_t own = curve_color(plot.bands[entry.index].color, pen.ground);
       const double middle = std::floor((entry.sample.top + entry.sample.bottom) / 2), half = 5 * layout.scale;
       pen.list.AddRectFilled(pen.at(entry.sample.left, middle - half),
                              pen.at(entry.sample.right, middle + half),
@@ -172,7 +172,7 @@ void draw_legend(const PlotPen& pen, const Plot& plot, const PlotLook& look, con
       draw_text(pen, entry.text, packed_color(hidden ? colors.faint : colors.text));
       continue;
     }
-    const PlotCurve& c = plot.curves[entry.curve];
+    const PlotCurve c = legend_line(plot, entry);
     const ImU32 color = packed_color(hidden ? colors.faint : curve_color(c.color, pen.ground));
     const double y = std::floor((entry.sample.top + entry.sample.bottom) / 2) + 0.5;
     if (c.line != PlotLine::none)

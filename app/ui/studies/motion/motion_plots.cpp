@@ -199,7 +199,8 @@ Plot motion_plot(const Session& session, const std::string& quantity) {
       plot.curves.push_back(std::move(curve));
     }
     if (const auto steady = steady_value(session, quantity); steady && plot.references.empty())
-      plot.references.push_back({.axis = 1, .at = *steady, .label = "steady", .color = plot_color::blue});
+      plot.references.push_back(
+          {.axis = 1, .at = *steady, .label = "steady", .color = plot_color::blue, .in_legend = true});
   }
   show_axis(plot, 1, plot.y.unit, session.units);
   // The undamped run lies below the damped one.
