@@ -7,7 +7,10 @@
 namespace flyball {
 
 void open_study(Session& session, StudyKind study) {
-  if (study == session.study.open) study = StudyKind::none;
+  if (study != StudyKind::none && study == session.study.open) {
+    if (session.mode == Mode::build) return set_mode(session, Mode::explore); // it was out of sight
+    study = StudyKind::none;
+  }
   if (study != StudyKind::none) set_mode(session, Mode::explore);
   // The motion goes with its panel.
   if (session.study.open == StudyKind::motion && study != StudyKind::motion) show_motion(session, false);
@@ -19,6 +22,10 @@ void open_study(Session& session, StudyKind study) {
   if (study != StudyKind::transfer) close_transfer(session);
   session.study.open = study;
   if (study == StudyKind::motion) show_motion(session, true);
+}
+
+bool study_shown(const Session& session, StudyKind study) {
+  return session.mode == Mode::explore && session.study.open == study;
 }
 
 void update_studies(Session& session) {

@@ -32,8 +32,10 @@ struct StudyState {
   PeriodicStudy periodic; // in the steady state's place, whatever study is open
 };
 
-// Shows a study, in the explore mode; the same again, or none, closes it.
+// Shows a study, in the explore mode; the one that is shown again, or none, closes it.
 void open_study(Session& session, StudyKind study);
+// Whether it is to be seen: while building none is.
+bool study_shown(const Session& session, StudyKind study);
 // Takes what studies have found in the background, and asks for what is missing.
 void update_studies(Session& session);
 // Whether one computes.

@@ -122,3 +122,17 @@ TEST_CASE("Session: every number is called by what it is and what it is of") {
   CHECK(std::ranges::count(names, "gravity: z") == 1);
   CHECK(std::ranges::count(names, "simulation: duration") == 1);
 }
+
+TEST_CASE("Session: a study that building has put out of sight is shown again") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, governor);
+  update(session, 0);
+  open_study(session, StudyKind::response);
+  set_mode(session, Mode::build);
+  CHECK_FALSE(study_shown(session, StudyKind::response));
+  open_study(session, StudyKind::response);
+  CHECK(session.mode == Mode::explore);
+  CHECK(study_shown(session, StudyKind::response));
+  open_study(session, StudyKind::response);
+  CHECK(session.study.open == StudyKind::none);
+}

@@ -11,6 +11,11 @@ void film(App& app) {
   app.panels->movie.open(app.session, app.dialog, app.movie, of);
 }
 
+template <StudyKind study>
+bool is_study_shown(const App& app) {
+  return study_shown(app.session, study);
+}
+
 const std::array study_commands{
     Command{.id = "study.motion",
             .title = "Motion",
@@ -18,7 +23,7 @@ const std::array study_commands{
             .key = plain('M'),
             .run = [](App& app) { open_study(app.session, StudyKind::motion); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::motion; },
+            .checked = is_study_shown<StudyKind::motion>,
             .words = "simulation, transient; a plot's menu saves CSV and SVG",
             .lacks = "there is no part yet."},
     Command{
@@ -28,7 +33,7 @@ const std::array study_commands{
         .key = plain('C'),
         .run = [](App& app) { open_study(app.session, StudyKind::response); },
         .enabled = of_session<holds_parts>,
-        .checked = [](const App& app) { return app.session.study.open == StudyKind::response; },
+        .checked = is_study_shown<StudyKind::response>,
         .words =
             "droop curve, resonance curve, bifurcation diagram, hysteresis, friction, sweep; a plot's menu "
             "saves CSV and SVG",
@@ -39,7 +44,7 @@ const std::array study_commands{
             .key = plain('E'),
             .run = [](App& app) { open_study(app.session, StudyKind::states); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::states; },
+            .checked = is_study_shown<StudyKind::states>,
             .words = "solutions, steady states",
             .lacks = "there is no part yet."},
     Command{.id = "study.modes",
@@ -49,7 +54,7 @@ const std::array study_commands{
             .key = plain('O'),
             .run = [](App& app) { open_study(app.session, StudyKind::modes); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::modes; },
+            .checked = is_study_shown<StudyKind::modes>,
             .words = "eigenvalues, natural frequencies, vibrations, critical speeds",
             .lacks = "there is no part yet."},
     Command{.id = "study.map",
@@ -58,7 +63,7 @@ const std::array study_commands{
             .key = plain('P'),
             .run = [](App& app) { open_study(app.session, StudyKind::map); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::map; },
+            .checked = is_study_shown<StudyKind::map>,
             .words = "boundary of hunting, Hopf points, stability diagram of Vyshnegradsky",
             .lacks = "there is no part yet."},
     Command{
@@ -68,7 +73,7 @@ const std::array study_commands{
             "How the steady state scatters with tolerances of numbers: a histogram, and whose share it is.",
         .run = [](App& app) { open_study(app.session, StudyKind::spread); },
         .enabled = of_session<holds_parts>,
-        .checked = [](const App& app) { return app.session.study.open == StudyKind::spread; },
+        .checked = is_study_shown<StudyKind::spread>,
         .words = "Monte Carlo, uncertainty",
         .lacks = "there is no part yet."},
     Command{.id = "study.transfer",
@@ -77,7 +82,7 @@ const std::array study_commands{
                     "MATLAB and Python.",
             .run = [](App& app) { open_study(app.session, StudyKind::transfer); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::transfer; },
+            .checked = is_study_shown<StudyKind::transfer>,
             .words = "frequency response, state space",
             .lacks = "there is no part yet."},
     Command{.id = "study.compare",
@@ -85,7 +90,7 @@ const std::array study_commands{
             .help = "Error against run time: the direct solution and the damped motion.",
             .run = [](App& app) { open_study(app.session, StudyKind::compare); },
             .enabled = of_session<holds_parts>,
-            .checked = [](const App& app) { return app.session.study.open == StudyKind::compare; },
+            .checked = is_study_shown<StudyKind::compare>,
             .words = "accuracy of integrators",
             .lacks = "there is no part yet."},
     Command{.id = "study.cycle",
