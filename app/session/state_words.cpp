@@ -41,6 +41,24 @@ std::string growth_words(const Solution& solution) {
          rounded_text(std::abs(fastest.imag()) / (2 * std::numbers::pi), 3) + " Hz double every " + doubled;
 }
 
+std::string undamped_words(const Solution& solution) {
+  if (solution.stability_reason != StabilityReason::marginal || !solution.eigenvalues) return {};
+  constexpr double undamped = 1e-9; // of its frequency, what is rounding in a rate of decay
+  double slowest = 0;               // rad/s
+  bool several = false;
+  for (const std::complex<double>& each : *solution.eigenvalues) {
+    if (each.real() > undamped * std::abs(each)) return {}; // something else is near the limit
+    const double frequency = std::abs(each.imag());
+    if (!(frequency > 0) || each.real() < -undamped * frequency) continue;
+    several = several || (slowest > 0 && std::abs(frequency - slowest) > 1e-3 * slowest);
+    slowest = slowest > 0 ? std::min(slowest, frequency) : frequency;
+  }
+  if (slowest == 0) return {};
+  return "Nothing damps " + std::string(several ? "swings, the slowest at " : "the swing at ") +
+         rounded_text(slowest / (2 * std::numbers::pi), 4) +
+         " Hz: " + (several ? "they neither grow nor die out." : "it neither grows nor dies out.");
+}
+
 std::string window_message(const Solution& solution) {
   constexpr std::string_view command = "solve --all looks", own = "the tab States looks";
   std::string text = solution.message;

@@ -15,6 +15,10 @@ const char* reason_text(StabilityReason reason);
 // eigenvalue tells.
 std::string growth_words(const Solution& solution);
 
+// Why it stays undecided where swings have no damper: "Nothing damps the swing at 12.3 Hz: it neither grows
+// nor dies out."; else empty.
+std::string undamped_words(const Solution& solution);
+
 // What the engine says of a state; where it names a command of the terminal, the window's own, and a body
 // that no joint holds by its name.
 std::string window_message(const Solution& solution);

@@ -114,3 +114,18 @@ TEST_CASE("Session: how an unstable state is left is told in words") {
   CHECK(said == Approx(turns).epsilon(0.01));
   CHECK(doubled == Approx(std::log(2) / growth).epsilon(0.01));
 }
+
+TEST_CASE("what leaves the stability undecided is told where it is a swing without a damper") {
+  Solution clutch;
+  clutch.stability_reason = StabilityReason::marginal;
+  clutch.eigenvalues = {
+      {-22, 0}, {-1e-18, 7076.55}, {-1e-18, -7076.55}, {1.5e-15, 7076.55}, {1.5e-15, -7076.55}};
+  CHECK(undamped_words(clutch) == "Nothing damps the swing at 1126 Hz: it neither grows nor dies out.");
+  clutch.eigenvalues->push_back({0, 6.2831853});
+  CHECK(undamped_words(clutch) ==
+        "Nothing damps swings, the slowest at 1 Hz: they neither grow nor die out.");
+  clutch.eigenvalues = {{-1, 5}, {-1, -5}};
+  CHECK(undamped_words(clutch).empty());
+  clutch.eigenvalues = {{0, 5}, {0, -5}, {1e-7, 0}}; // at a fold
+  CHECK(undamped_words(clutch).empty());
+}

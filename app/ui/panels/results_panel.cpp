@@ -66,7 +66,8 @@ void verdict(const Session& session, Ui& ui) {
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   note_widget(ui.widgets, "results/verdict");
-  const std::string growth = solution.status == Status::converged ? growth_words(solution) : std::string();
+  std::string growth = solution.status == Status::converged ? growth_words(solution) : std::string();
+  if (growth.empty() && solution.status == Status::converged) growth = undamped_words(solution);
   if (solution.status == Status::converged && solution.stability_reason)
     paragraph(growth.empty() ? reason_text(*solution.stability_reason) : growth, colors.dim);
   if (const PeriodicState* state = periodic_state(session))

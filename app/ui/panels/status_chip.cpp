@@ -57,15 +57,17 @@ StatusLine status_line(const Session& session, const Ui& ui) {
             colors.bad, icon::warning};
   case Status::infeasible: return {"The loops cannot be closed", colors.bad, icon::warning};
   }
-  if (solution.stable == true)
-    return {holds_a_band(session) ? "Steady state, stable; friction holds it within a band"
-                                  : "Steady state, stable",
-            colors.good, icon::check};
+  const std::string held = holds_a_band(session) ? "; friction holds it within a band" : "";
+  if (solution.stable == true) return {"Steady state, stable" + held, colors.good, icon::check};
   if (solution.stable == false) return {"Steady state, unstable", colors.warn, icon::warning};
   if (solution.stability_reason == StabilityReason::neutral)
     return {"Steady state, neutral", colors.good, icon::check};
   return {"Steady state, " +
-              std::string(solution.stability_reason ? word(*solution.stability_reason) : "stability unknown"),
+              std::string(!solution.stability_reason ? "stability unknown"
+                          : *solution.stability_reason == StabilityReason::marginal
+                              ? "stability undecided"
+                              : word(*solution.stability_reason)) +
+              held,
           colors.warn, icon::info};
 }
 
