@@ -118,6 +118,16 @@ std::string motion_words(const Session& session, const MotionRun* motion) {
   return !motion || !motion->run || motion->run->damped ? "Motion, damped" : "Motion, without dampers";
 }
 
+std::vector<std::string> motion_problems(const Session& session) {
+  const auto& runs = session.motion.runs;
+  const bool both = std::ranges::all_of(runs, [](const MotionRun& run) { return run.wanted && run.task; });
+  std::vector<std::string> problems;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i].wanted && !runs[i].problem.empty())
+      problems.push_back((!both ? "" : i == 0 ? "Damped: " : "Undamped: ") + runs[i].problem);
+  return problems;
+}
+
 std::vector<std::string> free_coordinates(const Session& session) {
   std::vector<std::string> names;
   for (const CoordinateSolution& c : session.answer.summary.coordinates)

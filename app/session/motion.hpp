@@ -76,6 +76,8 @@ bool computing_motion(const Session& session);
 std::optional<double> computed_motion(const Session& session);
 // "Motion, damped": only dampers make that difference.
 std::string motion_words(const Session& session, const MotionRun* motion);
+// Why there is no motion, or no more of it; of two each says which it is.
+std::vector<std::string> motion_problems(const Session& session);
 // Whether there are dampers to be left out.
 bool has_dampers(const Mechanism& mechanism);
 // The names of the free coordinates, for a kick.

@@ -195,7 +195,7 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
     CHECK(curve.points[7][1] == Approx(track(run, "slide").value[7]));
   }
   // Everything that is offered can be drawn.
-  for (const MotionQuantity& each : motion_quantities(run)) {
+  for (const MotionQuantity& each : motion_quantities(app.session, run)) {
     CAPTURE(each.key);
     const Plot offered = motion_plot(app.session, each.key);
     CHECK_FALSE(offered.curves.empty());
@@ -215,7 +215,9 @@ TEST_CASE("plots show the speed that a drive by torque settles at") {
   const auto found = std::ranges::find_if(app.session.answer.solution.coordinates,
                                           [](const CoordinateSolution& c) { return c.speed.has_value(); });
   REQUIRE(found != app.session.answer.solution.coordinates.end());
+  CHECK(app.panels->studies.shown().motion[0].quantity == "rate " + found->joint);
   const Plot rate = motion_plot(app.session, "rate " + found->joint);
+  CHECK(rate.y.label == found->joint + ".speed"); // as in the results
   REQUIRE(rate.references.size() == 1);
   CHECK(rate.references[0].at == Approx(*found->speed));
   CHECK(motion_plot(app.session, "value " + found->joint).references.empty()); // it goes on

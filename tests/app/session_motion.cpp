@@ -37,3 +37,20 @@ TEST_CASE("Session: the motion is stepped sample by sample, however short it is"
   step_motion(session, -1);
   CHECK(session.playback.time == times[times.size() - 2]);
 }
+
+TEST_CASE("Session: of two motions it is said which has stopped") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, shipped_file("governor"));
+  update(session, 0);
+  session.motion.duration = 0.01;
+  session.motion.runs[1].wanted = GENERATE(true, false);
+  show_motion(session, true);
+  update(session, 0);
+  CHECK(motion_problems(session).empty());
+  for (MotionRun& run : session.motion.runs)
+    run.problem = "It stopped.";
+  CHECK(motion_problems(session) ==
+        (session.motion.runs[1].wanted
+             ? std::vector<std::string>{"Damped: It stopped.", "Undamped: It stopped."}
+             : std::vector<std::string>{"It stopped."}));
+}

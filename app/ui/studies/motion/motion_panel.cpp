@@ -137,8 +137,8 @@ double greatest(const std::vector<double>& values) {
 // Whether it has settled, or why it ended.
 void outcome(const Session& session, Ui& ui) {
   const UiColors& colors = colors_of(ui);
-  for (const MotionRun& motion : session.motion.runs)
-    if (motion.wanted && !motion.problem.empty()) paragraph(motion.problem, colors.bad);
+  for (const std::string& problem : motion_problems(session))
+    paragraph(problem, colors.bad);
   if (!shown_motion(session)) return;
   if (session.motion.settled) {
     paragraph(session.motion.settled->message, session.motion.settled->time ? colors.good : colors.text);
@@ -261,12 +261,15 @@ std::optional<PlotMarker> play_head(const Session& session, const Plot& plot, co
 }
 
 // What a plot shows at first: the first coordinate, and the last, for those between are often its like; where
-// there is but one, its speed.
-std::string first_shown(const std::vector<MotionQuantity>& all, std::size_t plot) {
+// there is but one, its speed. Of what goes on and on its speed, which the steady state is solved for.
+std::string first_shown(const Session& session, const std::vector<MotionQuantity>& all, std::size_t plot) {
   const auto count =
       static_cast<std::size_t>(std::ranges::count(all, std::string("Coordinates"), &MotionQuantity::group));
   const std::size_t chosen = plot == 0 ? 0 : count > 1 ? count - 1 : 1;
-  return chosen < all.size() ? all[chosen].key : "";
+  if (chosen >= all.size()) return "";
+  for (const CoordinateSolution& c : session.answer.solution.coordinates)
+    if (c.speed && all[chosen].key == "value " + coordinate_label(c)) return "rate " + coordinate_label(c);
+  return all[chosen].key;
 }
 
 void draw_plots(Session& session, Ui& ui, std::array<MotionPlot, 2>& shown_plots) {
@@ -275,10 +278,10 @@ void draw_plots(Session& session, Ui& ui, std::array<MotionPlot, 2>& shown_plots
     paragraph(computing_motion(session) ? "Computing…" : "No motion.", colors_of(ui).dim);
     return;
   }
-  const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
+  const std::vector<MotionQuantity> all = motion_quantities(session, *shown->run);
   for (std::size_t i = 0; i < shown_plots.size(); ++i) {
     const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
-    if (!known) shown_plots[i].quantity = first_shown(all, i);
+    if (!known) shown_plots[i].quantity = first_shown(session, all, i);
   }
   const float gap = 10 * ui.scale, whole = ImGui::GetContentRegionAvail().x;
   const bool narrow = whole < 520 * ui.scale;
