@@ -237,3 +237,31 @@ TEST_CASE("the tutorial of the README is in Help, without its marks") {
   robot.app.commands.run("help.about");
   CHECK_THAT(robot.app.session.notice, ContainsSubstring("Flyball ") && ContainsSubstring("MIT license"));
 }
+
+TEST_CASE("a menu taller than the window opens below its title and scrolls") {
+  Robot robot({640, 480});
+  App& app = robot.app;
+  robot.frames(2);
+  const Mode mode = app.session.mode;
+  const WidgetRect title = robot.widget("menu/View");
+  robot.click("menu/View");
+  robot.frames(3);
+  CHECK(app.session.mode == mode); // the click pressed nothing but the title
+  float top = 1e9f, bottom = 0;
+  for (const auto& [name, rect] : app.ui.widgets)
+    if (name.starts_with("menu/view.")) {
+      top = std::min(top, rect.from.y);
+      bottom = std::max(bottom, rect.to.y);
+    }
+  CHECK(top >= title.to.y);
+  REQUIRE(bottom > 480); // it is taller than the window
+  robot.point({title.center().x, 300});
+  for (int i = 0; i < 8; ++i) {
+    ImGui::GetIO().MouseWheel = -5;
+    robot.frames(2);
+  }
+  REQUIRE(robot.widget("menu/view.theme_contrast").to.y <= 480);
+  robot.click("menu/view.theme_contrast");
+  robot.frames(3);
+  CHECK(app.ui.theme == Theme::high_contrast);
+}

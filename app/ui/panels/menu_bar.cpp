@@ -3,7 +3,11 @@
 #include "app/ui/panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <imgui_internal.h>
+
+#include <algorithm>
 #include <array>
+#include <cfloat>
 
 namespace flyball {
 
@@ -65,9 +69,15 @@ std::span<const char* const> menu_titles() {
 
 void menu_bar(const Session& session, Ui& ui, const CommandRunner& commands) {
   if (!ImGui::BeginMenuBar()) return;
+  // A menu taller than the window scrolls below its title: over it, the click that opens it would press an
+  // entry.
+  const float foot = ImGui::GetCursorScreenPos().y + ImGui::GetFrameHeight();
+  const float room = ImGui::GetIO().DisplaySize.y - foot - 8 * ui.scale;
   for (const Menu& menu : menus) {
     if (ui.keyboard.open_menu == menu.title) ImGui::OpenPopup(menu.title);
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, std::max(room, 60 * ui.scale)});
     const bool open = ImGui::BeginMenu(menu.title);
+    if (!open) ImGui::GetCurrentContext()->NextWindowData.ClearFlags();       // it was for no other window
     note_widget(ui.widgets, std::string("menu/") + menu.title, KeyUse::none); // Alt and its letter
     if (!open) continue;
     items(session, ui, commands, menu);
