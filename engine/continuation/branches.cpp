@@ -176,10 +176,15 @@ class Diagram {
     if (out_.ties_change) return step_turned(std::move(state));
     out_.status = Status::converged;
     begun_ = "The steady state stands turned against the drawn pose.";
-    if (const auto first = follower_.begin(state, from_, true))
-      add(follower_.follow(*first, true), true);
-    else
+    const auto first = follower_.begin(state, from_, true);
+    if (!first) {
       out_.message = "The start is a singular state; begin beside it.";
+      return;
+    }
+    Workspace& w = follower_.workspace();
+    if (!find_stability(factor_at(follower_.problem_at(*first), first->z, w), false).neutral.empty())
+      follower_.expect_families();
+    add(follower_.follow(*first, true), true);
   }
 
   // Whether these are the ties in all of the range.
