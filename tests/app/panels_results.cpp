@@ -1,6 +1,7 @@
 // What the list of results says, and does not say twice.
 #include "app/session/periodic.hpp"
 #include "app/ui/choices.hpp"
+#include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
@@ -25,6 +26,18 @@ TEST_CASE("a number is told in SI below only where that is another unit") {
   choose_units(app.session, app.ui, app.view, {AngleUnit::radian, LengthUnit::millimetre, SpeedUnit::radian});
   robot.frames(2);
   CHECK(width(robot.widget("results/arm1/error")) < 0.6f * width(robot.widget("results/slide/error")));
+}
+
+TEST_CASE("words that are too long for their place are cut, whole characters at a time") {
+  Robot robot;
+  const std::string law = "0.8 N m − gain·coordinate(slide)";
+  CHECK(cut_to(law, 1000) == law);
+  for (const float room : {40.f, 80.f, 120.f}) {
+    const std::string cut = cut_to(law, room);
+    CHECK(ImGui::CalcTextSize(cut.c_str()).x <= room);
+    CHECK(cut.ends_with("…"));
+    CHECK(law.starts_with(cut.substr(0, cut.size() - std::string("…").size())));
+  }
 }
 
 TEST_CASE("what a coordinate goes on by in a period is told beside its range") {

@@ -146,8 +146,9 @@ double rounded(double value) {
   return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
 }
 
-// What was typed: an expression, or a number by itself.
-void take_typed(Session& session, const QuantityField& field, const std::string& typed) {
+// What was typed: an expression, with the parameter that is made for it, or a number by itself.
+void take_typed(Session& session, const QuantityField& field, const std::string& typed,
+                const std::optional<NamedParameter>& made = {}) {
   const std::string step = "Set " + parameter_phrase(place_of(field));
   const auto follow = [&](Mechanism& mechanism) {
     if (field.follow) field.follow(session.document.stored(), mechanism);
@@ -158,6 +159,7 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
       return field.set(evaluate_expression(session.mechanism(), text, field.unit, place));
     const bool slid = has_slider(session, place);
     edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
+      if (made) mechanism.parameters.push_back(*made);
       set_typed_expression(mechanism, field, text);
       follow(mechanism);
       std::erase_if(mechanism.sliders,
@@ -180,6 +182,18 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
     });
   if (field.set) return field.set(value);
   set_number(session, field.address, value);
+}
+
+FieldOffer add_parameter(Session& session, const QuantityField& field, const std::string& typed) {
+  if (!is_expression(field, typed)) return {};
+  const std::optional<NamedParameter> lacking = lacking_parameter(
+      session.document.stored(), place_of(field), with_field_unit(session, field, typed.substr(1)));
+  if (!lacking) return {};
+  return {"Add the parameter " + lacking->name, [&session, field, typed, lacking] {
+            take_typed(session, field, typed, lacking);
+            session.notice = lacking->name + " is a parameter of the scene now, " +
+                             with_unit("1", lacking->unit) + " at first, with a slider.";
+          }};
 }
 
 void set(Session& session, Ui& ui, const QuantityField& field, double value) {
@@ -269,18 +283,20 @@ void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& s
   const float room = right - from.x - padding - behind - sign;
   const std::string& words = field.law.empty() ? field.various : field.law;
   const std::string text = words.empty() ? fitting_text(ui, shown.value, room) : std::string();
+  const float words_width = ImGui::CalcTextSize(words.c_str()).x;
   const float y = from.y + (to.y - from.y - ImGui::GetFontSize()) / 2;
   const float x = field.framed ? from.x + padding + sign : right - behind - digits_width(ui, text);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
   if (given) list.AddText({x - sign, y}, packed(colors.accent), "=");
+  const bool fits = words.empty() ? digits_width(ui, text) <= room : words_width <= room;
   if (!words.empty())
-    list.AddText({x, y}, packed(colors.dim), words.c_str());
+    list.AddText({x, y}, packed(colors.dim), cut_to(words, fits ? room : room + behind).c_str());
   else
     list.AddText(ui.fonts.digits, ui.fonts.digits->FontSize, {x, y + digits_drop(ui)}, packed(color),
                  text.c_str());
-  if (behind > 0 && (!field.framed || digits_width(ui, text) <= room))
+  if (behind > 0 && (!field.framed || fits)) // else they have its place
     list.AddText({right - behind + gap, y}, packed(colors.dim), shown.unit.text.c_str());
   list.PopClipRect();
 }
@@ -424,6 +440,7 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
                                       : "",
       .check = [&session, field](const std::string& typed) { return mistake_in(session, typed, field); },
       .take = [&session, field](const std::string& typed) { take_typed(session, field, typed); },
+      .offer = [&session, field](const std::string& typed) { return add_parameter(session, field, typed); },
       .at_once = field.at_once,
       .drawn_here = false,
       .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
@@ -458,6 +475,8 @@ void quantity_row(Session& session, Ui& ui, const std::string& label, const Quan
   const bool hovered = ImGui::IsWindowHovered() &&
                        ImGui::IsMouseHoveringRect(from, {from.x + width, from.y + ImGui::GetFrameHeight()});
   const float letter = field.axis < 0 ? 0 : 14 * ui.scale;
+  if (typing_in(ui, field.name) && ui.fields.typing.text.starts_with('=')) // the whole row for an expression
+    return quantity_field(session, ui, field, std::max(width - margin, 20 * ui.scale));
   scrub_label(session, ui, label, field, labels - letter - (reset ? margin : 0));
   if (reset) {
     ImGui::SameLine(0, 0);

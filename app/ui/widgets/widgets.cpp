@@ -183,11 +183,8 @@ void paragraph(const std::string& text, const ImVec4& color) {
   ImGui::PopStyleColor();
 }
 
-void clipped_text(const std::string& text, float width) {
-  if (ImGui::CalcTextSize(text.c_str()).x <= width) {
-    ImGui::TextUnformatted(text.c_str());
-    return;
-  }
+std::string cut_to(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
   std::string cut = text;
   while (!cut.empty() && ImGui::CalcTextSize((cut + "…").c_str()).x > width) {
     // Whole characters: bytes of the form 10xxxxxx continue one.
@@ -195,8 +192,13 @@ void clipped_text(const std::string& text, float width) {
       cut.pop_back();
     if (!cut.empty()) cut.pop_back();
   }
-  ImGui::TextUnformatted((cut + "…").c_str());
-  help_on_hover(text.c_str());
+  return cut + "…";
+}
+
+void clipped_text(const std::string& text, float width) {
+  const std::string cut = cut_to(text, width);
+  ImGui::TextUnformatted(cut.c_str());
+  if (cut != text) help_on_hover(text.c_str());
 }
 
 namespace {

@@ -52,6 +52,8 @@ std::string name_list(const std::vector<std::string>& names);
 std::string in_lines(std::string_view text, float width);
 // Words that may take several lines.
 void paragraph(const std::string& text, const ImVec4& color);
+// Text cut to the width (pixels) with "…" where it is longer.
+std::string cut_to(const std::string& text, float width);
 // Text cut to the width with "..." where it is longer; the whole of it appears over it.
 void clipped_text(const std::string& text, float width);
 
