@@ -117,6 +117,27 @@ TEST_CASE("the list of parameters and points") {
   CHECK_FALSE(formula_at(d.m(), "joints.slide.spring.stiffness"));
 }
 
+TEST_CASE(
+    "a parameter without a range of its own shows its slider's, and keeps the other end when one is typed") {
+  Desk d("governor_parametric");
+  edit(d.app.session, "Add", [](Mechanism& m, Selection&) {
+    NamedParameter added;
+    added.name = "gain";
+    added.value = 20;
+    added.unit = "N";
+    m.parameters.push_back(added);
+  });
+  d.build();
+  select(d.app.session, {});
+  d.frames(2);
+  d.click("inspector/parameter/gain/more");
+  d.frames(2);
+  d.enter("inspector/parameter/gain/from", "5");
+  REQUIRE(d.m().parameters.back().range);
+  CHECK((*d.m().parameters.back().range)[0] == 5);
+  CHECK((*d.m().parameters.back().range)[1] == 50); // of the slider from 0 to 50
+}
+
 TEST_CASE("a slider that asks for what cannot be made says so and stays") {
   Desk d("governor_parametric");
   d.enter("parameters/parameters.L/value", "0.4");

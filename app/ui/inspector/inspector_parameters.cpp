@@ -81,7 +81,11 @@ void parameter_popup(Session& session, Ui& ui, const NamedParameter& parameter, 
                   },
               .hint = "a plain number"},
              width);
-  const std::array<double, 2> range = parameter.range.value_or(std::array{parameter.value, parameter.value});
+  // Without a range of its own, that which its slider has.
+  const auto slid = std::ranges::find(session.parameters, "parameters." + name, &ParameterControl::address);
+  const std::array<double, 2> range =
+      parameter.range.value_or(slid == session.parameters.end() ? std::array{parameter.value, parameter.value}
+                                                                : std::array{slid->from, slid->to});
   for (const std::size_t end : {0U, 1U}) {
     label(end == 0 ? "From" : "To");
     quantity_field(session, ui,
