@@ -134,11 +134,11 @@ class Direct {
       const auto l = static_cast<std::size_t>(ties.found[i]);
       const bool revolute = system_.links[l].type == LinkType::revolute;
       const double unit = revolute ? 1 : parameters_.length;
-      const Eigen::VectorXd along = ties.along.row(static_cast<Eigen::Index>(i)).transpose() / unit;
+      const Eigen::VectorXd moves = ties.along.row(static_cast<Eigen::Index>(i)).transpose() / unit;
       const double stood =
           turned_->starts[ties.found[i]] + static_cast<double>(reference_[system_.links[l].q]) * time;
-      away += along * (angles[ties.found[i]] - parameters_.links[l].drawn - stood) / unit;
-      if (revolute && along.squaredNorm() > 0) turns.push_back(2 * std::numbers::pi * along);
+      away += moves * (angles[ties.found[i]] - parameters_.links[l].drawn - stood) / unit;
+      if (revolute && moves.squaredNorm() > 0) turns.push_back(2 * std::numbers::pi * moves);
     }
     constexpr int rounds = 4;
     for (int i = 0; i < rounds; ++i)

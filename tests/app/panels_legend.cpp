@@ -170,6 +170,16 @@ TEST_CASE("the legend folds") {
   CHECK(robot.app.ui.widgets.count("legend/0") == 1);
 }
 
+TEST_CASE("in a narrow view the legend is folded where it would lie over the tools") {
+  Robot robot({640, 480});
+  App& app = robot.app;
+  app.commands.run("view.loads");
+  set_mode(app.session, Mode::build);
+  robot.frames(3);
+  const WidgetRect tools = robot.widget("tool strip"), legend = robot.widget("legend");
+  CHECK(legend.from.x >= tools.to.x);
+}
+
 TEST_CASE("drawn pose and steady state are drawn in different ways") {
   Robot robot;
   App& app = robot.app;

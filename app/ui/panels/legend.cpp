@@ -147,7 +147,11 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
     return ImVec2(room + 2 * padding.x, (lines + 1) * line + lines * gap + 2 * padding.y);
   };
   const ImVec2 whole = size_of(rows);
-  const bool crowded = whole.x * whole.y > largest_share * view.width * view.height;
+  // Over the tools it would hide and be hidden.
+  const auto tools = context.ui.widgets.find("tool strip");
+  const bool over_tools = tools != context.ui.widgets.end() &&
+                          view.x + view.width - 10 * s - whole.x < tools->second.to.x + 4 * s;
+  const bool crowded = over_tools || whole.x * whole.y > largest_share * view.width * view.height;
   const bool open = !folds || (crowded ? anyway_ : context.view.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);

@@ -122,6 +122,8 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
   place(true);
   if (glyph_button(ui, "tools/snap", tool.snap, draw_magnet_glyph)) tool.snap = !tool.snap;
   tell(ui, "view.snap");
+  const ImVec2 from = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  ui.widgets["tool strip"] = {from, {from.x + size.x, from.y + size.y}};
   ImGui::End();
 }
 
