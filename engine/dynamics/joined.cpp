@@ -48,6 +48,7 @@ bool same_coordinates(const Run& a, const Run& b) {
                               return x.joint == y.joint && x.index == y.index;
                             }) &&
          a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size() &&
+         a.bearings.size() == b.bearings.size() && a.gears.size() == b.gears.size() &&
          std::ranges::equal(a.points, b.points, {}, &PointTrack::point, &PointTrack::point) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::name, &MeasureTrack::name) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::unit, &MeasureTrack::unit);
@@ -98,6 +99,12 @@ Run joined(const Run& before, std::size_t last, const Run& after) {
   for (std::size_t i = 0; i < out.reactions.size(); ++i)
     for (const auto track : {&ReactionTrack::force, &ReactionTrack::torque})
       append(out.reactions[i].*track, count, after.reactions[i].*track);
+  for (std::size_t i = 0; i < out.bearings.size(); ++i)
+    for (const auto track : {&BearingTrack::force, &BearingTrack::torque})
+      append(out.bearings[i].*track, count, after.bearings[i].*track);
+  for (std::size_t i = 0; i < out.gears.size(); ++i)
+    for (const auto track : {&GearTrack::a, &GearTrack::b})
+      append(out.gears[i].*track, count, after.gears[i].*track);
   for (std::size_t i = 0; i < out.measures.size(); ++i)
     append(out.measures[i].value, count, after.measures[i].value);
   for (std::size_t i = 0; i < out.points.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "engine/dynamics/recorder.hpp"
 
 #include "engine/report/report.hpp"
+#include "engine/report/report_forces.hpp"
 #include "engine/system/drive_rates.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
@@ -9,6 +10,7 @@
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -84,9 +86,21 @@ void Recorder::lay_out() {
   if (measured_)
     for (const NamedMeasure& measure : model_->mechanism.measures)
       run_.measures.push_back({measure.name, measure.unit, {}});
-  if (reactions_)
-    for (const Joint& j : model_->mechanism.joints)
-      if (j.type != JointType::gear) run_.reactions.push_back({j.name, {}, {}});
+  if (!reactions_) return;
+  const Mechanism& mechanism = model_->mechanism;
+  for (const Joint& j : mechanism.joints) {
+    if (j.type != JointType::gear) {
+      run_.reactions.push_back({j.name, {}, {}});
+      continue;
+    }
+    const auto angle = [&](std::size_t end) {
+      const CoordinateReference of = find_coordinate(mechanism, j.joints[end]);
+      return is_angle(mechanism.joints[index(of.joint)].type, of.coordinate);
+    };
+    run_.gears.push_back({j.name, angle(0), angle(1), {}, {}});
+  }
+  for (const BearingElement& bearing : system.bearings)
+    run_.bearings.push_back({mechanism.forces[index(bearing.force)].name, {}, {}});
 }
 
 void Recorder::name(const StopElement& stop, StopEvent& event) const {
@@ -249,6 +263,25 @@ void Recorder::record_reactions(const TransmittedForces& forces) {
   }
 }
 
+// Of bearings and gears.
+void Recorder::record_elements(const TransmittedForces& forces) {
+  const System& system = model_->system;
+  for (std::size_t i = 0; i < run_.bearings.size(); ++i) {
+    run_.bearings[i].force.push_back(forces.bearings[i].force);
+    run_.bearings[i].torque.push_back(forces.bearings[i].torque);
+  }
+  for (GearTrack& track : run_.gears) {
+    const auto of = std::ranges::find_if(forces.gears, [&](const GearForces& g) {
+      return model_->mechanism.joints[index(g.joint)].name == track.joint;
+    });
+    constexpr double without = std::numeric_limits<double>::quiet_NaN();
+    const bool loaded = of != forces.gears.end() && of->a.link >= 0;
+    const GearEnds ends = loaded ? ends_in_order(model_->mechanism, system, *of) : GearEnds{};
+    track.a.push_back(loaded ? ends.a.value : without);
+    track.b.push_back(loaded ? ends.b.value : without);
+  }
+}
+
 void Recorder::record_measures(TransmittedForces& forces) {
   values_.clear();
   rates_.clear();
@@ -317,7 +350,10 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   run_.states.insert(run_.states.end(), u.data(), u.data() + system.nv);
   TransmittedForces forces;
   if (reactions_ || measures_.needs_forces()) forces = equations_->reactions();
-  if (reactions_) record_reactions(forces);
+  if (reactions_) {
+    record_reactions(forces);
+    record_elements(forces);
+  }
   if (!measures_.empty()) record_measures(forces);
   if (!tracked_.empty()) record_points();
 }

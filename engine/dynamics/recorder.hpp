@@ -43,6 +43,7 @@ class Recorder {
   double go_on_from(const CoordinateTrack& track, double value, double rate) const;
   void record_energies(double t, const Eigen::Vector3d& energies);
   void record_reactions(const TransmittedForces& forces);
+  void record_elements(const TransmittedForces& forces);
   void record_measures(TransmittedForces& forces);
   void record_points();
   double jacobi(double t);

@@ -60,9 +60,9 @@ struct SimulationOptions {
   std::vector<std::pair<std::string, double>> at;   // joint = value (rad, m) over the drawn pose
   std::vector<std::pair<std::string, double>> kick; // joint = rate (rad/s, m/s) over the start's
   SimulationState state;                            // for Start::state
-  bool reactions = false;                           // record what all joints transmit
-  bool measures = true;                             // record the scene's measures
-  std::vector<BodyPoint> points{};                  // record how these move
+  bool reactions = false;          // record what all joints transmit, and what bearings and gears exert
+  bool measures = true;            // record the scene's measures
+  std::vector<BodyPoint> points{}; // record how these move
   long max_steps = 50'000'000;
   double time_limit =
       std::numeric_limits<double>::infinity(); // s by the clock on the wall, for all of the run
@@ -94,6 +94,20 @@ struct DriveTrack {
 struct ReactionTrack {
   std::string joint;
   std::vector<Vec3> force, torque; // N, N m
+};
+
+// What a bearing exerts on its second body, as in BearingForce.
+struct BearingTrack {
+  std::string bearing;
+  std::vector<Vec3> force, torque; // N, N m
+};
+
+// What a gear does along the coordinates of its two joints, as in GearReaction; not numbers where it is
+// without load because others lead there.
+struct GearTrack {
+  std::string joint;
+  bool angle_a = true, angle_b = true; // N m rather than N
+  std::vector<double> a, b;
 };
 
 // How a point moves, in the world frame.
@@ -168,8 +182,10 @@ struct Run {
   std::vector<double> time;                  // s, by sample; what follows has as many entries
   std::vector<CoordinateTrack> coordinates;  // in the scene's order, driven ones included
   std::vector<DriveTrack> drives;
-  std::vector<ReactionTrack> reactions; // where asked for
-  std::vector<PointTrack> points;       // those asked for
+  std::vector<ReactionTrack> reactions; // where asked for, as the next two
+  std::vector<BearingTrack> bearings;
+  std::vector<GearTrack> gears;
+  std::vector<PointTrack> points; // those asked for
   std::vector<MeasureTrack> measures;
   EnergyTracks energy;
   std::vector<StopEvent> stops;

@@ -111,7 +111,7 @@ std::vector<MotionState> Flow::trace(const MotionState& from, double duration, i
 
 Run Flow::record(const MotionState& from, double duration, int samples, double tolerance) {
   SimulationOptions options = from_state(from, tolerance);
-  options.measures = true;
+  options.measures = options.reactions = true;
   options.max_steps = SimulationOptions{}.max_steps;
   return sampled_run(options, duration, samples);
 }

@@ -1,5 +1,6 @@
 #include "engine/periodic/orbit_ranges.hpp"
 
+#include "engine/dynamics/motion_model.hpp"
 #include "engine/linear/golden_section.hpp"
 
 #include <algorithm>
@@ -92,16 +93,89 @@ double advance_of(const CoordinateTrack& track) {
 }
 
 // Whether the end joins the beginning. What wheels measure that have no part in the period does not;
-// rounding, which changes its direction all the time, is taken to.
-bool comes_back(std::span<const double> values) {
+// rounding, which changes its direction all the time, is taken to, and what is less than `small`.
+bool comes_back(std::span<const double> values, double small = 0) {
   const auto [least, most] = std::ranges::minmax(values);
-  if (!(std::abs(values.back() - values.front()) > near_enough * (most - least))) return true;
+  if (!(std::abs(values.back() - values.front()) > std::max(small, near_enough * (most - least))))
+    return true;
   double moved = 0, bent = 0;
   for (std::size_t i = 1; i + 1 < values.size(); ++i) {
     moved += std::abs(values[i + 1] - values[i]);
     bent += std::abs(values[i + 1] - 2 * values[i] + values[i - 1]);
   }
   return bent > 0.5 * moved;
+}
+
+// N, moments by the reach (m): of all that joints, bearings and gears bear.
+double largest_load(const Run& run, double reach) {
+  double largest = 0;
+  const auto take = [&](const auto& tracks) {
+    for (const auto& track : tracks)
+      for (std::size_t i = 0; i < track.force.size(); ++i)
+        largest = std::max({largest, track.force[i].norm(), track.torque[i].norm() / reach});
+  };
+  take(run.reactions);
+  take(run.bearings);
+  return largest;
+}
+
+// Ranges of loads, whose rounding (N) is a part of the largest.
+class LoadRanges {
+ public:
+  LoadRanges(const Run& run, double reach) : largest_(largest_load(run, reach)), reach_(reach) {}
+
+  PeriodicRange of(std::span<const double> values, bool moment) const {
+    if (!comes_back(values, small(moment))) return {unknown, unknown, unknown, unknown};
+    return rounded(range_over_period(values), moment);
+  }
+
+  PeriodicVector of(const std::vector<Vec3>& values, bool moment) const {
+    std::array<std::vector<double>, 3> components;
+    PeriodicVector out;
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      for (const Vec3& value : values)
+        components[c].push_back(value[static_cast<Eigen::Index>(c)]);
+      out.component[c] = of(components[c], moment);
+    }
+    const bool known = std::ranges::all_of(
+        out.component, [](const PeriodicRange& range) { return std::isfinite(range.mean); });
+    out.size = known ? rounded(size_over_period(components), moment)
+                     : PeriodicRange{unknown, unknown, unknown, unknown};
+    return out;
+  }
+
+ private:
+  double small(bool moment) const { return 1e-9 * largest_ * (moment ? reach_ : 1); }
+  PeriodicRange rounded(PeriodicRange range, bool moment) const {
+    range.error += rounding * largest_ * (moment ? reach_ : 1);
+    return range;
+  }
+
+  double largest_, reach_; // N, m
+};
+
+void fill_loads(const Run& run, PeriodicState& out) {
+  const double reach = run.segments.empty() ? 1 : run.segments.front().model->parameters.length;
+  const LoadRanges ranges(run, reach);
+  for (const ReactionTrack& track : run.reactions)
+    out.reactions.push_back({track.joint, ranges.of(track.force, false), ranges.of(track.torque, true)});
+  for (const BearingTrack& track : run.bearings)
+    out.bearings.push_back({track.bearing, ranges.of(track.force, false), ranges.of(track.torque, true)});
+  for (const GearTrack& track : run.gears)
+    out.gears.push_back({track.joint, track.angle_a, track.angle_b, ranges.of(track.a, track.angle_a),
+                         ranges.of(track.b, track.angle_b)});
+}
+
+// Of a drive: its torque times the rate of its coordinate, W.
+std::vector<double> power_of(const Run& run, const DriveTrack& drive) {
+  std::vector<double> out(drive.torque.size(), unknown);
+  const auto turning = std::ranges::find_if(run.coordinates, [&](const CoordinateTrack& track) {
+    return track.joint == drive.joint && track.index == drive.index;
+  });
+  if (turning == run.coordinates.end()) return out;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = drive.torque[i] * turning->rate[i];
+  return out;
 }
 
 bool jumps(const CoordinateTrack& track) { // a rotation vector that turns over
@@ -118,6 +192,25 @@ PeriodicRange range_over_period(std::span<const double> values) {
   PeriodicRange out = range_with(values, 1);
   const double size = std::max(std::abs(out.least), std::abs(out.most));
   out.error = largest_difference(out, range_with(values, 2)) + rounding * size;
+  return out;
+}
+
+PeriodicRange size_over_period(const std::array<std::vector<double>, 3>& components) {
+  const std::size_t count = components[0].size();
+  std::vector<double> size(count), square(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    size[i] = std::hypot(components[0][i], components[1][i], components[2][i]);
+    square[i] = size[i] * size[i];
+  }
+  PeriodicRange out = range_over_period(size);
+  const PeriodicRange squares = range_over_period(square);
+  const auto root = [](double x) { return std::sqrt(std::max(0., x)); };
+  const double least = root(squares.least), most = root(squares.most);
+  // Of the root: as far as the square's error makes it differ.
+  out.error = std::max(
+      {out.error, root(squares.least + squares.error) - least, most - root(squares.most - squares.error)});
+  out.least = least;
+  out.most = most;
   return out;
 }
 
@@ -140,8 +233,9 @@ void fill_ranges(const Run& run, PeriodicState& out) {
     out.coordinates.push_back(std::move(c));
   }
   for (const DriveTrack& track : run.drives)
-    out.drive_torques.push_back(
-        {track.joint, track.index, track.count, track.angle, range_over_period(track.torque)});
+    out.drive_torques.push_back({track.joint, track.index, track.count, track.angle,
+                                 range_over_period(track.torque), range_over_period(power_of(run, track))});
+  fill_loads(run, out);
   for (const MeasureTrack& track : run.measures)
     out.measures.push_back({track.name, track.unit,
                             comes_back(track.value) ? range_over_period(track.value)
@@ -159,6 +253,17 @@ void compare_ranges(const PeriodicState* other, PeriodicState& out) {
   compare_all(there.coordinates, out.coordinates, &PeriodicCoordinate::range);
   compare_all(there.coordinates, out.coordinates, &PeriodicCoordinate::rate);
   compare_all(there.drive_torques, out.drive_torques, &PeriodicTorque::range);
+  compare_all(there.drive_torques, out.drive_torques, &PeriodicTorque::power);
+  for (const auto list : {&PeriodicState::reactions, &PeriodicState::bearings})
+    for (const auto vector : {&PeriodicReaction::force, &PeriodicReaction::torque}) {
+      compare_all(
+          there.*list, out.*list, [&](auto& of) -> auto& { return (of.*vector).size; });
+      for (std::size_t c = 0; c < 3; ++c)
+        compare_all(
+            there.*list, out.*list, [&](auto& of) -> auto& { return (of.*vector).component[c]; });
+    }
+  compare_all(there.gears, out.gears, &PeriodicGear::a);
+  compare_all(there.gears, out.gears, &PeriodicGear::b);
   compare_all(there.measures, out.measures, &PeriodicMeasure::range);
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/periodic/periodic_state.hpp"
 
+#include <array>
 #include <span>
 
 namespace flyball {
@@ -13,7 +14,12 @@ namespace flyball {
 // samples would have told otherwise.
 PeriodicRange range_over_period(std::span<const double> values);
 
-// Fills coordinates, torques and measures, in the run's order.
+// The same of the size of a vector with these components. Extremes are those of its square, which is smooth
+// where the size has a kink at zero.
+PeriodicRange size_over_period(const std::array<std::vector<double>, 3>& components);
+
+// Fills coordinates, torques, what joints, bearings and gears bear, and measures, in the run's order. Loads
+// are rounded by a part of the largest of all.
 void fill_ranges(const Run& run, PeriodicState& out);
 
 // Adds to the estimated errors what another approximation of the orbit differs by; null: there is none, and

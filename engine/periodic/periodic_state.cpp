@@ -6,9 +6,11 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/periodic/cycle_guess.hpp"
+#include "engine/periodic/open_loads.hpp"
 #include "engine/periodic/orbit_ranges.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/stability/floquet.hpp"
+#include "engine/system/common_period.hpp"
 #include "engine/system/dampers.hpp"
 
 #include <algorithm>
@@ -19,7 +21,6 @@
 namespace flyball {
 namespace {
 
-constexpr int most_turns = 240;       // of a drive in a period
 constexpr int settling_periods = 200; // of a motion that is to come near a periodic one
 constexpr double settling = 1e-8;     // tolerance of its steps
 constexpr double settled = 1e-3;      // scaled: from here on it is Newton's method's
@@ -50,12 +51,12 @@ struct DrivePeriod {
 };
 
 void find_common_period(DrivePeriod& drives) {
-  drives.period = common_period(drives.speeds, most_turns).value_or(0);
+  drives.period = common_period(drives.speeds, followed_turns).value_or(0);
   drives.trouble.clear();
   if (drives.period > 0) return;
   const std::vector<std::string_view> names(drives.names.begin(), drives.names.end());
   drives.trouble = "The speeds of " + word_list(names, "and") + " have no common period of at most " +
-                   std::to_string(most_turns) +
+                   std::to_string(followed_turns) +
                    " turns: their motion is quasi-periodic and never comes back.";
 }
 
@@ -544,7 +545,11 @@ class Search {
     }
     out.coordinates = std::move(told.coordinates);
     out.drive_torques = std::move(told.drive_torques);
+    out.reactions = std::move(told.reactions);
+    out.bearings = std::move(told.bearings);
+    out.gears = std::move(told.gears);
     out.measures = std::move(told.measures);
+    mark_open_loads(*run, out);
     PeriodicState beside;
     if (other) {
       out.period_error = std::abs(other->period - c.orbit.period);

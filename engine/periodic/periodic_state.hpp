@@ -7,6 +7,8 @@
 #include "engine/dynamics/simulation.hpp"
 #include "engine/solve/solution.hpp"
 
+#include <array>
+
 namespace flyball {
 
 struct PeriodicOptions {
@@ -56,6 +58,29 @@ struct PeriodicTorque {
   int index = 0, count = 1;
   bool angle = true;
   PeriodicRange range;
+  PeriodicRange power;    // W: its mean is what the drive gives
+  bool nonunique = false; // as of a DriveTorque
+};
+
+// A force or moment: its size, and x, y, z of the world.
+struct PeriodicVector {
+  PeriodicRange size;
+  std::array<PeriodicRange, 3> component;
+};
+
+// What a joint's parent exerts on its child, as a Reaction tells it, or a bearing on its second body.
+struct PeriodicReaction {
+  std::string name;             // the joint or bearing
+  PeriodicVector force, torque; // N, N m
+  bool nonunique = false;       // as of a Reaction
+};
+
+// What a gear does along the coordinates of its two joints, as a GearReaction tells it.
+struct PeriodicGear {
+  std::string joint;
+  bool angle_a = true, angle_b = true; // N m rather than N
+  PeriodicRange a, b;                  // not numbers where others lead there
+  bool nonunique = false;
 };
 
 struct PeriodicState {
@@ -67,6 +92,8 @@ struct PeriodicState {
   SimulationState start;   // at the drawn phase
   std::vector<PeriodicCoordinate> coordinates; // free ones, in the scene's order
   std::vector<PeriodicTorque> drive_torques;
+  std::vector<PeriodicReaction> reactions, bearings;
+  std::vector<PeriodicGear> gears;
   std::vector<PeriodicMeasure> measures;
   double residual = 0; // by how much it fails to come back: the largest scaled coordinate or rate
   std::optional<bool> stable;

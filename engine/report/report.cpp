@@ -228,6 +228,7 @@ bool is_finite(const Solution& s) {
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
   const Parameters& p = in.problem.parameters;
+  out.varies = in.existence.varies;
   out.stable = in.stability.stable;
   out.stability_reason = in.stability.reason;
   out.eigenvalues = in.stability.eigenvalues;

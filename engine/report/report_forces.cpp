@@ -195,9 +195,7 @@ class ForceReport {
       r.joint = gear.name;
       r.nonunique = touched_.gears[g] || x.a.link < 0;
       out.nonunique = out.nonunique || r.nonunique;
-      // Ends come in the order of the chain from the motor, or of the gear.
-      const bool in_order = x.a.link < 0 || is_end(gear, 0, x.a.link);
-      const GearForces::End &a = in_order ? x.a : x.b, &b = in_order ? x.b : x.a;
+      const auto [a, b] = ends_in_order(mechanism_, system_, x);
       if (a.link >= 0) {
         const Link& link = system_.links[at(b.link)];
         r.a = a.value;
@@ -269,12 +267,6 @@ class ForceReport {
     return std::max(varying_torque * size_, rounding * loads_) * (angle ? p_.length : 1);
   }
 
-  bool is_end(const Joint& gear, std::size_t end, int l) const {
-    const Link& link = system_.links[at(l)];
-    const CoordinateReference r = find_coordinate(mechanism_, gear.joints[end]);
-    return r.joint == system_.tree_joints[at(link.tree_joint)].joint && r.coordinate == link.coordinate;
-  }
-
   const Mechanism& mechanism_;
   const Problem& problem_;
   const Eigen::VectorXd& q_;
@@ -299,6 +291,37 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
     w.kkt(problem).balance_with_least_norm(w.scaled_force, w.scaled_lambda);
   z.lambda = w.scaled_lambda.cwiseProduct(problem.scaling.row);
   return z;
+}
+
+// Ends come in the order of the chain from the motor, or of the gear.
+GearEnds ends_in_order(const Mechanism& mechanism, const System& system, const GearForces& gear) {
+  if (gear.a.link < 0) return {gear.a, gear.b};
+  const Link& link = system.links[at(gear.a.link)];
+  const CoordinateReference first = find_coordinate(mechanism, mechanism.joints[at(gear.joint)].joints[0]);
+  const bool in_order =
+      first.joint == system.tree_joints[at(link.tree_joint)].joint && first.coordinate == link.coordinate;
+  return in_order ? GearEnds{gear.a, gear.b} : GearEnds{gear.b, gear.a};
+}
+
+OpenForces find_open_forces(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
+  const System& system = problem.system;
+  OpenForces out;
+  const Unknowns z = with_reported_multipliers(problem, q, t, w);
+  if (system.rows > 0)
+    evaluate_residual<double>(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
+  const TransmittedForces forces =
+      transmitted_forces(system, problem.parameters, z.lambda, w.kinematics, w.residual);
+  const Touched open = find_touched(problem, forces, z, w);
+  for (std::size_t i = 0; i < open.tree.size(); ++i)
+    if (open.tree[i] && system.tree_joints[i].joint >= 0) out.joints.push_back(system.tree_joints[i].joint);
+  for (std::size_t i = 0; i < open.cuts.size(); ++i)
+    if (open.cuts[i]) out.joints.push_back(system.cuts[i].joint);
+  for (std::size_t i = 0; i < open.gears.size(); ++i)
+    if (open.gears[i] || forces.gears[i].a.link < 0) out.joints.push_back(forces.gears[i].joint);
+  std::ranges::sort(out.joints);
+  for (std::size_t i = 0; i < open.drives.size(); ++i)
+    if (open.drives[i]) out.drives.push_back(static_cast<int>(i));
+  return out;
 }
 
 Unknowns evaluate_reported(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/report/report.hpp"
+#include "engine/system/reactions.hpp"
 
 namespace flyball {
 
@@ -11,6 +12,19 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
 
 // The same at the drawn phase, evaluated with them.
 Unknowns evaluate_reported(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
+
+// Joints (entries of Mechanism::joints, gears among them) and drives (of System::drives), in order, whose
+// forces redundant loops leave open at a state with the drives `t` seconds on: many others balance as well.
+struct OpenForces {
+  std::vector<int> joints, drives;
+};
+OpenForces find_open_forces(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
+
+// The ends of a gear as it names its joints, not as forces reach it.
+struct GearEnds {
+  GearForces::End a, b;
+};
+GearEnds ends_in_order(const Mechanism& mechanism, const System& system, const GearForces& gear);
 
 struct ReportedForces {
   std::vector<JointMultipliers> multipliers;

@@ -1,6 +1,7 @@
 #include "engine/search/steady_state.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/solve/slow_motion.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
@@ -41,6 +42,15 @@ bool went_far(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Vec
             return finds_speed(link) &&
                    std::abs(b[link.q] - a[link.q]) > 0.5 * std::max(std::abs(a[link.q]), std::abs(b[link.q]));
           }));
+}
+
+// A step (scaled) that no symmetry keeps: with a share of every direction in which a state may grow.
+Eigen::VectorXd any_direction(int coordinates) {
+  std::mt19937 random(3);
+  Eigen::VectorXd out(coordinates);
+  for (double& share : out)
+    share = uniform(random, 0.5, 1);
+  return out;
 }
 
 struct AnswerSearch {
@@ -96,6 +106,8 @@ AnswerSearch search_answer(const Problem& problem, const Eigen::VectorXd& start,
 
 void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
                        const SteadyStateOptions& options) {
+  if (const int link = rubbing_link(problem.system, problem.parameters); link >= 0)
+    return refuse(problem, from, {.holds = false, .rubs = link});
   find_once(problem, from, drawn, options);
   if (options.nearest || problem.cancelled() || problem.system.nv == 0) return;
   if (!holds) {
@@ -128,6 +140,23 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   } else {
     leave_unstable(problem, drawn, options);
   }
+}
+
+// The start is told as a state that does not hold, for whatever reason of the mechanism.
+void SteadyState::refuse(const Problem& problem, const Eigen::VectorXd& from, Existence why) {
+  found = {};
+  found.status = Status::converged;
+  found.z = {from, Eigen::VectorXd::Zero(problem.system.rows)};
+  existence = why;
+  holds = unstable_ = false;
+  others.reset();
+  stability.reset();
+  phases.clear();
+  history.clear();
+  start = from;
+  error = {};
+  factored_.reset();
+  refined_with_.reset();
 }
 
 void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
@@ -224,8 +253,11 @@ void SteadyState::check_phases(const Problem& problem) {
   existence = check_existence(problem, found.z.q, phases, balance_.elsewhere());
   if (existence.holds && existence.left > tolerance::phase_rounding) {
     const Eigen::VectorXd variation = phase_variation(problem, found.z, phases, balance_.elsewhere());
+    const double varies = largest(variation.cwiseQuotient(problem.scaling.column)),
+                 known = largest((error.solution + error.data).cwiseQuotient(problem.scaling.column));
     error.solution += variation;
-    existence.holds = largest(variation.cwiseQuotient(problem.scaling.column)) < tolerance::phase_variation;
+    existence.holds = varies < tolerance::phase_variation;
+    existence.varies = existence.holds && varies > std::max(tolerance::phase_stands, 100 * known);
   }
   holds = existence.holds;
 }
@@ -244,8 +276,7 @@ void SteadyState::judge(const Problem& problem) {
 }
 
 // Puts one that is not unstable in the place of this state, which is, where the slow motion leads to one:
-// from the start, or from either side of this state, along what has a share of every direction in which it
-// grows; or else where a search finds one.
+// from the start, or from either side of this state; or else where a search finds one.
 void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& drawn,
                                  const SteadyStateOptions& options) {
   report_progress(options.progress, "leaving an unstable state");
@@ -260,7 +291,8 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
   for (const double side : {0., beside, -beside}) {
     Found candidate;
     candidate.z = {side == 0 ? start : found.z.q, Eigen::VectorXd::Zero(problem.system.rows)};
-    const Eigen::VectorXd step = side * problem.scaling.column;
+    const Eigen::VectorXd step =
+        (side * any_direction(problem.system.nv)).cwiseProduct(problem.scaling.column);
     retract<double>(problem.system, step, candidate.z.q);
     candidate.newton = follow_slow_motion(problem, candidate.z, w, nullptr);
     if (problem.cancelled()) return;

@@ -239,6 +239,9 @@ struct Solution {
   std::vector<DriveTorque> drive_torques;
   // Where without dry friction there is no steady state: what this one rests on.
   std::vector<FrictionForce> frictions;
+  // It holds at every phase of the drives within the errors that it tells, which say how far it moves with
+  // them: a motion is exact (periodic_state.hpp).
+  bool varies = false;
   // What turns at speeds that are found stands at other angles than drawn (phase_search.hpp), as a flexible
   // coupling between two shafts asks for: at other numbers it stands at others.
   bool turned = false;

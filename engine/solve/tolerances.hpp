@@ -67,6 +67,7 @@ constexpr double still_factored_large = 1e-12; // the same of many bodies, whose
 constexpr double phase_balance = 1e-8; // scaled; what turns with the drives is rarely so small by chance
 constexpr double phase_rounding = 64 * std::numeric_limits<double>::epsilon(); // scaled; less is no variation
 constexpr double phase_variation = 1e-2; // scaled; what the drives move further does not stand
+constexpr double phase_stands = 1e-12;   // scaled; what they move less stands: it is no motion
 
 // Forces that push on without end.
 constexpr double push_rounding = 1e-9;  // of the terms that a force is the sum of
