@@ -11,6 +11,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
@@ -326,6 +327,40 @@ void set_expression(Mechanism& mechanism, const std::string& address, const std:
     if (!put_law(next, address, text)) put(next, address, text);
     check_drive_laws(next, address);
   });
+}
+
+std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, const std::string& address,
+                                                const std::string& text) {
+  constexpr std::array usual{"",    "m",   "kg",    "s",     "rad/s",  "m/s",    "N",
+                             "N m", "N/m", "N s/m", "N m s", "kg m^2", "kg/m^3", "1/m"};
+  constexpr std::array variables{spring_variable, damper_variable, air_variable};
+  NamedParameter lacking;
+  try {
+    for (const std::string& name : Expression(text, Expression::Results::allowed).names()) {
+      if (!is_expression_name(name) || free_name(mechanism, name) != name ||
+          std::ranges::find(variables, name) != variables.end())
+        continue;
+      if (!lacking.name.empty()) return {};
+      lacking.name = name;
+    }
+  } catch (const ExpressionError&) {
+    return {};
+  }
+  if (lacking.name.empty()) return {};
+  lacking.value = 1;
+  std::vector<std::string> units(usual.begin(), usual.end());
+  units.insert(units.begin(), unit_at(mechanism, address));
+  for (const std::string& unit : units) {
+    lacking.unit = unit;
+    try {
+      Mechanism tried = mechanism;
+      tried.parameters.push_back(lacking);
+      set_expression(tried, address, text);
+      return lacking;
+    } catch (const SceneError&) { // of another dimension
+    }
+  }
+  return {};
 }
 
 void stand_at_point(Mechanism& mechanism, const std::string& vector, const std::string& point) {

@@ -23,6 +23,10 @@ double expressed_value(const Mechanism& mechanism, const std::string& address);
 // the whole force in its place (force_law.hpp). Refuses laws that cannot be read or ask for what is not
 // there.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
+// The parameter that set_expression() would lack alone: of the value 1, in the first of the usual units with
+// which the expression can be. Nothing where it lacks something else.
+std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, const std::string& address,
+                                                const std::string& text);
 // It is by itself this value (SI units, radians) from now on.
 void set_by_itself(Mechanism& mechanism, const std::string& address, double value);
 // The expressions of a vector's three numbers ("joints.spin.at"): it stands at a named point.

@@ -101,6 +101,22 @@ TEST_CASE("numbers that are tried are evaluated, and put away again") {
   CHECK(find_mistakes(document.stored()).empty());
 }
 
+TEST_CASE("the parameter that an expression lacks has the unit that it needs there") {
+  const Mechanism m = shipped("governor_parametric");
+  const auto unit = [&](const char* address, const char* text) -> std::string {
+    const auto lacking = lacking_parameter(m, address, text);
+    return lacking ? lacking->name + " " + lacking->unit : "none";
+  };
+  CHECK(unit("joints.slide.damping", "d") == "d N s/m");
+  CHECK(unit("bodies.collar.mass", "2*m0") == "m0 kg");
+  CHECK(unit("bodies.collar.mass", "m*factor") == "factor ");
+  CHECK(unit("bodies.collar.mass", "m + rho*L^3") == "rho kg/m^3");
+  CHECK(unit("joints.slide.spring.stiffness", "10 N*tanh(deflection/length)") == "length m");
+  CHECK(unit("bodies.collar.mass", "a*b") == "none");
+  CHECK(unit("bodies.collar.mass", "m") == "none");
+  CHECK(unit("bodies.collar.mass", "L + m0") == "none");
+}
+
 TEST_CASE("any number is given a name, and a name another") {
   Mechanism m = governor();
   name_number(m, "joints.slide.damping", "d");

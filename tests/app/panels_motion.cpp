@@ -216,6 +216,7 @@ TEST_CASE("plots show the speed that a drive by torque settles at") {
                                           [](const CoordinateSolution& c) { return c.speed.has_value(); });
   REQUIRE(found != app.session.answer.solution.coordinates.end());
   CHECK(app.panels->studies.shown().motion[0].quantity == "rate " + found->joint);
+  CHECK(app.panels->studies.shown().motion[1].quantity == "measure power");
   const Plot rate = motion_plot(app.session, "rate " + found->joint);
   CHECK(rate.y.label == found->joint + ".speed"); // as in the results
   REQUIRE(rate.references.size() == 1);

@@ -46,6 +46,46 @@ TEST_CASE("an expression is typed where a number is, and a number over it") {
   }
 }
 
+TEST_CASE("the parameter that an expression lacks is made where it is said to lack it, in one step") {
+  Desk d("governor_engine");
+  d.build();
+  d.pick(PartKind::joint, "spin");
+  const std::size_t steps = d.app.session.document.position();
+  d.frames(60);
+  const float narrow = d.widget("inspector/drive/torque").to.x - d.widget("inspector/drive/torque").from.x;
+  d.click("inspector/drive/torque");
+  d.type("=0.8 N m - slope*coordinate(slide)");
+  d.frames(2);
+  CHECK_THAT(d.app.ui.fields.typing.mistake, ContainsSubstring("there is no parameter \"slope\""));
+  // The whole row is for it.
+  CHECK(d.widget("inspector/drive/torque").to.x - d.widget("inspector/drive/torque").from.x > 1.3f * narrow);
+  SECTION("by the mouse") {
+    d.click("inspector/drive/torque/offer");
+  }
+  SECTION("by a key") {
+    d.key(key_enter, true);
+  }
+  d.frames(2);
+  CHECK(d.app.ui.fields.typing.name.empty());
+  CHECK(get_parameter(d.m(), "parameters.slope") == 1);
+  CHECK(parameter_unit(d.m(), "parameters.slope") == "N");
+  CHECK(formula_at(d.m(), "joints.spin.drive.torque") == "0.8 N m - slope*coordinate(slide)");
+  CHECK(d.app.session.document.position() == steps + 1);
+}
+
+TEST_CASE("of another mistake no parameter is offered") {
+  Desk d("governor_engine");
+  d.build();
+  d.pick(PartKind::joint, "spin");
+  d.frames(60);
+  d.click("inspector/drive/torque");
+  d.type(GENERATE("=0.8 N m - slope*coordinate(slyde)", "=a*b*1 N m", "=2 m + gain", "=slope +"));
+  d.frames(2);
+  CHECK_FALSE(d.app.ui.fields.typing.mistake.empty());
+  CHECK_FALSE(d.app.ui.widgets.contains("inspector/drive/torque/offer"));
+  d.key(key_escape);
+}
+
 TEST_CASE("a number is named in one gesture") {
   Desk d;
   d.pick(PartKind::body, "ball1");

@@ -1,6 +1,8 @@
 // What is being typed or dragged in a field, and the edits that wait.
 #pragma once
 
+#include <imgui.h>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,11 +14,19 @@ namespace flyball {
 using TextCheck = std::function<std::string(const std::string&)>;
 using TextTaker = std::function<void(const std::string&)>;
 
+// What would make a text that cannot be taken one that can.
+struct FieldOffer {
+  std::string words;          // "Add the parameter gain"; empty: nothing is offered
+  std::function<void()> take; // does that and takes the text
+};
+
 // The one field that is being typed in.
 struct Typing {
   std::string name{}; // of the widget; empty: there is none
   std::string text{}, original{};
-  std::string mistake{}, checked{}; // why `checked` cannot be taken
+  std::string mistake{}, checked{};    // why `checked` cannot be taken
+  FieldOffer offer{};                  // of `checked`
+  ImVec2 offered_from{}, offered_to{}; // where it was drawn last, pixels
   TextCheck check{};
   TextTaker take{};
   bool wants_focus = false; // to be given the keyboard when it is drawn next

@@ -3,6 +3,7 @@
 #include "app/render/imgui_compat.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <utility>
@@ -13,10 +14,12 @@ namespace {
 
 constexpr int idle_frames = 3; // frames in which a field may be without the keyboard before it counts as left
 
-void check(Typing& typing) {
+void check(Typing& typing, const TextField& field) {
   if (!typing.check || typing.text == typing.checked) return;
   typing.checked = typing.text;
   typing.mistake = typing.text == typing.original ? "" : typing.check(typing.text);
+  typing.offer = {};
+  if (!typing.mistake.empty() && field.offer) typing.offer = field.offer(typing.text);
 }
 
 // Takes what was typed, or says why not.
@@ -37,19 +40,48 @@ void begin(Session& session, Ui& ui, const TextField& field, std::string typed) 
       .name = field.name, .text = std::move(typed), .original = field.text, .checked = field.text};
 }
 
-// Below the field, wherever the mouse is.
-void show_mistake(Ui& ui, const std::string& mistake) {
+// Below the field, wherever the mouse is. A tooltip lets clicks through, which what is offered may not.
+void show_mistake(Ui& ui) {
+  Typing& typing = ui.fields.typing;
   const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
   const bool right = from.x + to.x > ImGui::GetIO().DisplaySize.x;
   ImGui::SetNextWindowPos({right ? to.x : from.x, to.y + 3 * ui.scale}, ImGuiCond_Always,
                           {right ? 1.f : 0.f, 0});
-  ImGui::BeginTooltip();
+  const bool offers = !typing.offer.words.empty();
+  constexpr ImGuiWindowFlags in_front = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
+                                        ImGuiWindowFlags_NoFocusOnAppearing;
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
+  if (offers)
+    ImGui::Begin("mistake", nullptr, in_front);
+  else
+    ImGui::BeginTooltip();
+  if (offers) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
   ImGui::PushFont(ui.fonts.text);
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
-  ImGui::TextColored(colors_of(ui).bad, "%s", mistake.c_str());
+  ImGui::TextColored(colors_of(ui).bad, "%s", typing.mistake.c_str());
   ImGui::PopTextWrapPos();
+  if (offers) {
+    ImGui::Button((typing.offer.words + " (Ctrl+Enter)").c_str());
+    typing.offered_from = ImGui::GetItemRectMin();
+    typing.offered_to = ImGui::GetItemRectMax();
+    note_widget(ui.widgets, typing.name + "/offer", KeyUse::none);
+  }
   ImGui::PopFont();
-  ImGui::EndTooltip();
+  if (offers)
+    ImGui::End();
+  else
+    ImGui::EndTooltip();
+  ImGui::PopStyleColor();
+}
+
+// Whether it is this that ends typing: a click there, which takes the keyboard from the field, or the key.
+bool takes_offer(const Typing& typing, bool entered) {
+  if (typing.offer.words.empty()) return false;
+  const ImVec2 at = ImGui::GetIO().MousePos, from = typing.offered_from, to = typing.offered_to;
+  const bool clicked =
+      ImGui::IsMouseClicked(0) && at.x >= from.x && at.x < to.x && at.y >= from.y && at.y < to.y;
+  return clicked || (entered && ImGui::GetIO().KeyCtrl);
 }
 
 bool escape_pressed_now() {
@@ -62,9 +94,12 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
   if (ImGui::IsItemActive()) typing.idle = 0;
   typing.check = field.check;
   typing.take = field.take;
-  check(typing);
+  check(typing, field);
   if (!ImGui::IsItemDeactivated()) {
-    if (!typing.mistake.empty()) show_mistake(ui, typing.mistake);
+    if (!typing.mistake.empty()) show_mistake(ui);
+  } else if (takes_offer(typing, entered)) {
+    later(ui, std::exchange(typing, {}).offer.take);
+    ui.keyboard.focus = {};
   } else if (escape_pressed_now()) {
     typing = {};
     ui.keyboard.focus = {};

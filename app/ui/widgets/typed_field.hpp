@@ -11,11 +11,12 @@
 namespace flyball {
 
 struct TextField {
-  std::string name;       // of the widget
-  std::string text;       // that typing starts from
-  TextCheck check;        // may be empty
-  TextTaker take;         // called after the panels are drawn, if the text was changed
-  bool at_once = false;   // `take` is called while drawing instead
+  std::string name; // of the widget
+  std::string text; // that typing starts from
+  TextCheck check;  // may be empty
+  TextTaker take;   // called after the panels are drawn, if the text was changed
+  std::function<FieldOffer(const std::string&)> offer{}; // of a text that cannot be taken; may be empty
+  bool at_once = false;                                  // `take` is called while drawing instead
   bool drawn_here = true; // the text at rest; otherwise the caller draws something in its place
   const char* hint = "";  // shown while there is no text
   int flags = 0;          // of ImGui's InputText

@@ -265,11 +265,16 @@ std::optional<PlotMarker> play_head(const Session& session, const Plot& plot, co
 std::string first_shown(const Session& session, const std::vector<MotionQuantity>& all, std::size_t plot) {
   const auto count =
       static_cast<std::size_t>(std::ranges::count(all, std::string("Coordinates"), &MotionQuantity::group));
-  const std::size_t chosen = plot == 0 ? 0 : count > 1 ? count - 1 : 1;
+  const auto goes_on = [&](const std::string& key) {
+    return std::ranges::any_of(session.answer.solution.coordinates, [&](const CoordinateSolution& c) {
+      return c.speed && key == "value " + coordinate_label(c);
+    });
+  };
+  std::size_t chosen = plot == 0 ? 0 : count > 1 ? count - 1 : 1;
+  if (plot > 0 && count == 1 && goes_on(all[0].key)) chosen = 2; // its speed is in the first plot
   if (chosen >= all.size()) return "";
-  for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (c.speed && all[chosen].key == "value " + coordinate_label(c)) return "rate " + coordinate_label(c);
-  return all[chosen].key;
+  const std::string& key = all[chosen].key;
+  return goes_on(key) ? "rate" + key.substr(key.find(' ')) : key;
 }
 
 void draw_plots(Session& session, Ui& ui, std::array<MotionPlot, 2>& shown_plots) {
