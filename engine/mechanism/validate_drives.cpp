@@ -14,7 +14,8 @@ namespace {
 struct Driven {
   bool is = false;
   double speed = 0;
-  bool found = false;    // the speed
+  bool found = false; // the speed
+  bool keeps_momentum = false;
   std::size_t joint = 0; // whose drive it is
   int gear = -1;         // the last gear on the way, -1 where it is driven directly
 };
@@ -34,7 +35,8 @@ class DrivenCoordinates {
     for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
       for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
         if (const std::optional<Drive>& drive = mechanism.joints[j].coordinates[i].drive) {
-          all_[first_[j] + i] = {true, drive->speed, finds_speed(*drive), j, -1};
+          all_[first_[j] + i] = {
+              true, drive->speed, finds_speed(*drive), drive->keeps == DriveKeeps::momentum, j, -1};
           waiting.push_back(first_[j] + i);
         }
     for (; !waiting.empty(); waiting.pop_front())
@@ -75,7 +77,7 @@ class DrivenCoordinates {
       Driven& target = all_[other];
       const double speed = source.speed * ratio;
       if (!target.is) {
-        target = {true, speed, source.found, source.joint, static_cast<int>(g)};
+        target = {true, speed, source.found, source.keeps_momentum, source.joint, static_cast<int>(g)};
         waiting.push_back(other);
         continue;
       }
@@ -130,15 +132,11 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
         mistakes.add(coordinate_path(mechanism, j, "spring", i), "expected no spring" + reason);
       if (coordinate.stop)
         mistakes.add(coordinate_path(mechanism, j, "stop", i), "expected no stop" + reason);
-      if (coordinate.friction)
-        mistakes.add(
-            coordinate_path(mechanism, j, "friction", i),
-            "expected no friction on this coordinate, which is driven" + by +
-                (driven(j, i).found
-                     ? ": whether it holds what a torque turns is not looked for. While that turns a "
-                       "load of its drive does the same, such as 0.5 N m*tanh(rate(" +
-                           mechanism.joints[driven(j, i).joint].name + ")/(0.01 rad/s))"
-                     : ": it holds nothing there, and only the drive would feel it"));
+      if (coordinate.friction && (!driven(j, i).found || driven(j, i).keeps_momentum))
+        mistakes.add(coordinate_path(mechanism, j, "friction", i),
+                     "expected no friction on this coordinate, which is driven" + by +
+                         (driven(j, i).found ? ": where friction acts no momentum is kept"
+                                             : ": it holds nothing there, and only the drive would feel it"));
     }
 }
 

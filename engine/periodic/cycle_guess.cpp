@@ -28,6 +28,9 @@ constexpr double alike_in_space = 1e-6; // scaled, of motions from two angles
 constexpr double alike_in_time = 1e-9;  // and from two phases of drives: a small unbalance is one, too
 constexpr int most_periods = 20000;     // in which a drive is to stand otherwise against the others
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
+constexpr double least_share = 1e-6;    // of a unit vector: less is rounding
+constexpr int most_ways = 64, most_tries = 4096; // of turning: that are tried, and sets of what stands still
+constexpr double evenly = 1e-4; // of a mean speed: what changes less between two looks has settled
 
 // Of the drives by torque, with what loops and gears move along.
 Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
@@ -47,6 +50,58 @@ Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
                         kept = cyclic_directions(system, basis, true);
   Eigen::MatrixXd out(system.nv, given.cols() + kept.cols());
   out << basis * given, basis * kept;
+  return out;
+}
+
+void append(Eigen::MatrixXd& columns, const Eigen::VectorXd& column) {
+  columns.conservativeResize(column.size(), columns.cols() + 1);
+  columns.rightCols<1>() = column;
+}
+
+// What of a vector is at right angles to these columns.
+Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& way) {
+  if (columns.cols() == 0) return way;
+  const auto shares = least_squares(columns, way);
+  return shares ? Eigen::VectorXd(way - columns * *shares) : way;
+}
+
+// Entries of revolute drives, what loops turn along included, by how far they turn along a direction.
+std::vector<Eigen::Index> drives_by_turn(const System& system, const Eigen::VectorXd& way) {
+  std::vector<Eigen::Index> out;
+  for (const DriveTorqueElement& drive : system.torques)
+    if (const Link& link = system.links[static_cast<std::size_t>(drive.link)];
+        link.type == LinkType::revolute && std::abs(way[link.v]) > least_share)
+      out.push_back(link.v);
+  std::ranges::stable_sort(out, std::greater(), [&](Eigen::Index v) { return std::abs(way[v]); });
+  return out;
+}
+
+// Of the space of these columns the directions in which as many drives stand still as can: of a differential
+// those with one wheel at rest, since what a drive carries depends on its own angle alone. Unit vectors.
+std::vector<Eigen::VectorXd> ways_of_turning(const System& system, const Eigen::MatrixXd& space) {
+  std::vector<Eigen::VectorXd> out;
+  if (space.cols() == 1) out.push_back(space.col(0).normalized());
+  if (space.cols() < 2) return out;
+  const auto drives = static_cast<int>(system.torques.size());
+  const auto still_count = static_cast<int>(space.cols()) - 1;
+  std::vector<bool> chosen(static_cast<std::size_t>(drives), false);
+  std::fill_n(chosen.begin(), std::min(still_count, drives), true);
+  int tries = 0;
+  do {
+    Eigen::MatrixXd rows(still_count, space.cols());
+    Eigen::Index row = 0;
+    for (std::size_t d = 0; d < chosen.size() && row < still_count; ++d)
+      if (chosen[d])
+        rows.row(row++) = space.row(system.links[static_cast<std::size_t>(system.torques[d].link)].v);
+    ConstraintSpace still;
+    still.factor(rows.topRows(row), 1e-9);
+    if (still.basis().cols() != 1) continue; // some move along with others
+    const Eigen::VectorXd way = (space * still.basis()).normalized();
+    if (std::ranges::none_of(
+            out, [&](const Eigen::VectorXd& known) { return beyond(known, way).norm() <= least_share; }))
+      out.push_back(way);
+  } while (static_cast<int>(out.size()) < most_ways && ++tries < most_tries &&
+           std::prev_permutation(chosen.begin(), chosen.end()));
   return out;
 }
 
@@ -169,6 +224,41 @@ Return first_return(const StateChart& begin, const std::vector<MotionState>& tra
   return out;
 }
 
+// The mean of the rates with the weights exp(-1 / (t (1 - t))) over the time from 0 to 1: of a motion of
+// several incommensurable periods it converges faster than any power of the time (Das, Sander, Saiki and
+// Yorke, Nonlinearity 30, 2017). Empty where there are no states.
+Eigen::VectorXd mean_speeds(const std::vector<MotionState>& trace) {
+  Eigen::VectorXd sum;
+  double weights = 0;
+  for (std::size_t i = 1; i + 1 < trace.size(); ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(trace.size() - 1),
+                 weight = std::exp(-1 / (t * (1 - t)));
+    if (sum.size() == 0) sum.setZero(trace[i].u.size());
+    sum += weight * trace[i].u;
+    weights += weight;
+  }
+  return weights > 0 ? Eigen::VectorXd(sum / weights) : Eigen::VectorXd();
+}
+
+// What is said where the speeds have settled and the motion does not return.
+std::string quasi_periodic_message(const Flow& flow, const AlikeAngles& alike,
+                                   const Eigen::VectorXd& speeds) {
+  std::vector<std::string> turning;
+  for (const DriveTorqueElement& drive : flow.model().system.torques) {
+    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
+    if (!alike.drives.empty() && std::ranges::find(alike.drives, link.v) == alike.drives.end()) continue;
+    if (link.type != LinkType::revolute || (alike.drives.empty() && drive.implied)) continue;
+    const TreeJoint& joint = flow.model().system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+    turning.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
+                      rounded_text(speeds[link.v], 6) + " rad/s");
+  }
+  return "The motion from the drawn pose settles, but does not repeat itself within three turns: it depends "
+         "on "
+         "several angles that go on each at a mean speed of its own, " +
+         word_list(std::vector<std::string_view>(turning.begin(), turning.end()), "and") +
+         ", and is quasi-periodic unless these are locked in a ratio of higher numbers.";
+}
+
 // Whether motions from beside a state go alike when they begin then (s) as at first; `rate` (1/s) is the
 // fastest drive's.
 bool goes_alike_at(Flow& flow, const MotionState& state, double rate, const std::array<double, 3>& times) {
@@ -214,39 +304,45 @@ std::string settled_message(const Flow& flow, CycleStart start, const MotionStat
 AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {
   const System& system = flow.model().system;
   const Eigen::VectorXd& unit = flow.model().scaling.column;
-  const Eigen::MatrixXd all = turning_directions(flow, state);
   AlikeAngles out;
-  out.anywhere.resize(all.rows(), 0);
-  out.turns.resize(all.rows(), 0);
+  out.anywhere.resize(system.nv, 0);
+  out.turns.resize(system.nv, 0);
   const double span = 0.1 / rate;
   const auto here = flow.pass(state, span, step_tolerance * 1e-3);
-  for (Eigen::Index i = 0; here && i < all.cols(); ++i) {
-    const Eigen::VectorXd way = all.col(i).normalized();
-    const auto goes_alike = [&](const Eigen::VectorXd& on) {
-      MotionState turned = state;
-      retract<double>(system, unit.cwiseProduct(on), turned.q);
-      const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
-      if (!there) return false;
-      const StateChart chart(flow.problem(), here->to, rate, {way, {}, {}});
-      return chart.distance(there->to) < alike_in_space;
-    };
-    if (goes_alike(0.7 * way) && goes_alike(2.2 * way)) {
-      out.anywhere.conservativeResize(Eigen::NoChange, out.anywhere.cols() + 1);
-      out.anywhere.rightCols<1>() = way;
-      continue;
+  if (!here) return out;
+  const auto goes_alike = [&](const Eigen::VectorXd& way, const Eigen::VectorXd& on) {
+    MotionState turned = state;
+    retract<double>(system, unit.cwiseProduct(on), turned.q);
+    const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
+    if (!there) return false;
+    const StateChart chart(flow.problem(), here->to, rate, {way, {}, {}});
+    return chart.distance(there->to) < alike_in_space;
+  };
+  const Eigen::MatrixXd all = turning_directions(flow, state);
+  const std::vector<Eigen::VectorXd> ways = ways_of_turning(system, all);
+  for (const Eigen::VectorXd& way : ways)
+    if (out.anywhere.cols() < all.cols() && beyond(out.anywhere, way).norm() > least_share &&
+        goes_alike(way, 0.7 * way) && goes_alike(way, 2.2 * way))
+      append(out.anywhere, way);
+  // Of the others turns of drives, each with no part in those before.
+  for (const Eigen::VectorXd& way : ways) {
+    if (out.anywhere.cols() + out.turns.cols() == all.cols()) break;
+    const Eigen::VectorXd beside = beyond(out.anywhere, way);
+    if (beside.norm() <= least_share) continue;
+    for (const Eigen::Index drive : drives_by_turn(system, way)) {
+      const Eigen::VectorXd whole = turn / (unit[drive] * way[drive]) * way,
+                            once = beyond(out.anywhere, whole);
+      const bool apart = std::ranges::all_of(out.drives, [&](Eigen::Index v) {
+        const auto i = std::ranges::find(out.drives, v) - out.drives.begin();
+        return std::abs(once[v]) < least_share && std::abs(out.turns(drive, i)) < least_share;
+      });
+      if (!apart || std::abs(once[drive]) < least_share || !goes_alike(way, whole) ||
+          !goes_alike(way, -2 * whole))
+        continue;
+      append(out.turns, once);
+      out.drives.push_back(drive);
+      break;
     }
-    // By the drive that turns most along it.
-    Eigen::Index most = -1;
-    for (const DriveTorqueElement& drive : system.torques)
-      if (const Link& link = system.links[static_cast<std::size_t>(drive.link)];
-          link.type == LinkType::revolute && (most < 0 || std::abs(way[link.v]) > std::abs(way[most])))
-        most = link.v;
-    if (most < 0 || std::abs(way[most]) < 1e-6) continue;
-    const Eigen::VectorXd once = turn / (unit[most] * way[most]) * way;
-    if (!goes_alike(once) || !goes_alike(-2 * once)) continue;
-    out.turns.conservativeResize(Eigen::NoChange, out.turns.cols() + 1);
-    out.turns.rightCols<1>() = once;
-    out.drives.push_back(most);
   }
   return out;
 }
@@ -302,11 +398,15 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     }
     state = chart.displaced(Eigen::VectorXd::Constant(chart.size(), off_steady));
   }
+  // With two angles or more on which the motion depends, each turning on, it covers a torus as a rule.
+  const bool torus = turning_directions(flow, *state).cols() - alike_along.anywhere.cols() > 1;
+  Eigen::VectorXd speeds; // on a weighted average, at the last look
   const double first = *period;
   double before = 0; // how far it went away at the last look
   for (int look = 0; look < looks; ++look) {
     const auto passage = flow.pass(*state, followed * *period, step_tolerance);
     if (!passage) return refused("The motion does not last: " + flow.trouble());
+    const MotionState from = *state;
     state = passage->to;
     state->time = 0;
     // What turns may have become faster or slower.
@@ -319,7 +419,18 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
       return refused(settled_message(flow, start, *state, turn / *period));
     const bool grows = std::abs(back.farthest - before) > steadily * back.farthest;
     before = back.farthest;
-    if (back.sample == 0 || back.nearest > returned * back.farthest || (grows && look + 1 < looks)) continue;
+    const bool returns = back.sample > 0 && back.nearest <= returned * back.farthest;
+    if (torus && !returns && !swing.period) {
+      const Eigen::VectorXd now =
+          mean_speeds(flow.trace(from, followed * *period, followed * samples, step_tolerance));
+      const bool settled =
+          now.size() > 0 && now.size() == speeds.size() &&
+          (now - speeds).cwiseQuotient(flow.model().scaling.column).lpNorm<Eigen::Infinity>() <
+              evenly * turn / *period;
+      if (settled) return refused(quasi_periodic_message(flow, alike_along, now));
+      speeds = now;
+    }
+    if (!returns || (grows && look + 1 < looks)) continue;
     out.guess = {*period * static_cast<double>(back.sample) / samples, alike_along, steady, state, {}};
     return out;
   }

@@ -329,8 +329,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                .newton_only = options.newton_only,
                .seconds = options.search,
                .progress = options.progress});
-  if (!steady.holds && !options.nearest && !options.newton_only && problem.form == KktForm::dense &&
-      !problem.cancelled())
+  if (!steady.holds && steady.existence.rubs < 0 && !options.nearest && !options.newton_only &&
+      problem.form == KktForm::dense && !problem.cancelled())
     s.find_turned(problem);
   if (on_friction && !steady.holds && !problem.cancelled())
     if (std::optional<StateOnFriction> state = find_friction_state(*s.mechanism, options)) {
@@ -448,11 +448,13 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   search.seconds = options.search_time;
   search.starts = options.search_starts;
   search.progress = options.progress;
+  const bool rubs = rubbing_link(s.system, s.parameters) >= 0; // then friction has a part in all there is
+  if (rubs) search.starts = 1;
   EquilibriumList list = find_all_equilibria(problem, s.drawn, search, s.steady.elsewhere());
   AllSolutions out;
   out.starts = list.report.starts;
   out.unseen = list.report.unseen;
-  out.end = list.report.end;
+  out.end = rubs ? SearchEnd::settled : list.report.end;
   for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
     const CoordinateInfo& info = s.system.coordinates[c];
     const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
@@ -484,7 +486,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     steady.complete(problem);
     if (!steady.holds) {
-      ++out.passing;
+      out.passing += !rubs;
       continue;
     }
     const bool many = s.system.nv > largest_for_eigenvalues && options.modes == 0;

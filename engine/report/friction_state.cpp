@@ -2,12 +2,16 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/body_groups.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
+#include "engine/report/standstill.hpp"
+#include "engine/system/elastic_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,10 +30,14 @@ std::size_t place(int i) {
   return static_cast<std::size_t>(i);
 }
 
+auto& coordinate_at(auto& mechanism, CoordinateReference at) {
+  return mechanism.joints[place(at.joint)].coordinates[place(at.coordinate)];
+}
+
 // Of one axis, along which it may go on and on.
 bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
   const Joint& joint = mechanism.joints[place(at.joint)];
-  const Coordinate& c = joint.coordinates[place(at.coordinate)];
+  const Coordinate& c = coordinate_at(mechanism, at);
   return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
 }
 
@@ -78,43 +86,29 @@ class Attempt {
   }
 
   // Nothing where there is no such state.
-  std::optional<StateOnFriction> solve(const SolveOptions& options) const try {
-    auto changed = std::make_shared<const Mechanism>(driven());
-    StateOnFriction out{Analysis(changed), {}, parts_, {}};
-    SolveOptions inner = options;
-    inner.friction = inner.warm = false;
-    inner.details = true; // what holding takes
-    inner.explain = false;
-    std::erase_if(inner.start, [&](const auto& named) { return plays(named.first); });
-    out.solution = out.analysis.solve(inner);
-    if (out.solution.status != Status::converged || !tell(*changed, out)) return std::nullopt;
-    return out;
-  } catch (const SceneError&) { // drives that close a loop, say
+  std::optional<StateOnFriction> solve(const SolveOptions& options) const {
+    for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held()))
+      if (auto out = solve_with(at_rest, options)) return out;
     return std::nullopt;
   }
 
-  // With its coordinates driven as their parts say.
-  Mechanism driven() const {
-    std::vector<CoordinateReference> held;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (parts_[i] == Part::holds) held.push_back(frictions_[i]);
-    Mechanism out = standing_still(mechanism_, held);
+  // With its coordinates driven as their parts say, and drives by torque that have come to rest.
+  Standstill driven(std::span<const CoordinateReference> at_rest = {}) const {
+    std::vector<Standing> standing;
+    for (const CoordinateReference& at : held())
+      standing.push_back({at, coordinate_at(mechanism_, at).drawn});
+    Standstill still = stand_still(mechanism_, standing, {}, at_rest);
+    Mechanism& out = still.mechanism;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!slips(i)) continue;
       Joint& joint = out.joints[place(frictions_[i].joint)];
       Coordinate& c = joint.coordinates[place(frictions_[i].coordinate)];
       c.friction.reset();
-      if (implied_[i]) {
+      if (implied_[i])
         put_as_damper(i, joint, c);
-        continue;
-      }
-      joint.cut = false;
-      c.drive = Drive{.speed = drive_speeds(mechanism_).most * (parts_[i] == Part::slips_forwards ? 1 : -1),
-                      .torque = slipping_force(i),
-                      .load = 0};
+      else
+        let_slip(i, out);
     }
-    out.sliders.clear();
-    out.measures.clear();
     for (const NamedMeasure& measure : mechanism_.measures) {
       out.measures.push_back(measure);
       try {
@@ -123,11 +117,67 @@ class Attempt {
         out.measures.pop_back();
       }
     }
-    return out;
+    return still;
   }
 
  private:
+  std::optional<StateOnFriction> solve_with(std::span<const CoordinateReference> at_rest,
+                                            const SolveOptions& options) const try {
+    const Standstill still = driven(at_rest);
+    StateOnFriction out{Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, {}};
+    SolveOptions inner = options;
+    inner.friction = inner.warm = false;
+    inner.details = true; // what holding takes
+    inner.explain = false;
+    std::erase_if(inner.start, [&](const auto& named) {
+      return plays(named.first) || is_speed_at_rest(mechanism_, still, named.first);
+    });
+    out.solution = out.analysis.solve(inner);
+    if (out.solution.status != Status::converged || !tell(still, out)) return std::nullopt;
+    return out;
+  } catch (const SceneError&) { // drives that close a loop, say
+    return std::nullopt;
+  }
+
+  std::vector<CoordinateReference> held() const {
+    std::vector<CoordinateReference> out;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (parts_[i] == Part::holds) out.push_back(frictions_[i]);
+    return out;
+  }
+
   bool slips(std::size_t i) const { return is_slipping(parts_[i]); }
+
+  // The limit as a torque of its own, or of a coordinate that has one as a load more; all that gears turn
+  // with it begins the way it slips.
+  void let_slip(std::size_t which, Mechanism& out) const {
+    const CoordinateReference at = frictions_[which];
+    const double way = parts_[which] == Part::slips_forwards ? 1 : -1;
+    double speed = drive_speeds(mechanism_).most;
+    for (const GearedCoordinate& geared : gear_train(mechanism_, at)) {
+      std::optional<Drive>& drive = coordinate_at(out, geared.at).drive;
+      if (!drive || !finds_speed(*drive)) continue;
+      speed = std::abs(drive->speed / geared.ratio);
+      drive->speed = std::copysign(drive->speed, way * geared.ratio);
+    }
+    Joint& joint = out.joints[place(at.joint)];
+    Coordinate& c = joint.coordinates[place(at.coordinate)];
+    if (c.drive) return add_load(joint, at.coordinate, -slipping_force(which));
+    joint.cut = false;
+    c.drive = Drive{.speed = way * speed, .torque = slipping_force(which), .load = 0};
+  }
+
+  void add_load(Joint& joint, int i, double load) const {
+    const std::string key = coordinate_key(joint, place(i), "drive") + ".load";
+    if (const Formula* law = drive_law(mechanism_, joint, i, "load")) {
+      Formula& now = joint.formulas[place(static_cast<int>(law - joint.formulas.data()))];
+      now.text = "(" + now.text + ")+(" + number_text(load) + (is_angle(joint.type, i) ? " N m)" : " N)");
+      return;
+    }
+    std::erase_if(joint.formulas, [&](const Formula& each) { return each.key == key; });
+    std::optional<double>& number = joint.coordinates[place(i)].drive->load;
+    number = number.value_or(0) + load;
+  }
 
   // rad/s or m/s: of what slips so slowly a rate that the drives give is not told from none.
   double slowest() const { return 1e-3 * drive_speeds(mechanism_).least; }
@@ -167,13 +217,29 @@ class Attempt {
     return false;
   }
 
-  static double largest(const DriveTorque& drive) {
-    if (!drive.range) return drive.value;
-    return std::abs(drive.range->most) > std::abs(drive.range->least) ? drive.range->most
-                                                                      : drive.range->least;
+  // Less what others give along the coordinate.
+  static double largest(const DriveTorque& drive, double others) {
+    if (!drive.range) return drive.value - others;
+    const double least = drive.range->least - others, most = drive.range->most - others;
+    return std::abs(most) > std::abs(least) ? most : least;
   }
 
-  // Whether it stands still as a fixed joint: see standing_still().
+  // What springs of geared coordinates give along a held one as drawn: they are on driven coordinates, which
+  // no balance has. Nothing where there are stops, too.
+  std::optional<double> of_geared_springs(CoordinateReference held) const {
+    double sum = 0;
+    for (const GearedCoordinate& geared : gear_train(mechanism_, held)) {
+      const Coordinate& c = coordinate_at(mechanism_, geared.at);
+      if (c.stop) return std::nullopt;
+      if (c.spring)
+        sum -= geared.ratio * elastic_force(mechanism_, mechanism_.joints[place(geared.at.joint)],
+                                            geared.at.coordinate, c.drawn - c.spring->free)
+                                  .force;
+    }
+    return sum;
+  }
+
+  // Whether it stands still as a fixed joint: see Standstill.
   bool is_fixed(const Mechanism& changed, std::size_t i) const {
     const std::size_t j = place(frictions_[i].joint);
     return changed.joints[j].type == JointType::fixed && mechanism_.joints[j].type != JointType::fixed;
@@ -210,7 +276,8 @@ class Attempt {
   }
 
   // Puts what was found of drives into the words of friction. False where it is not found what they give.
-  bool tell(const Mechanism& changed, StateOnFriction& out) const {
+  bool tell(const Standstill& still, StateOnFriction& out) const {
+    const Mechanism& changed = still.mechanism;
     Solution& s = out.solution;
     add_fixed(changed, s);
     out.margins.assign(parts_.size(), std::numeric_limits<double>::infinity());
@@ -249,13 +316,18 @@ class Attempt {
           force.value = holding_->joints[i].force;
           out.margins[i] = 1 - *holding_->takes;
         } else {
+          const std::optional<double> carried = carried_torque(still, frictions_[i], s.measures);
+          if (!carried) return false;
           if (is_fixed(changed, i)) {
             force.value = of_fixed(joint, s);
             if (!force.value) return false;
+            *force.value -= *carried;
           } else {
-            if (drive == s.drive_torques.end() || drive->nonunique || (drive->varying && !drive->range))
+            const std::optional<double> springs = of_geared_springs(frictions_[i]);
+            if (!springs || drive == s.drive_torques.end() || drive->nonunique ||
+                (drive->varying && !drive->range))
               return false;
-            force.value = largest(*drive);
+            force.value = largest(*drive, *carried + *springs);
           }
           out.margins[i] = force.limit > 0     ? 1 - std::abs(*force.value) / force.limit
                            : *force.value == 0 ? 0
@@ -263,8 +335,15 @@ class Attempt {
         }
         out.goes = out.goes && out.margins[i] >= 0;
       }
-      if (drive != s.drive_torques.end()) s.drive_torques.erase(drive);
+      if (drive == s.drive_torques.end()) continue;
+      if (force.slips && coordinate_at(mechanism_, frictions_[i]).drive) { // its load without the friction
+        drive->value -= slipping_force(i);
+        if (drive->given) drive->given->load += slipping_force(i);
+      } else {
+        s.drive_torques.erase(drive);
+      }
     }
+    if (!tell_drives_at_rest(still, s)) return false;
     for (CoordinateSolution& c : s.coordinates) // what closes a loop with those that are held stands
       if (c.dependent && c.speed && std::abs(*c.speed) <= c.speed_error) {
         c.driven = false;
@@ -272,6 +351,38 @@ class Attempt {
       }
     if (slipping) s.at_constant_speed.reset(); // which prescribes the rates of what slips, too
     order_measures(s);
+    return true;
+  }
+
+  // Of drives by torque that stand still.
+  bool tell_drives_at_rest(const Standstill& still, Solution& s) const {
+    for (const auto* list : {&still.carried, &still.resting})
+      for (const TorqueAtRest& torque : *list) {
+        const std::optional<std::array<double, 2>> value = values_at_rest(torque, s.measures);
+        if (!value) return false;
+        const Joint& joint = mechanism_.joints[place(torque.at.joint)];
+        const auto c = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& x) {
+          return x.joint == joint.name && x.index == torque.at.coordinate;
+        });
+        if (c == s.coordinates.end()) return false;
+        if (list == &still.carried) {
+          c->driven = true;
+          c->speed = 0;
+          c->speed_error = 0;
+          c->speed_scale = std::abs(coordinate_at(mechanism_, torque.at).drive->speed);
+        }
+        DriveTorque drive;
+        drive.joint = joint.name;
+        drive.index = c->index;
+        drive.count = c->count;
+        drive.angle = c->angle;
+        drive.value = (*value)[0] - (*value)[1];
+        drive.given = DriveTorque::Given{(*value)[0], (*value)[1]};
+        const auto after = std::ranges::find_if(s.drive_torques, [&](const DriveTorque& x) {
+          return joint_index(mechanism_, x.joint) > torque.at.joint;
+        });
+        s.drive_torques.insert(after, std::move(drive));
+      }
     return true;
   }
 
@@ -308,6 +419,14 @@ void add_message(StateOnFriction& state, std::string text) {
   std::string& message = state.solution.message;
   const std::string rest = message.starts_with(plain) ? message.substr(plain.size()) : " " + message;
   message = std::move(text) + rest;
+}
+
+// Of what a torque turns, itself or through gears, the way of the speed with which its search begins.
+Part part_at_start(const Mechanism& mechanism, CoordinateReference friction) {
+  for (const GearedCoordinate& geared : gear_train(mechanism, friction))
+    if (const std::optional<Drive>& drive = coordinate_at(mechanism, geared.at).drive; drive && drive->torque)
+      return drive->speed * geared.ratio > 0 ? Part::slips_forwards : Part::slips_backwards;
+  return Part::none;
 }
 
 // All that there are by find_holding().
@@ -437,14 +556,25 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     if (c.friction && c.drawn != value) return std::nullopt;
   }
   std::optional<StateOnFriction> unstable;
-  const std::vector<FrictionParts> all = friction_parts(mechanism, options.cancel);
+  std::vector<FrictionParts> all = friction_parts(mechanism, options.cancel);
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  std::vector<Part> at_start;
+  for (const CoordinateReference& at : frictions)
+    at_start.push_back(part_at_start(mechanism, at));
+  const bool turned = std::ranges::any_of(at_start, is_slipping);
+  std::ranges::stable_sort(all, std::greater(), [&](const FrictionParts& parts) { // as it begins goes first
+    int count = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      count += is_slipping(parts[i]) && parts[i] == at_start[i];
+    return count;
+  });
   for (const double slip_search : {0., balance_search}) { // the second where nothing else is found
     if (slip_search > options.search) break;
     for (const FrictionParts& parts : all) {
       if (slip_search > 0 && !any_slips(parts)) continue;
       auto state = solve_with_parts(mechanism, parts, options, slip_search);
       if (!state || !state->goes) continue;
-      state->solution.message.insert(0, without_friction);
+      if (!turned) state->solution.message.insert(0, without_friction); // else there may be one
       if (!any_slips(parts) || state->solution.stable != false) return state;
       if (!unstable) unstable = std::move(state);
     }
@@ -476,7 +606,7 @@ std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {
     if (!any_slips(parts) || std::ranges::count(parts, Part::slips_backwards) > 0) continue;
     try {
       for (const CoordinateSolution& c :
-           Analysis(Attempt(mechanism, frictions, parts).driven()).summary().coordinates)
+           Analysis(Attempt(mechanism, frictions, parts).driven().mechanism).summary().coordinates)
         if (c.speed && std::ranges::find(out, coordinate_label(c)) == out.end())
           out.push_back(coordinate_label(c));
     } catch (const SceneError&) { // drives that close a loop, say

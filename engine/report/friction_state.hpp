@@ -1,5 +1,6 @@
-// Steady states that there are by dry friction alone. Without it the balance holds nowhere, but friction
-// holds joints as they are drawn; or they slip at constant rates, and friction gives its limit against them:
+// Steady states that there are by dry friction. Without it the balance holds nowhere, or other than it does
+// where what torques turn has friction, as a brake on a shaft; but friction holds joints as they are drawn,
+// or they slip at constant rates, and friction gives its limit against them:
 //
 //   - a joint that it holds stands still, as if driven at the speed zero, and what that takes is within the
 //     limit at every phase of the drives;

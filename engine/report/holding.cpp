@@ -4,19 +4,17 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/body_groups.hpp"
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/fields.hpp"
-#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/found_speeds.hpp"
+#include "engine/report/measures.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/report_forces.hpp"
+#include "engine/report/standstill.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/tied_motions.hpp"
-#include "engine/system/elastic_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,46 +70,9 @@ VectorXd fit(const MatrixXd& a, const VectorXd& b) {
   return least_squares(a, b).value_or(VectorXd::Zero(a.cols()));
 }
 
-Coordinate& coordinate_at(Mechanism& mechanism, CoordinateReference at) {
-  return mechanism.joints[static_cast<std::size_t>(at.joint)]
-      .coordinates[static_cast<std::size_t>(at.coordinate)];
-}
-
-void drive_at_rest(Coordinate& c) {
-  c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
-}
-
-// Of these coordinates those that close a loop of joints that are driven or held: they cannot be driven, too.
-std::vector<bool> closing_driven_loops(const Mechanism& mechanism,
-                                       std::span<const CoordinateReference> coordinates) {
-  const BodyNumbers numbers(mechanism);
-  BodyGroups driven(numbers);
-  for (const Joint& joint : mechanism.joints)
-    if (joint.type != JointType::gear &&
-        std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.drive.has_value(); }))
-      driven.join(joint.bodies);
-  std::vector<bool> out;
-  for (const CoordinateReference& c : coordinates) {
-    const Joint& joint = mechanism.joints[static_cast<std::size_t>(c.joint)];
-    const bool one_axis = joint.type == JointType::revolute || joint.type == JointType::prismatic;
-    const bool geared = std::ranges::any_of(mechanism.joints, [&](const Joint& gear) {
-      return gear.type == JointType::gear && std::ranges::find(gear.joints, joint.name) != gear.joints.end();
-    });
-    out.push_back(!driven.join(joint.bodies) && one_axis && !geared);
-  }
-  return out;
-}
-
-void fix(Joint& joint) {
-  joint.type = JointType::fixed;
-  joint.coordinates.clear();
-  joint.formulas.clear();
-  joint.cut.reset();
-}
-
 // Calls act(numbers) for what gears move along with a drive.
 template <class Act>
-void for_geared(Compiled& held, int drive, const Act& act) {
+void for_geared(auto& held, int drive, const Act& act) {
   for (std::size_t d = 0; d < held.system.drives.size(); ++d)
     if (static_cast<int>(d) != drive && held.system.drives[d].motor == drive)
       act(held.parameters.links[static_cast<std::size_t>(held.system.drives[d].link)]);
@@ -134,7 +95,7 @@ void move_drive(Compiled& held, int drive, double to) {
 }
 
 // What springs and stops of these take of the drive: they are on driven coordinates, which no balance has.
-double geared_springs(Compiled& held, int drive) {
+double geared_springs(const Compiled& held, int drive) {
   double sum = 0;
   for_geared(held, drive,
              [&](const LinkParameters& x) { sum += x.gear_ratio * x.force[0].gradient(x.drawn + x.start); });
@@ -193,59 +154,6 @@ void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Ho
   out.at_least = std::min(*out.takes, std::max(out.at_least, work_share(motion)));
 }
 
-// Of a coordinate that stands still, as a law may ask for it.
-struct Standing {
-  CoordinateReference at;
-  double value = 0; // rad or m
-};
-
-// A law with what it asks of these in numbers.
-std::string without_standing(const Mechanism& mechanism, std::string_view law,
-                             std::span<const Standing> standing) {
-  std::string text = with_measures(mechanism, law);
-  const Expression read(text, Expression::Results::allowed);
-  for (auto call = read.results().rbegin(); call != read.results().rend(); ++call) {
-    if (!asks_for_coordinate(*call)) continue; // of places: the same where the coordinate is held
-    const CoordinateReference asked = find_coordinate(mechanism, *call);
-    const auto found = std::ranges::find_if(standing, [&](const Standing& x) {
-      return x.at.joint == asked.joint && x.at.coordinate == asked.coordinate;
-    });
-    if (found == standing.end()) continue;
-    const Joint& joint = mechanism.joints[static_cast<std::size_t>(asked.joint)];
-    const bool angle = is_angle(joint.type, asked.coordinate);
-    const auto held = [&]() -> std::string {
-      if (call->result == Result::rate) return angle ? "(0 rad/s)" : "(0 m/s)";
-      if (call->result == Result::coordinate)
-        return "(" + number_text(found->value) + (angle ? " rad)" : " m)");
-      const double free = joint.coordinates[static_cast<std::size_t>(asked.coordinate)].spring->free;
-      const ElasticForce spring = elastic_force(mechanism, joint, asked.coordinate, found->value - free);
-      return "(" + number_text(-spring.force) + (angle ? " N m)" : " N)");
-    };
-    const ResultCall::Argument& last = call->arguments.back();
-    const std::size_t end = text.find(')', last.begin + last.length);
-    text.replace(call->begin, end + 1 - call->begin, held());
-  }
-  return text;
-}
-
-// The laws of all drives with these in numbers: they cannot ask for what is driven.
-void put_into_laws(Mechanism& mechanism, std::span<const Standing> standing) {
-  for (Joint& joint : mechanism.joints)
-    for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
-      for (const char* which : {"torque", "load"}) {
-        const Formula* law = drive_law(mechanism, joint, static_cast<int>(i), which);
-        if (!law) continue;
-        const std::string text = without_standing(mechanism, law->text, standing);
-        Formula& now = joint.formulas[static_cast<std::size_t>(law - joint.formulas.data())];
-        now.text = text;
-        if (is_of_state(mechanism, text)) continue;
-        Drive& drive = *joint.coordinates[i].drive;
-        (std::string_view(which) == "torque" ? drive.torque : drive.load) = evaluate_expression(
-            mechanism, text, fields::force_unit(is_angle(joint.type, static_cast<int>(i))), now.key);
-        std::erase_if(joint.formulas, [key = now.key](const Formula& each) { return each.key == key; });
-      }
-}
-
 // At which speeds that are found it holds: "spin at 48 rad/s"; empty where none are.
 std::string at_found_speeds(const System& system, const VectorXd& q) {
   std::string out;
@@ -271,6 +179,218 @@ TiedMotions tied_motions_of(const Mechanism& mechanism, std::span<const Coordina
   return find_tied_motions(moving.problem(cancel), moving.q, entries, w);
 }
 
+// Where a coordinate with friction stands: what torques turn as drawn.
+double standing_value(const Compiled& free, int coordinate) {
+  if (finds_speed(free.link(coordinate)))
+    return free.parameters
+        .links[static_cast<std::size_t>(free.system.coordinates[static_cast<std::size_t>(coordinate)].link)]
+        .drawn;
+  return coordinate_value<double>(free.system, free.parameters, free.q,
+                                  free.system.coordinates[static_cast<std::size_t>(coordinate)]);
+}
+
+// One way to hold a mechanism: all its coordinates with friction stand, and some drives by torque have come
+// to rest.
+class HoldingAttempt {
+ public:
+  HoldingAttempt(const Mechanism& mechanism, const Coordinates& at,
+                 const std::vector<CoordinateReference>& frictions, Compiled& free, const TiedMotions& which,
+                 const std::atomic<bool>* cancel, bool explain)
+      : mechanism_(mechanism), at_(at), frictions_(frictions), free_(free), which_(which), cancel_(cancel),
+        explain_(explain) {
+    for (const std::size_t i : which.independent)
+      independent_.push_back(frictions[i]);
+  }
+
+  const std::vector<CoordinateReference>& independent() const { return independent_; }
+
+  // Into `out`, which knows the joints; or a message why it is not found. False where the others find no
+  // steady state, so that other drives may rest.
+  bool hold(std::span<const CoordinateReference> at_rest, Holding& out) {
+    try {
+      return find(at_rest, out);
+    } catch (const SceneError& error) { // a law that is no number there, loops that they close, say
+      out.message = "What holding takes is not found with the joints that have friction standing still: " +
+                    std::string(error.what()) + ".";
+      return at_rest.empty();
+    }
+  }
+
+ private:
+  bool find(std::span<const CoordinateReference> at_rest, Holding& out) {
+    std::vector<Standing> held, others; // those that loops tie stand, too
+    for (std::size_t i = 0; i < frictions_.size(); ++i) {
+      const bool is_independent = std::ranges::find(which_.independent, i) != which_.independent.end();
+      (is_independent ? held : others)
+          .push_back({frictions_[i], standing_value(free_, free_.find(mechanism_, frictions_[i]))});
+    }
+    Standstill still = stand_still(mechanism_, held, others, at_rest);
+    Mechanism& locked = still.mechanism;
+    for (const CoordinateReference& f : frictions_)
+      if (auto& c = locked.joints[static_cast<std::size_t>(f.joint)].coordinates; !c.empty())
+        c[static_cast<std::size_t>(f.coordinate)].friction.reset();
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const Joint& joint = mechanism_.joints[static_cast<std::size_t>(held[k].at.joint)];
+      if (still.fixed[k] &&
+          held[k].value != joint.coordinates[static_cast<std::size_t>(held[k].at.coordinate)].drawn) {
+        out.message = "What holding takes is not found away from the drawn pose: " + joint.name +
+                      " closes a loop of driven joints.";
+        return true;
+      }
+    }
+    Compiled there(locked);
+    return settle(still, held, there, out);
+  }
+
+  // Coordinates of `at` that are free in the locked mechanism.
+  Coordinates rest_of_start(const Standstill& still, const Compiled& held) const {
+    Coordinates rest;
+    for (const auto& [name, value] : at_) {
+      const CoordinateReference c = find_coordinate(mechanism_, name);
+      const bool is_held = std::ranges::any_of(independent_, [&](const CoordinateReference& f) {
+        return f.joint == c.joint && f.coordinate == c.coordinate;
+      });
+      // Without friction of its own a joint may close a loop, and then follows; so it does behind a gear.
+      const int there = c.joint >= 0 ? held.find(still.mechanism, c) : -1;
+      const bool follows = c.joint >= 0 && (there < 0 || moved_by_gears(held, there));
+      if (!is_held && !follows && !is_speed_at_rest(mechanism_, still, name)) rest.emplace_back(name, value);
+    }
+    return rest;
+  }
+
+  bool settle(const Standstill& still, std::span<const Standing> standing, Compiled& held, Holding& out) {
+    const Mechanism& locked = still.mechanism;
+    for (std::size_t k = 0; k < standing.size(); ++k) {
+      if (still.fixed[k]) continue;
+      const int to = held.find(locked, standing[k].at);
+      move_drive(held, held.link(to).drive, standing[k].value - held.numbers(to).drawn);
+    }
+    try {
+      set_start(held.system, held.parameters, rest_of_start(still, held), held.q);
+    } catch (const SceneError& error) { // a speed that nothing finds where they stand still
+      out.message = "What holding takes is not found: with the joints that have friction standing still, " +
+                    std::string(error.what()) + ".";
+      return true;
+    }
+    const Problem problem = held.problem(cancel_);
+    SteadyState steady;
+    steady.find(problem, held.q, held.q, {.nearest = !at_.empty()});
+    if (!steady.holds) {
+      const std::string why = held.system.torques.empty() || !explain_
+                                  ? ""
+                                  : missing_speed_message(locked, problem, steady.elsewhere());
+      out.message =
+          "With the joints that have friction standing still there, the others find no steady state." +
+          (why.empty() ? "" : " " + why);
+      return false;
+    }
+    tell(still, held, problem, steady.found.z.q, out);
+    return true;
+  }
+
+  void tell(const Standstill& still, const Compiled& held, const Problem& problem, const VectorXd& q,
+            Holding& out) {
+    const Mechanism& locked = still.mechanism;
+    Workspace w;
+    const Unknowns z = evaluate_reported(problem, q, w);
+    MeasureSet measures;
+    measures.bind(locked, held.system, held.parameters);
+    const std::vector<MeasureSolution> laws = measures.solutions(problem, z, {}, w);
+    const Kinematics<double> drawn = w.kinematics;
+    const ReportedForces forces = report_forces(locked, problem, z, w);
+    std::vector<double> needed;
+    for (std::size_t k = 0; k < independent_.size(); ++k) {
+      const std::optional<double> carried = carried_torque(still, independent_[k], laws);
+      if (!carried) {
+        out.message = "What holding takes is not found: a torque has no value there.";
+        return;
+      }
+      const std::optional<double> takes = still.fixed[k] ? needed_by_fixed(k, held, drawn, forces, out)
+                                                         : needed_by_drive(k, held, forces, out);
+      if (!takes) return;
+      needed.push_back(*takes - *carried);
+    }
+    if (which_.others.empty())
+      tell_each(needed, out);
+    else
+      tell_shared(which_, needed, out);
+    const std::string speeds = at_found_speeds(held.system, q);
+    const std::string there = speeds.empty() ? "there" : "there, with " + speeds;
+    out.message = *out.takes <= 1 ? "Friction holds it " + there + ": that takes " +
+                                        rounded_text(100 * *out.takes, 3) + " % of what it can give."
+                  : out.at_least > 1
+                      ? "Friction does not hold it " + there +
+                            (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")
+                      : "Whether friction holds it " + there +
+                            " depends on how the joints in loops share the load, which is not determined.";
+  }
+
+  // Of its own spring, where it stands.
+  double of_spring(std::size_t k) const {
+    const int c = free_.find(mechanism_, independent_[k]);
+    if (finds_speed(free_.link(c))) return 0;
+    CoordinateForce spring = free_.numbers(c).force[0];
+    spring.friction = 0;
+    return spring.gradient(free_.q[free_.link(c).q]);
+  }
+
+  std::optional<double> needed_by_fixed(std::size_t k, const Compiled& held, const Kinematics<double>& drawn,
+                                        const ReportedForces& forces, Holding& out) const {
+    const Joint& joint = mechanism_.joints[static_cast<std::size_t>(independent_[k].joint)];
+    const auto reaction = std::ranges::find(forces.reactions, joint.name, &Reaction::joint);
+    if (reaction == forces.reactions.end() || reaction->varying) {
+      out.message = "What holding takes is not found: what " + joint.name +
+                    " takes changes with the phase of the drives.";
+      return std::nullopt;
+    }
+    const BodyNumbers numbers(mechanism_);
+    const int parent = static_cast<int>(numbers[joint.bodies[0]]) - 1;
+    const Mat3 turned = parent < 0 ? Mat3(Mat3::Identity())
+                                   : drawn.at(held.system.body_link[static_cast<std::size_t>(parent)]).R;
+    return holding_force(joint, *reaction, turned) + of_spring(k);
+  }
+
+  std::optional<double> needed_by_drive(std::size_t k, const Compiled& held, const ReportedForces& forces,
+                                        Holding& out) const {
+    const HeldJoint& joint = out.joints[which_.independent[k]];
+    const auto torque = std::ranges::find_if(forces.drive_torques, [&](const DriveTorque& d) {
+      return d.joint == joint.joint && d.index == joint.index;
+    });
+    if (torque == forces.drive_torques.end()) {
+      out.message = "What holding takes is not found: loops or gears tie " + joint.joint +
+                    " to another drive, which holds it or turns it.";
+      return std::nullopt;
+    }
+    if (torque->nonunique && !held.system.torques.empty()) {
+      out.message =
+          "What holding takes is not determined: loops are redundant, and leave it open how much of "
+          "what the drives give reaches " +
+          joint.joint + ".";
+      return std::nullopt;
+    }
+    const double own =
+        of_spring(k) + geared_springs(held, held.link(held.find(mechanism_, independent_[k])).drive);
+    if (torque->varying && !torque->range) {
+      out.message = "What holding takes is not found: what " + joint.joint +
+                    " takes changes with the phase of drives that are too many, or slide, to try all that "
+                    "they can take.";
+      return std::nullopt;
+    }
+    if (!torque->range) return torque->value + own;
+    const double least = torque->range->least + own, most = torque->range->most + own;
+    return std::abs(most) > std::abs(least) ? most : least;
+  }
+
+  const Mechanism& mechanism_;
+  const Coordinates& at_;
+  const std::vector<CoordinateReference>& frictions_;
+  Compiled& free_;
+  const TiedMotions& which_;
+  const std::atomic<bool>* cancel_;
+  bool explain_;
+  std::vector<CoordinateReference> independent_;
+};
+
 Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel,
              bool explain) {
   Holding out;
@@ -294,159 +414,14 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
 
   Workspace w;
   const TiedMotions which = tied_motions_of(mechanism, frictions, free, at, cancel, w);
-
-  Mechanism locked = mechanism;
-  for (const CoordinateReference& f : frictions) {
-    Coordinate& c = coordinate_at(locked, f);
-    c.friction.reset();
-  }
   out.independent = which.independent;
-  std::vector<Standing> standing; // all with friction: those that loops tie stand, too
-  for (const CoordinateReference& f : frictions) {
-    const CoordinateInfo& c = free.system.coordinates[static_cast<std::size_t>(free.find(mechanism, f))];
-    standing.push_back({f, coordinate_value<double>(free.system, free.parameters, free.q, c)});
+  HoldingAttempt attempt(mechanism, at, frictions, free, which, cancel, explain);
+  std::string first;
+  for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism, attempt.independent())) {
+    if (attempt.hold(at_rest, out)) return out;
+    if (first.empty()) first = out.message;
   }
-  try {
-    put_into_laws(locked, standing);
-  } catch (const SceneError& error) { // not a number there
-    out.message = "What holding takes is not found with the joints that have friction standing still: " +
-                  std::string(error.what()) + ".";
-    return out;
-  }
-  locked.sliders.clear();
-  locked.measures.clear();
-  std::vector<CoordinateReference> independent;
-  for (const std::size_t i : which.independent)
-    independent.push_back(frictions[i]);
-  const std::vector<bool> fixed = closing_driven_loops(mechanism, independent);
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    Joint& joint = locked.joints[static_cast<std::size_t>(independent[k].joint)];
-    if (fixed[k]) {
-      const Link& link = free.link(free.find(mechanism, independent[k]));
-      if (free.q[link.q] != coordinate_at(locked, independent[k]).drawn) {
-        out.message = "What holding takes is not found away from the drawn pose: " + joint.name +
-                      " closes a loop of driven joints.";
-        return out;
-      }
-      fix(joint);
-      continue;
-    }
-    joint.cut = false; // what it takes is told of a drive in the tree
-    drive_at_rest(coordinate_at(locked, independent[k]));
-  }
-  std::optional<Compiled> made;
-  try {
-    made.emplace(locked);
-  } catch (const SceneError& error) { // loops that they close, say
-    out.message = "What holding takes is not found with the joints that have friction standing still: " +
-                  std::string(error.what()) + ".";
-    return out;
-  }
-  Compiled& held = *made;
-  Coordinates rest;
-  for (const auto& [name, value] : at) {
-    const CoordinateReference c = find_coordinate(mechanism, name);
-    const bool is_held = std::ranges::any_of(which.independent, [&](std::size_t i) {
-      return frictions[i].joint == c.joint && frictions[i].coordinate == c.coordinate;
-    });
-    // Without friction of its own a joint may close a loop, and then follows; so it does behind a gear.
-    const int there = c.joint >= 0 ? held.find(locked, c) : -1;
-    const bool follows = c.joint >= 0 && (there < 0 || moved_by_gears(held, there));
-    if (!is_held && !follows) rest.emplace_back(name, value);
-  }
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    if (fixed[k]) continue;
-    const int to = held.find(locked, independent[k]), from = free.find(mechanism, independent[k]);
-    const LinkParameters& p = held.numbers(to);
-    move_drive(held, held.link(to).drive, free.q[free.link(from).q] - p.drawn);
-  }
-  try {
-    set_start(held.system, held.parameters, rest, held.q);
-  } catch (const SceneError& error) { // a speed that nothing finds where they stand still
-    out.message = "What holding takes is not found: with the joints that have friction standing still, " +
-                  std::string(error.what()) + ".";
-    return out;
-  }
-  const Problem problem = held.problem(cancel);
-  SteadyState steady;
-  steady.find(problem, held.q, held.q, {.nearest = !at.empty()});
-  if (!steady.holds) {
-    const std::string why = held.system.torques.empty() || !explain
-                                ? ""
-                                : missing_speed_message(locked, problem, steady.elsewhere());
-    out.message =
-        "With the joints that have friction standing still there, the others find no steady state." +
-        (why.empty() ? "" : " " + why);
-    return out;
-  }
-  const Unknowns z = evaluate_reported(problem, steady.found.z.q, w);
-  const Kinematics<double> there_drawn = w.kinematics;
-  const ReportedForces forces = report_forces(locked, problem, z, w);
-  std::vector<double> needed;
-  for (std::size_t k = 0; k < independent.size(); ++k) {
-    const std::size_t i = which.independent[k];
-    const int c = free.find(mechanism, frictions[i]);
-    CoordinateForce spring = free.numbers(c).force[0];
-    spring.friction = 0;
-    const double of_spring = spring.gradient(free.q[free.link(c).q]);
-    if (fixed[k]) {
-      const Joint& joint = mechanism.joints[static_cast<std::size_t>(frictions[i].joint)];
-      const auto reaction = std::ranges::find(forces.reactions, joint.name, &Reaction::joint);
-      const BodyNumbers numbers(mechanism);
-      const int parent = static_cast<int>(numbers[joint.bodies[0]]) - 1;
-      const Mat3 turned = parent < 0
-                              ? Mat3(Mat3::Identity())
-                              : there_drawn.at(held.system.body_link[static_cast<std::size_t>(parent)]).R;
-      if (reaction == forces.reactions.end() || reaction->varying) {
-        out.message = "What holding takes is not found: what " + joint.name +
-                      " takes changes with the phase of the drives.";
-        return out;
-      }
-      needed.push_back(holding_force(joint, *reaction, turned) + of_spring);
-      continue;
-    }
-    const auto torque = std::ranges::find_if(forces.drive_torques, [&](const DriveTorque& d) {
-      return d.joint == out.joints[i].joint && d.index == out.joints[i].index;
-    });
-    if (torque == forces.drive_torques.end()) {
-      out.message = "What holding takes is not found: loops or gears tie " + out.joints[i].joint +
-                    " to another drive, which holds it or turns it.";
-      return out;
-    }
-    if (torque->nonunique && !held.system.torques.empty()) {
-      out.message =
-          "What holding takes is not determined: loops are redundant, and leave it open how much of "
-          "what the drives give reaches " +
-          out.joints[i].joint + ".";
-      return out;
-    }
-    const double own = of_spring + geared_springs(held, held.link(held.find(locked, frictions[i])).drive);
-    if (torque->varying && !torque->range) {
-      out.message = "What holding takes is not found: what " + out.joints[i].joint +
-                    " takes changes with the phase of drives that are too many, or slide, to try all that "
-                    "they can take.";
-      return out;
-    }
-    double value = torque->value + own;
-    if (torque->range) {
-      const double least = torque->range->least + own, most = torque->range->most + own;
-      value = std::abs(most) > std::abs(least) ? most : least;
-    }
-    needed.push_back(value);
-  }
-  if (which.others.empty())
-    tell_each(needed, out);
-  else
-    tell_shared(which, needed, out);
-  const std::string speeds = at_found_speeds(held.system, steady.found.z.q);
-  const std::string there = speeds.empty() ? "there" : "there, with " + speeds;
-  out.message = *out.takes <= 1 ? "Friction holds it " + there + ": that takes " +
-                                      rounded_text(100 * *out.takes, 3) + " % of what it can give."
-                : out.at_least > 1
-                    ? "Friction does not hold it " + there +
-                          (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")
-                    : "Whether friction holds it " + there +
-                          " depends on how the joints in loops share the load, which is not determined.";
+  out.message = std::move(first);
   return out;
 }
 
@@ -463,30 +438,6 @@ double find_slip(const auto& takes, double below, double above) {
 }
 
 } // namespace
-
-Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateReference> coordinates) {
-  Mechanism out = mechanism;
-  std::vector<Standing> standing;
-  for (const CoordinateReference& c : coordinates)
-    standing.push_back({c, coordinate_at(out, c).drawn});
-  put_into_laws(out, standing);
-  const std::vector<bool> fixed = closing_driven_loops(mechanism, coordinates);
-  for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    Joint& joint = out.joints[static_cast<std::size_t>(coordinates[i].joint)];
-    if (fixed[i]) {
-      fix(joint);
-      continue;
-    }
-    joint.cut = false;
-    drive_at_rest(coordinate_at(out, coordinates[i]));
-  }
-  return out;
-}
-
-double holding_force(const Joint& joint, const Reaction& reaction, const Mat3& turned) {
-  const Vec3 axis = turned * joint.axis.normalized();
-  return axis.dot(joint.type == JointType::revolute ? reaction.torque : reaction.force);
-}
 
 Holding find_holding(const Mechanism& mechanism, const Coordinates& at, const std::atomic<bool>* cancel,
                      bool explain) {

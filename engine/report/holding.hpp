@@ -43,14 +43,6 @@ struct Holding {
 Holding find_holding(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& at,
                      const std::atomic<bool>* cancel = nullptr, bool explain = true);
 
-// The mechanism with coordinates that have friction standing still as drawn, as if driven at the speed zero:
-// what is asked of their values by the laws of drives is in numbers. Where one closes a loop of driven
-// joints, as a clutch between two shafts does, its joint is a fixed one.
-Mechanism standing_still(const Mechanism& mechanism, std::span<const CoordinateReference> coordinates);
-// What holds a joint of one axis that is fixed so (N m or N, positive along its coordinate), of its reaction;
-// `turned`: its parent from the drawn pose.
-double holding_force(const Joint& joint, const Reaction& reaction, const Mat3& turned);
-
 // The speeds of a drive between which friction holds the mechanism where it stands: at `lower` and `upper` it
 // begins to slip.
 struct HeldSpeeds {

@@ -186,8 +186,8 @@ std::string message(const AllSolutions& all) {
   const bool others = static_cast<std::size_t>(on_friction) < all.equilibria.size();
   std::string text = others                   ? "Found by a bounded search; there may be more."
                      : all.equilibria.empty() ? "No steady state was found in the range searched."
-                                              : "Without friction no steady state was found in the range "
-                                                "searched.";
+                                              : "No steady state without friction in it was found in the "
+                                                "range searched.";
   if (on_friction > 0)
     text += on_friction == 1 ? " One rests on friction."
                              : " " + std::to_string(on_friction) + " rest on friction.";
@@ -227,6 +227,14 @@ std::string open_loop_message(const ReportInput& in) {
   return text;
 }
 
+std::string rubbing_message(const ReportInput& in) {
+  const Link& link = in.problem.system.links[static_cast<std::size_t>(in.existence.rubs)];
+  const TreeJoint& joint = in.problem.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  const std::string name = coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type));
+  return "No steady state was found in which dry friction holds " + name +
+         ", which a torque turns, or slips at a constant rate.";
+}
+
 } // namespace
 
 std::string failure_message(const ReportInput& in, Workspace& w) {
@@ -236,6 +244,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::not_converged) return message(in.found, in.problem);
   if (in.existence.loops_open) return open_loop_message(in);
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
+  if (in.existence.rubs >= 0) return rubbing_message(in);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";
 }

@@ -2,7 +2,7 @@
 
 #include "engine/linear/golden_section.hpp"
 #include "engine/report/report_forces.hpp"
-#include "engine/stability/floquet.hpp"
+#include "engine/system/common_period.hpp"
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>
@@ -12,7 +12,6 @@ namespace flyball {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
-constexpr int most_turns = 240; // of a drive in a common period; beyond it there is none
 
 // Angles of the groups to torques of the motors.
 class Torques {
@@ -131,7 +130,7 @@ std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const 
     for (Group& g : groups) {
       std::vector<double> speeds = g.speeds;
       speeds.push_back(speed);
-      const auto period = common_period(speeds, most_turns);
+      const auto period = common_period(speeds, followed_turns);
       if (!period) continue;
       g.drives.push_back(d);
       g.speeds = std::move(speeds);

@@ -92,6 +92,7 @@ class SteadyState {
   Answer replace(const Problem& problem, Found candidate);
   void put_back(Answer answer);
 
+  void refuse(const Problem& problem, const Eigen::VectorXd& from, Existence why);
   void keep_where_started(const Problem& problem);
   void refine_found(const Problem& problem);
   void check_phases(const Problem& problem);

@@ -35,6 +35,14 @@ void judge_momenta(const Problem& problem, const Eigen::VectorXd& q, double t, W
 
 } // namespace
 
+int rubbing_link(const System& system, const Parameters& p) {
+  for (const DrivenCoordinate& d : system.drives) // springs and stops would not settle there
+    if (finds_speed(system.links[static_cast<std::size_t>(d.link)]) &&
+        p.links[static_cast<std::size_t>(d.link)].elastic)
+      return d.link;
+  return -1;
+}
+
 std::vector<double> sample_phases(const System& system, const Parameters& p, const Eigen::VectorXd& q) {
   if (p.phase_free) return {};
   return phase_times(drive_rates(system, p, q));
@@ -43,6 +51,8 @@ std::vector<double> sample_phases(const System& system, const Parameters& p, con
 Existence check_existence(const Problem& problem, const Eigen::VectorXd& q, const std::vector<double>& phases,
                           Workspace& w) {
   Existence result;
+  if (const int link = rubbing_link(problem.system, problem.parameters); link >= 0)
+    return {.holds = false, .rubs = link};
   if (keeps_momentum(problem.system)) judge_momenta(problem, q, 0, w, result);
   if (phases.empty()) return result;
   const std::vector<DriveRate> rates = drive_rates(problem.system, problem.parameters, q);

@@ -4,6 +4,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/periodic_motion.hpp"
+#include "engine/system/common_period.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,8 +17,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int usual_turns = 64;    // of the fastest drive in a period
-constexpr int most_turns = 1024;   // where the drives have a common period at all
 constexpr double accuracy = 1e-11; // of multipliers, relative to the largest
 
 // out = a b - b a
@@ -34,7 +33,7 @@ std::vector<double> turning_speeds(const Problem& problem, const Eigen::VectorXd
     const Link& link = problem.system.links[l];
     const double speed = std::abs(finds_speed(link) ? q[link.q] : problem.parameters.links[l].speed);
     if (speed == 0 || problem.system.links[l].type != LinkType::revolute) continue;
-    if (std::ranges::none_of(speeds, [&](double s) { return std::abs(s - speed) <= 1e-12 * speed; }))
+    if (std::ranges::none_of(speeds, [&](double s) { return std::abs(s - speed) <= same_speed * speed; }))
       speeds.push_back(speed);
   }
   std::ranges::sort(speeds);
@@ -146,22 +145,6 @@ double difference(const std::vector<Complex>& fine, const std::vector<Complex>& 
 }
 
 } // namespace
-
-std::optional<double> common_period(const std::vector<double>& speeds, int most) {
-  if (speeds.empty()) return {};
-  const double slowest =
-      std::abs(*std::ranges::min_element(speeds, {}, [](double s) { return std::abs(s); }));
-  if (!(slowest > 0)) return {};
-  for (int turns = 1; turns <= most; ++turns) {
-    const double base = slowest / turns; // rad/s
-    const bool whole = std::ranges::all_of(speeds, [&](double s) {
-      const double ratio = std::abs(s) / base;
-      return ratio < most + 0.5 && std::abs(ratio - std::round(ratio)) <= 1e-9 * ratio;
-    });
-    if (whole) return 2 * std::numbers::pi / base;
-  }
-  return {};
-}
 
 std::optional<bool> stable_by_multipliers(std::vector<Complex> counted, double error, int neutral,
                                           bool has_hamiltonian) {

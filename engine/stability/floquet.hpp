@@ -9,10 +9,6 @@
 
 namespace flyball {
 
-// The shortest time (s) in which each of the speeds (rad/s, none of them zero) makes whole turns, none of
-// them more than `most`. Nothing where there is none to nine digits, or no speed.
-std::optional<double> common_period(const std::vector<double>& speeds, int most);
-
 // Why there are no multipliers.
 enum class FloquetFailure {
   no_period, // the drives that matter have no common period

@@ -15,7 +15,7 @@ FrictionReport report_friction(const Mechanism& mechanism,
     out.band = find_friction_band(mechanism, {.start = *steady, .cancel = cancel});
     out.speeds = find_held_speeds(mechanism, *steady, cancel);
   } else {
-    out.band.message = "Without friction there is no steady state for a band to hang together with.";
+    out.band.message = "There is no steady state without friction in it for a band to hang together with.";
   }
   out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;

@@ -6,6 +6,7 @@
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/floquet.hpp"
 #include "engine/stability/periodic_motion.hpp"
+#include "engine/system/common_period.hpp"
 
 #include <complex>
 #include <random>

@@ -1,0 +1,316 @@
+// Dry friction on what a torque turns, itself or through gears, and on what it turns through springs: whether
+// it slips or comes to rest, against closed forms and against the motion.
+#include "engine/dynamics/simulator.hpp"
+#include "engine/linear/uniform_random.hpp"
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/report/friction_state.hpp"
+#include "engine/study/friction_branches.hpp"
+#include "engine/study/friction_report.hpp"
+#include "tests/catch.hpp"
+#include "tests/support/solutions.hpp"
+
+#include <cmath>
+#include <numbers>
+
+using namespace flyball;
+using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+std::string body_at(const std::string& name, double x, double mass = 1) {
+  return R"({"name": ")" + name + R"(", "mass": )" + number_text(mass) + R"(, "position": [)" +
+         number_text(x) + R"(, 0, 0], "inertia": [0.1, 0.15, 0.1]})";
+}
+
+std::string bearing_at(const std::string& name, const std::string& body, double x, const std::string& more) {
+  return R"({"name": ")" + name + R"(", "type": "revolute", "bodies": ["ground", ")" + body +
+         R"("], "at": [)" + number_text(x) + R"(, 0, 0], "axis": [0, 1, 0])" +
+         (more.empty() ? "" : ", " + more) + "}";
+}
+
+std::string friction(double limit) {
+  return R"("friction": {"limit": )" + number_text(limit) + "}";
+}
+
+std::string torque(const std::string& law, double speed = 5) {
+  return R"("drive": {"torque": "=)" + law + R"(", "speed": )" + number_text(speed) + "}";
+}
+
+std::string gear(const std::string& name, const std::string& a, const std::string& b, double ratio) {
+  return R"({"name": ")" + name + R"(", "type": "gear", "joints": [")" + a + R"(", ")" + b +
+         R"("], "ratio": )" + number_text(ratio) + "}";
+}
+
+Mechanism scene(const std::string& bodies, const std::string& joints, const std::string& more = "") {
+  return read_scene(R"({"flyball": 2, "name": "Brake", )" + more + R"("bodies": [)" + bodies +
+                    R"(], "joints": [)" + joints + "]}");
+}
+
+// A shaft by `law`, geared at -2 to a countershaft with friction (N m).
+Mechanism countershaft(double limit, const std::string& law = "2 N m - 0.4 N m s*rate(pa)",
+                       const std::string& more = "") {
+  return scene(body_at("a", 0) + ", " + body_at("c", 0.3),
+               bearing_at("pa", "a", 0, torque(law)) + ", " + bearing_at("pc", "c", 0.3, friction(limit)) +
+                   ", " + gear("g", "pa", "pc", -2),
+               more);
+}
+
+// A screw of 10 mm that lifts 5 kg with 30 N of friction in the guide.
+Mechanism jack(double at_rest) {
+  return scene(
+      body_at("a", 0) + R"(, {"name": "n", "mass": 5, "position": [0, 0.3, 0], "inertia": [0.1, 0.1, 0.1]})",
+      bearing_at("pa", "a", 0,
+                 torque(number_text(at_rest) + " N m - 0.4 N m s*rate(pa)", std::copysign(0.2, at_rest))) +
+          R"(, {"name": "n", "type": "prismatic", "bodies": ["ground", "n"], "at": [0, 0.3, 0],
+              "axis": [0, 1, 0], )" +
+          friction(30) +
+          R"(}, {"name": "g", "type": "gear", "kind": "screw", "joints": ["pa", "n"], "lead": 0.01})",
+      R"("gravity": [0, -9.81, 0], )");
+}
+
+double speed_of(const Solution& s, std::string_view joint) {
+  INFO(s.message);
+  return coordinate(s, joint).speed.value();
+}
+
+// The motion from the drawn pose comes to the speed that was found.
+void expect_same_motion(const Mechanism& m, const Solution& s, const std::string& joint) {
+  SimulationOptions options;
+  options.duration = 30;
+  const Run motion = simulate(m, options);
+  INFO(motion.message);
+  const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
+  REQUIRE(track != motion.coordinates.end());
+  CHECK_THAT(track->rate.back(), WithinAbs(speed_of(s, joint), 1e-7 * (1 + std::abs(speed_of(s, joint)))));
+}
+
+} // namespace
+
+TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
+  const Mechanism m = countershaft(0.5);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed_of(s, "pa"), WithinRel((2 - 2 * 0.5) / 0.4, 1e-12));
+  CHECK_THAT(speed_of(s, "pc"), WithinRel(-2 * (2 - 2 * 0.5) / 0.4, 1e-12));
+  REQUIRE(s.frictions.size() == 1);
+  CHECK(s.frictions[0].slips);
+  CHECK(s.frictions[0].value == 0.5);
+  REQUIRE(s.drive_torques.size() == 1);
+  CHECK_THAT(s.drive_torques[0].value, WithinRel(1., 1e-12));
+  CHECK(s.stable == true);
+  CHECK_THAT(s.message, ContainsSubstring("pc slips at a constant rate"));
+  CHECK_THAT(s.message, !ContainsSubstring("Without friction there is no steady state"));
+  expect_same_motion(m, s, "pa");
+}
+
+TEST_CASE("a brake on a countershaft that holds takes the torque at rest over the ratio") {
+  const Mechanism m = countershaft(1.5);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(speed_of(s, "pa") == 0);
+  REQUIRE(s.frictions.size() == 1);
+  CHECK_FALSE(s.frictions[0].slips);
+  CHECK_THAT(s.frictions[0].value.value(), WithinRel(1., 1e-12));
+  REQUIRE(s.drive_torques.size() == 1);
+  CHECK(s.drive_torques[0].joint == "pa");
+  CHECK(s.drive_torques[0].value == 2);
+  const Holding holding = find_holding(m, {});
+  INFO(holding.message);
+  CHECK_THAT(holding.takes.value(), WithinRel(1 / 1.5, 1e-12));
+  CHECK_FALSE(report_friction(m, s).band.found);
+  expect_same_motion(m, s, "pa");
+}
+
+TEST_CASE("friction at the very joint that a torque turns") {
+  const double limit = GENERATE(0.5, 1.9, 2.1);
+  CAPTURE(limit);
+  const Mechanism m =
+      scene(body_at("a", 0),
+            bearing_at("pa", "a", 0, torque("2 N m - 0.4 N m s*rate(pa)") + ", " + friction(limit)));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed_of(s, "pa"), WithinAbs(std::max(0., (2 - limit) / 0.4), 1e-12));
+  REQUIRE(s.frictions.size() == 1);
+  CHECK(s.frictions[0].slips == (limit < 2));
+  CHECK_THAT(s.frictions[0].value.value(), WithinRel(-std::min(limit, 2.), 1e-12));
+  REQUIRE(s.drive_torques.size() == 1);
+  CHECK_THAT(s.drive_torques[0].value, WithinRel(std::min(limit, 2.), 1e-12));
+  REQUIRE(s.drive_torques[0].given);
+  CHECK_THAT(s.drive_torques[0].given->load, WithinAbs(0, 1e-15));
+  expect_same_motion(m, s, "pa");
+}
+
+TEST_CASE("a screw jack rises, sinks, and locks itself") {
+  const double r = 0.01 / (2 * std::numbers::pi), weight = 5 * 9.81;
+  const Solution up = Analysis(jack(0.2)).solve();
+  REQUIRE(up.status == Status::converged);
+  CHECK_THAT(speed_of(up, "pa"), WithinRel((0.2 - r * (weight + 30)) / 0.4, 1e-12));
+  expect_same_motion(jack(0.2), up, "pa");
+  const Solution down = Analysis(jack(-0.2)).solve();
+  REQUIRE(down.status == Status::converged);
+  CHECK_THAT(speed_of(down, "pa"), WithinRel((-0.2 - r * (weight - 30)) / 0.4, 1e-12));
+  const Solution locks = Analysis(jack(0.05)).solve();
+  INFO(locks.message);
+  REQUIRE(locks.status == Status::converged);
+  CHECK(speed_of(locks, "pa") == 0);
+  CHECK_THAT(locks.frictions.at(0).value.value(), WithinRel(weight - 0.05 / r, 1e-12));
+  CHECK_THAT(find_holding(jack(0.05), {}).takes.value(), WithinRel((weight - 0.05 / r) / 30, 1e-12));
+  expect_same_motion(jack(0.05), locks, "pa");
+}
+
+TEST_CASE("the torque at rest may depend on where others stand") {
+  // A block of 2 kg hangs on 200 N/m: 0.1 m. At rest 2 N m + 10 N * 0.1 m.
+  const double limit = GENERATE(1.4, 1.6); // through the gear 2.8 and 3.2 N m
+  const Mechanism m =
+      scene(body_at("a", 0) + ", " + body_at("c", 0.3) + ", " + body_at("b", 1, 2),
+            bearing_at("pa", "a", 0, torque("2 N m - 0.4 N m s*rate(pa) + 10 N*coordinate(slide)")) + ", " +
+                bearing_at("pc", "c", 0.3, friction(limit)) + ", " + gear("g", "pa", "pc", -2) +
+                R"(, {"name": "slide", "type": "prismatic", "bodies": ["ground", "b"], "at": [1, 0, 0],
+              "axis": [0, -1, 0], "spring": {"stiffness": 200}, "damping": 50})",
+            R"("gravity": [0, -10, 0], )");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(value(s, "slide"), WithinRel(0.1, 1e-10));
+  CHECK_THAT(speed_of(s, "pa"), WithinAbs(std::max(0., (3 - 2 * limit) / 0.4), 1e-10));
+  CHECK_THAT(s.frictions.at(0).value.value(), WithinRel(std::min(limit, 1.5), 1e-10));
+  CHECK_THAT(find_holding(m, {}).takes.value(), WithinRel(1.5 / limit, 1e-10));
+  CHECK(s.measures.empty());
+}
+
+TEST_CASE("a shaft that starts fast runs on where one that rests is held") {
+  // At rest 1 N m, at 5 rad/s 2.2 N m less what air takes: held by 1.2 N m, and slipping at a higher speed.
+  const std::string law = "1 N m + 0.6 N m s*rate(pa) - 0.06 N m s^2*rate(pa)^2";
+  const auto shaft = [&](double speed) {
+    return scene(body_at("a", 0), bearing_at("pa", "a", 0, torque(law, speed) + ", " + friction(1.2)));
+  };
+  const Solution runs = Analysis(shaft(9)).solve();
+  INFO(runs.message);
+  REQUIRE(runs.status == Status::converged);
+  CHECK_THAT(speed_of(runs, "pa"), WithinRel(5 + std::sqrt(25 - 0.2 / 0.06), 1e-10));
+  const AllSolutions all = Analysis(shaft(9)).solve_all();
+  INFO(all.message);
+  CHECK(std::ranges::any_of(all.equilibria, [](const Solution& s) { return s.frictions.at(0).slips; }));
+  CHECK(std::ranges::any_of(all.equilibria, [](const Solution& s) { return !s.frictions.at(0).slips; }));
+}
+
+TEST_CASE("random trains of gears with several brakes and torques: as summed on the first shaft") {
+  std::mt19937 random(25);
+  int held = 0, slipped = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    const int shafts = 2 + trial % 3;
+    std::string bodies, joints;
+    double ratio = 1, torques = 0, resistance = 0, limits = 0;
+    for (int i = 0; i < shafts; ++i) {
+      const std::string b = "b" + std::to_string(i), j = "j" + std::to_string(i);
+      const bool driven = i == trial % shafts || uniform(random, 0, 1) < 0.3;
+      const bool brake = i == (trial + 1) % shafts || (uniform(random, 0, 1) < 0.4 && limits == 0);
+      if (i > 0) {
+        const double step = std::copysign(uniform(random, 0.4, 2.5), uniform(random, -1, 1));
+        joints += ", " + gear("g" + std::to_string(i), "j" + std::to_string(i - 1), j, step) + ", ";
+        ratio *= step;
+      }
+      std::string more;
+      if (driven) {
+        const double t = uniform(random, -3, 3), c = uniform(random, 0.1, 0.6);
+        more = torque(number_text(t) + " N m - " + number_text(c) + " N m s*rate(" + j + ")", t);
+        torques += ratio * t;
+        resistance += ratio * ratio * c;
+      }
+      if (brake) {
+        const double limit = uniform(random, 0.2, 2.5);
+        more += (more.empty() ? "" : ", ") + friction(limit);
+        limits += std::abs(ratio) * limit;
+      }
+      bodies += (i ? ", " : "") + body_at(b, 0.3 * i);
+      joints += bearing_at(j, b, 0.3 * i, more);
+    }
+    const Mechanism m = scene(bodies, joints);
+    const Solution s = Analysis(m).solve();
+    CAPTURE(trial, shafts, torques, limits, s.message);
+    REQUIRE(s.status == Status::converged);
+    const bool holds = std::abs(torques) < limits;
+    const double speed = holds ? 0 : (torques - std::copysign(limits, torques)) / resistance;
+    const CoordinateSolution& first = coordinate(s, "j0");
+    CHECK_THAT(first.speed.value_or(0), WithinAbs(speed, 1e-10 * (1 + std::abs(speed))));
+    CHECK(std::ranges::any_of(s.frictions, &FrictionForce::slips) == !holds);
+    ++(holds ? held : slipped);
+    const Holding holding = find_holding(m, {});
+    INFO(holding.message);
+    CHECK_THAT(holding.takes.value(), WithinRel(std::abs(torques) / limits, 1e-10));
+  }
+  CHECK(held > 4);
+  CHECK(slipped > 4);
+}
+
+TEST_CASE("along the torque a brake holds between where it slips either way") {
+  Mechanism m = countershaft(0.5, "T - 0.4 N m s*rate(pa)",
+                             R"("parameters": {"T": {"value": 2, "unit": "N m"}}, )");
+  const ResponseDiagram d = follow_response(m, "parameters.T", -3, 3);
+  INFO(d.message);
+  REQUIRE(d.special.size() == 2);
+  std::vector<double> at{d.special[0].at.parameter, d.special[1].at.parameter};
+  std::ranges::sort(at);
+  CHECK_THAT(at[0], WithinAbs(-1, 1e-9));
+  CHECK_THAT(at[1], WithinAbs(1, 1e-9));
+  REQUIRE(d.branches.size() == 3);
+  for (const ResponseBranch& branch : d.branches)
+    for (const ResponsePoint& point : branch.points) {
+      const double torque = point.parameter, left = std::max(0., std::abs(torque) - 1);
+      CHECK_THAT(coordinate(point.coordinates, "pa").speed.value(),
+                 WithinAbs(std::copysign(left, torque) / 0.4, 1e-8));
+    }
+}
+
+TEST_CASE("behind a brake that holds, a flexible coupling winds up and its shaft comes to rest") {
+  const double limit = GENERATE(8., 3.);
+  const Mechanism m = scene(
+      body_at("a", 0) + ", " + body_at("b", 0),
+      bearing_at("pa", "a", 0, torque("5 N m - 1 N m s*rate(pa)")) + ", " +
+          bearing_at("pb", "b", 0, friction(limit)) +
+          R"(, {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0, 0], "axis": [0, 1, 0],
+              "spring": {"stiffness": 10}, "damping": 0.1})");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  REQUIRE(s.frictions.size() == 1);
+  if (limit > 5) {
+    CHECK_FALSE(s.frictions[0].slips);
+    CHECK_THAT(s.frictions[0].value.value(), WithinRel(-5., 1e-12));
+    CHECK_THAT(value(s, "c"), WithinRel(-0.5, 1e-12));
+    CHECK_THAT(value(s, "pa"), WithinRel(0.5, 1e-12));
+    CHECK(value(s, "pb") == 0);
+    CHECK(s.stable == true);
+    REQUIRE(s.drive_torques.size() == 1);
+    CHECK(s.drive_torques[0].value == 5);
+    CHECK_THAT(find_holding(m, {}).takes.value(), WithinRel(5. / 8, 1e-12));
+    // 0.15 x'' + (1 + 0.1) x' + 10 x = 0: the torque's slope damps, too.
+    REQUIRE(s.eigenvalues);
+    const double decay = 1.1 / 0.3;
+    CHECK(std::ranges::any_of(*s.eigenvalues, [&](std::complex<double> e) {
+      return std::abs(e - std::complex(-decay, std::sqrt(10 / 0.15 - decay * decay))) < 1e-8;
+    }));
+  } else {
+    CHECK(s.frictions[0].slips);
+    CHECK_THAT(speed_of(s, "pa"), WithinRel(2., 1e-9));
+    CHECK_THAT(value(s, "c"), WithinRel(-0.3, 1e-9));
+  }
+}
+
+TEST_CASE("friction where the speed is given, or momentum is kept, is refused with the reason") {
+  CHECK_THROWS_WITH(
+      scene(body_at("a", 0), bearing_at("pa", "a", 0, R"("drive": {"speed": 5}, )" + friction(1))),
+      ContainsSubstring("only the drive would feel it"));
+  CHECK_THROWS_WITH(
+      scene(body_at("a", 0),
+            bearing_at("pa", "a", 0, R"("drive": {"keeps": "momentum", "speed": 5}, )" + friction(1))),
+      ContainsSubstring("where friction acts no momentum is kept"));
+}
