@@ -102,7 +102,7 @@ TEST_CASE("numbers that are tried are evaluated, and put away again") {
 }
 
 TEST_CASE("the parameter that an expression lacks has the unit that it needs there") {
-  const Mechanism m = shipped("governor_parametric");
+  const Mechanism m = test::shipped("governor_parametric");
   const auto unit = [&](const char* address, const char* text) -> std::string {
     const auto lacking = lacking_parameter(m, address, text);
     return lacking ? lacking->name + " " + lacking->unit : "none";
