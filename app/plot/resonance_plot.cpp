@@ -62,6 +62,11 @@ void add_resonance(Plot& plot, const ResonanceCurve& curve, OutputKind kind, con
       band = nullptr;
       continue;
     }
+    // A motion does not go over into what stands: its range may be the same at any speed but none.
+    if (before && before->steady != point.steady) {
+      before = nullptr;
+      band = nullptr;
+    }
     if (!before || piece != piece_of(point)) {
       piece = piece_of(point);
       plot.curves.push_back(empty_curve(piece, banded));
@@ -70,7 +75,7 @@ void add_resonance(Plot& plot, const ResonanceCurve& curve, OutputKind kind, con
         plot.curves.back().points.push_back({before->number, mean_of(*before->range_of(kind, name))});
     }
     plot.curves.back().points.push_back({point.number, mean_of(*range)});
-    if (banded) {
+    if (banded && !point.steady) {
       if (!band) band = &plot.bands.emplace_back(PlotBand{"least to most", {}, plot_color::sky_blue});
       band->points.push_back({point.number, range->least, range->most});
     }

@@ -8,7 +8,7 @@ namespace flyball {
 
 // Adds it to a plot of the output over the number, in SI units: means solid where the motion is stable,
 // dashed where it is not, dotted where that is undecided; nothing where there is neither a motion nor a
-// steady state. What is one number of each motion has no band.
+// steady state. Motions and steady states are not joined. What is one number of each motion has no band.
 void add_resonance(Plot& plot, const ResonanceCurve& curve, OutputKind kind, const std::string& name);
 
 } // namespace flyball

@@ -38,6 +38,16 @@ ResponseQuantity quantity_of(const ResonanceOutput& output) {
     return {"drive " + output.name,
             (output.unit == "N m" ? "drive torque of " : "drive force of ") + output.name, "Drives",
             output.unit, 1};
+  case OutputKind::power:
+    return {"power " + output.name, "drive power of " + output.name, "Drives", output.unit, 1};
+  case OutputKind::force:
+    return {"force " + output.name, "force through " + output.name, "Reactions", output.unit, 1};
+  case OutputKind::moment:
+    return {"torque " + output.name, "torque through " + output.name, "Reactions", output.unit, 1};
+  case OutputKind::bearing_force:
+    return {"bearing_force " + output.name, "force of " + output.name, "Bearings", output.unit, 1};
+  case OutputKind::bearing_moment:
+    return {"bearing_torque " + output.name, "torque of " + output.name, "Bearings", output.unit, 1};
   case OutputKind::motion: break;
   }
   return {"motion " + output.name,
@@ -96,8 +106,10 @@ std::vector<ResponseQuantity> resonance_quantities(const Session& session) {
   if (!point && state.resonance.found) point = first_told(state.resonance.found->result);
   std::vector<ResponseQuantity> out;
   if (!point) return out;
+  std::vector<ResponseQuantity> loads; // forces by themselves, then moments
   for (const ResonanceOutput& output : point->outputs)
-    out.push_back(quantity_of(output));
+    (output.kind == OutputKind::moment ? loads : out).push_back(quantity_of(output));
+  add_quantities(out, loads);
   return out;
 }
 
@@ -105,6 +117,11 @@ std::optional<ResonanceKey> resonance_key(const std::string& quantity) {
   constexpr std::pair<const char*, OutputKind> kinds[] = {{"value ", OutputKind::coordinate},
                                                           {"measure ", OutputKind::measure},
                                                           {"drive ", OutputKind::drive},
+                                                          {"power ", OutputKind::power},
+                                                          {"force ", OutputKind::force},
+                                                          {"torque ", OutputKind::moment},
+                                                          {"bearing_force ", OutputKind::bearing_force},
+                                                          {"bearing_torque ", OutputKind::bearing_moment},
                                                           {"motion ", OutputKind::motion}};
   for (const auto& [begin, kind] : kinds)
     if (quantity.starts_with(begin))

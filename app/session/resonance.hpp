@@ -20,7 +20,7 @@ void go_on_with_resonance(Session& session);
 
 // What the curve can show; of its first point that tells, or of the motion that is shown.
 std::vector<ResponseQuantity> resonance_quantities(const Session& session);
-// Of a quantity's key: "value up", "measure whirl", "drive spin", "motion period".
+// Of a quantity's key: "value up", "measure whirl", "drive spin", "force pin", "motion period".
 struct ResonanceKey {
   OutputKind kind = OutputKind::coordinate;
   std::string name;

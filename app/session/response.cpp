@@ -227,7 +227,7 @@ void choose_kind(Session& session) {
   ResponseState& state = session.study.response;
   if (!session.answer.ticket || session.answer.error) return;
   const Status status = session.answer.solution.status;
-  if (status == Status::converged) state.resonates = false;
+  if (status == Status::converged) state.resonates = session.answer.solution.varies;
   if (status == Status::no_steady_state) state.resonates = true;
 }
 
@@ -243,7 +243,7 @@ void update_response(Session& session) {
   choose_first_quantity(session);
   std::optional<ResponseRequest> wanted = response_wanted(session);
   if (state.resonates) {
-    if (wanted) wanted->all = wanted->reactions = false; // there is nothing of these
+    if (wanted) wanted->all = wanted->reactions = false; // it has no others, and reactions always
     state.curve = {};
     state.design.answer = {};
     return update_resonance(session, wanted);

@@ -72,12 +72,15 @@ class Curve {
       solve.search = point_search;
       solve.cancel = options_.cancel;
       const Solution solution = analysis_.solve(solve);
-      if (solution.status != Status::no_steady_state) return resonance_point(solution, number);
+      if (solution.status != Status::no_steady_state && !solution.varies)
+        return resonance_point(solution, number);
       const std::vector<ParameterValue> numbers{{address_, number}};
       set_parameters(mechanism_, numbers);
       PeriodicOptions periodic;
       periodic.cancel = options_.cancel;
-      return resonance_point(find_periodic_state(mechanism_, periodic), number);
+      const PeriodicState motion = find_periodic_state(mechanism_, periodic);
+      if (solution.varies && motion.status != PeriodicStatus::found) return resonance_point(solution, number);
+      return resonance_point(motion, number);
     } catch (const SceneError& error) { // no mechanism can be made with this number
       ResonancePoint point;
       point.number = number;
@@ -207,8 +210,19 @@ ResonancePoint resonance_point(const PeriodicState& motion, double number) {
   }
   for (const PeriodicMeasure& m : motion.measures)
     point.outputs.push_back({OutputKind::measure, m.name, m.unit, m.range});
-  for (const PeriodicTorque& t : motion.drive_torques)
-    point.outputs.push_back({OutputKind::drive, coordinate_label(t), t.angle ? "N m" : "N", t.range});
+  for (const PeriodicTorque& t : motion.drive_torques) {
+    const std::string label = coordinate_label(t);
+    point.outputs.push_back({OutputKind::drive, label, t.angle ? "N m" : "N", t.range});
+    point.outputs.push_back({OutputKind::power, label, "W", t.power});
+  }
+  for (const PeriodicReaction& r : motion.reactions) {
+    point.outputs.push_back({OutputKind::force, r.name, "N", r.force.size});
+    point.outputs.push_back({OutputKind::moment, r.name, "N m", r.torque.size});
+  }
+  for (const PeriodicReaction& b : motion.bearings) {
+    point.outputs.push_back({OutputKind::bearing_force, b.name, "N", b.force.size});
+    point.outputs.push_back({OutputKind::bearing_moment, b.name, "N m", b.torque.size});
+  }
   point.outputs.push_back({OutputKind::motion, "period", "s", standing(motion.period, motion.period_error)});
   if (!motion.floquet.multipliers.empty())
     point.outputs.push_back({OutputKind::motion, "largest multiplier", "",
@@ -238,6 +252,15 @@ ResonancePoint resonance_point(const Solution& solution, double number) {
     if (d.range || !d.varying)
       point.outputs.push_back({OutputKind::drive, coordinate_label(d), d.angle ? "N m" : "N", range});
   }
+  const auto add_loads = [&](const auto& loads, auto name, OutputKind force, OutputKind moment) {
+    for (const auto& load : loads) {
+      if (load.varying) continue; // it is at the drawn phase
+      point.outputs.push_back({force, load.*name, "N", standing(load.force.norm())});
+      point.outputs.push_back({moment, load.*name, "N m", standing(load.torque.norm())});
+    }
+  };
+  add_loads(solution.reactions, &Reaction::joint, OutputKind::force, OutputKind::moment);
+  add_loads(solution.bearings, &BearingForce::bearing, OutputKind::bearing_force, OutputKind::bearing_moment);
   return point;
 }
 

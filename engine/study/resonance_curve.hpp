@@ -1,6 +1,7 @@
 // Periodic motions over one number, where drives make the balance turn: of each output the mean, least and
 // most over a period. Every point is found from the drawn pose, as find_periodic_state() does on its own;
-// where there is a steady state that is the point. Between points the curve is refined where it bends most.
+// where there is a steady state that is the point, unless it holds within its errors only. Between points the
+// curve is refined where it bends most.
 #pragma once
 
 #include "engine/periodic/periodic_state.hpp"
@@ -16,7 +17,17 @@
 
 namespace flyball {
 
-enum class OutputKind { coordinate, measure, drive, motion }; // motion: of all of it, such as its period
+enum class OutputKind {
+  coordinate,
+  measure,
+  drive,          // its torque or force
+  power,          // of a drive
+  force,          // through a joint: its size, as of the next three
+  moment,         // through a joint
+  bearing_force,  // of a bearing
+  bearing_moment, // of a bearing
+  motion,         // of all of it, such as its period
+};
 
 struct ResonanceOutput {
   OutputKind kind = OutputKind::coordinate;
@@ -31,9 +42,10 @@ struct ResonancePoint {
   std::string trouble;        // why there is neither a motion nor a steady state, a sentence; else empty
   bool steady = false;        // a steady state
   std::optional<bool> stable; // by Floquet's multipliers; of a steady state as its solution says
-  std::vector<ResonanceOutput> outputs; // coordinates that are found, with rates of what goes on; measures;
-                                        // drive torques; the motion's period and largest multiplier
-  long evaluations = 0;                 // of the equations of motion
+  // Coordinates that are found, with rates of what goes on; measures; drive torques and powers; what joints
+  // and bearings bear; the motion's period and largest multiplier.
+  std::vector<ResonanceOutput> outputs;
+  long evaluations = 0; // of the equations of motion
 
   bool found() const { return trouble.empty(); }
   // Null: there is none.

@@ -79,5 +79,7 @@ TEST_CASE("what is one number of each motion has no band, and steady states are 
   add_resonance(up, curve, OutputKind::coordinate, "up");
   REQUIRE(up.curves.size() == 2);
   CHECK(up.curves[1].name == "steady state");
-  CHECK(up.bands.size() == 1);
+  CHECK(up.curves[1].points == std::vector<std::array<double, 2>>{{3, 2}}); // nothing leads over to it
+  REQUIRE(up.bands.size() == 1);
+  CHECK(up.bands[0].points.size() == 2);
 }
