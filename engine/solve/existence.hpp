@@ -12,9 +12,9 @@ struct Existence {
   double violation = 0;    // scaled
   int worst_cut = -1;      // loops_open: in System::cuts
   double left = 0;         // where it holds: the largest imbalance at another phase, scaled
-  bool varies = false;     // where it holds: the errors are what other phases ask it to move, not rounding
   int pushed = -1;         // in System::torques: a drive left to itself on which something acts
   int rubs = -1;           // a link: see rubbing_link()
+  bool varies = false;     // where it holds: the errors are what other phases ask it to move, not rounding
 };
 
 // A link that turns or slides at a speed that is found, with dry friction against it, which no balance here
