@@ -23,6 +23,19 @@ Json range_json(const PeriodicRange& range) {
           {"error_estimate", number_json(range.error)}};
 }
 
+Json vector_json(const PeriodicVector& vector) {
+  return {{"size", range_json(vector.size)},
+          {"x", range_json(vector.component[0])},
+          {"y", range_json(vector.component[1])},
+          {"z", range_json(vector.component[2])}};
+}
+
+Json wrench_json(const PeriodicReaction& r) {
+  Json out = {{"force", vector_json(r.force)}, {"torque", vector_json(r.torque)}};
+  if (r.nonunique) out["nonunique"] = true;
+  return out;
+}
+
 // As many decimals as the error leaves.
 std::string in_digits(double value, double error) {
   const double digits = std::isfinite(error) && error > 0 ? std::floor(-std::log10(error)) : 9;
@@ -43,6 +56,38 @@ std::vector<std::string> range_row(const std::string& name, const PeriodicRange&
           std::isfinite(range.error) ? fmt::format("± {:.1g}", range.error) : "error not known"};
 }
 
+// Of what is no more than rounding there are no rows.
+bool told(const PeriodicRange& range) {
+  return !std::isfinite(range.mean) || !std::isfinite(range.error) ||
+         std::max(std::abs(range.least), std::abs(range.most)) > range.error;
+}
+
+void add_vector(std::vector<std::vector<std::string>>& rows, const std::string& name,
+                const PeriodicVector& vector, std::string_view unit) {
+  if (!told(vector.size)) return;
+  rows.push_back(range_row(name, vector.size, unit));
+  for (std::size_t c = 0; c < 3; ++c)
+    if (told(vector.component[c]))
+      rows.push_back(range_row(std::string("  ") + "xyz"[c], vector.component[c], unit));
+}
+
+std::vector<std::vector<std::string>> load_rows(const PeriodicState& s) {
+  std::vector<std::vector<std::string>> rows;
+  const auto open = [](bool nonunique) { return nonunique ? " (not unique)" : ""; };
+  for (const auto list : {&PeriodicState::reactions, &PeriodicState::bearings})
+    for (const PeriodicReaction& r : s.*list) {
+      add_vector(rows, printable(r.name) + ", force" + open(r.nonunique), r.force, "N");
+      add_vector(rows, printable(r.name) + ", torque" + open(r.nonunique), r.torque, "N m");
+    }
+  for (const PeriodicGear& g : s.gears) {
+    rows.push_back(range_row(printable(g.joint) + ", on its first joint" + open(g.nonunique), g.a,
+                             g.angle_a ? "N m" : "N"));
+    rows.push_back(range_row(printable(g.joint) + ", on its second joint" + open(g.nonunique), g.b,
+                             g.angle_b ? "N m" : "N"));
+  }
+  return rows;
+}
+
 std::string advance_text(const PeriodicCoordinate& c) {
   if (!c.goes_on()) return "";
   return c.angle ? fmt::format(", less {:.6g} turns a period", c.advance / (2 * std::numbers::pi))
@@ -54,9 +99,9 @@ std::string advance_text(const PeriodicCoordinate& c) {
 Json to_json(const PeriodicState& s) {
   const bool found = s.status == PeriodicStatus::found;
   Json out = {{"status", word(s.status)}, {"message", s.message}};
-  for (const char* key :
-       {"period_s", "period_error", "drive_periods", "coordinates", "drive_torques", "measures", "start",
-        "stable", "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
+  for (const char* key : {"period_s", "period_error", "drive_periods", "coordinates", "drive_torques",
+                          "drive_powers", "reactions", "bearings", "measures", "start", "stable",
+                          "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
     out[key] = nullptr;
   out["evaluations"] = s.evaluations;
   out["run_time_s"] = s.run_time_s;
@@ -74,6 +119,21 @@ Json to_json(const PeriodicState& s) {
   out["drive_torques"] = Json::object();
   for (const PeriodicTorque& t : s.drive_torques)
     out["drive_torques"][coordinate_label(t)] = range_json(t.range);
+  for (const PeriodicTorque& t : s.drive_torques)
+    if (t.nonunique) out["drive_torques"][coordinate_label(t)]["nonunique"] = true;
+  out["drive_powers"] = Json::object();
+  for (const PeriodicTorque& t : s.drive_torques)
+    out["drive_powers"][coordinate_label(t)] = range_json(t.power);
+  out["reactions"] = Json::object();
+  for (const PeriodicReaction& r : s.reactions)
+    out["reactions"][r.name] = wrench_json(r);
+  for (const PeriodicGear& g : s.gears) {
+    Json& entry = out["reactions"][g.joint] = {{"a", range_json(g.a)}, {"b", range_json(g.b)}};
+    if (g.nonunique) entry["nonunique"] = true;
+  }
+  out["bearings"] = Json::object();
+  for (const PeriodicReaction& b : s.bearings)
+    out["bearings"][b.name] = wrench_json(b);
   out["measures"] = Json::object();
   for (const PeriodicMeasure& m : s.measures) {
     out["measures"][m.name] = range_json(m.range);
@@ -112,9 +172,17 @@ std::string to_text(const PeriodicState& s) {
   }
   for (const PeriodicMeasure& m : s.measures)
     rows.push_back(range_row(printable(m.name), m.range, m.unit));
-  for (const PeriodicTorque& t : s.drive_torques)
-    rows.push_back(range_row(shown_label(t) + ", by the drive", t.range, t.angle ? "N m" : "N"));
+  for (const PeriodicTorque& t : s.drive_torques) {
+    rows.push_back(range_row(shown_label(t) + ", by the drive" + (t.nonunique ? " (not unique)" : ""),
+                             t.range, t.angle ? "N m" : "N"));
+    rows.push_back(range_row(shown_label(t) + ", its power", t.power, "W"));
+  }
   out += "\n" + aligned(rows, true);
+  if (std::vector<std::vector<std::string>> loads = load_rows(s); !loads.empty()) {
+    loads.insert(loads.begin(),
+                 {"parent on child, and bearings on their second body", "mean", "min", "max", "", ""});
+    out += "\n" + aligned(loads, true);
+  }
   if (!s.floquet.multipliers.empty()) {
     out += fmt::format("\nFloquet multipliers, to an estimated {:.1g}\n", s.floquet.error);
     for (std::size_t i = 0; i < s.floquet.growth.size(); ++i)
