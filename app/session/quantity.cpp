@@ -181,8 +181,7 @@ class Parser {
         {"atan", std::atan},
     }};
     const auto* found = std::ranges::find(known, name, &std::pair<std::string_view, Function>::first);
-    if (found == known.end() && name != "sqrt" && name != "abs")
-      throw Mistake{quoted(name) + " is no unit known here" + did_you_mean(name, unit_names()) + "."};
+    if (found == known.end() && name != "sqrt" && name != "abs") throw unknown(name);
     advance(name.size());
     if (!take('(')) throw Mistake{"After " + std::string(name) + " comes a parenthesis."};
     const Value value = closed();
@@ -260,13 +259,18 @@ class Parser {
     return negative ? -static_cast<int>(power) : static_cast<int>(power);
   }
 
+  static Mistake unknown(std::string_view name) {
+    if (name == "nan" || name == "inf" || name == "infinity") return {"Expected a finite number."};
+    const std::string hint = did_you_mean(name, unit_names()); // a question
+    return {quoted(name) + " is no unit known here" + (hint.empty() ? "." : hint)};
+  }
+
   Mistake unexpected() const {
     if (text_[0] == ',') return {"A comma is no decimal point here: write 0.5, not 0,5."};
     const bool fraction = text_.size() > 1 && text_[0] == '.' && is_digit(text_[1]);
     if (fraction || is_digit(text_[0]) || text_[0] == '(' || !word().empty()) {
       const std::string_view name = word();
-      if (!name.empty() && name != "pi" && !next_unit())
-        return {quoted(name) + " is no unit known here" + did_you_mean(name, unit_names()) + "."};
+      if (!name.empty() && name != "pi" && !next_unit()) return unknown(name);
       return {"A sign such as * is missing before " + quoted(text_.substr(0, text_.find(' '))) + "."};
     }
     return {quoted(text_.substr(0, 1)) + " cannot stand there."};

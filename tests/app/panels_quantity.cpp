@@ -176,8 +176,8 @@ TEST_CASE("what cannot be understood is refused with the reason") {
       Refused{"0,16", "m", "write 0.5, not 0,5"},
       Refused{"1,000.5", "m", "comma"},
       Refused{"fast", "rad/s", "“fast” is no unit"},
-      Refused{"nan", "rad/s", "“nan” is no unit"},
-      Refused{"inf", "rad/s", "“inf” is no unit"},
+      Refused{"nan", "kg", "Expected a finite number."},
+      Refused{"inf", "rad/s", "Expected a finite number."},
       Refused{"3 furlongs", "m", "“furlongs” is no unit"},
       Refused{"3 Kg", "kg", "did you mean \"kg\""},
       Refused{"3 €", "m", "“€” is no unit"},
@@ -209,6 +209,7 @@ TEST_CASE("what cannot be understood is refused with the reason") {
     const Quantity quantity = parse_quantity(r.text, r.unit);
     CHECK_FALSE(quantity);
     CHECK_THAT(quantity.mistake, ContainsSubstring(r.reason));
+    CHECK(quantity.mistake.find("?.") == std::string::npos);
   }
   // No stack is deep enough for everything that can be pasted.
   const std::string deep = std::string(100000, '(') + "1" + std::string(100000, ')');
