@@ -207,7 +207,7 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& 
     const double longest =
         waits
             ? std::min({idle, next_file_update(app.session), next_notice_change(app.session, app.notice_age),
-                        app.ui.tooltip.due, next_progress(app.session)})
+                        app.ui.tooltip.due, next_progress(app)})
             : 0;
     window.wait_events(longest);
     const auto now = Clock::now();
@@ -222,7 +222,7 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& 
     // Otherwise it was only time to look at the disk.
     settling = something ? settling_frames : std::max(settling - 1, 0);
     // What moves but a number asks for one frame.
-    if (waits && elapsed >= next_progress(app.session)) settling = std::max(settling, 1);
+    if (waits && elapsed >= next_progress(app)) settling = std::max(settling, 1);
     // Time spent waiting is no time of the motion's.
     const double seconds = waits ? 0 : std::min(elapsed, 0.1);
     app.ui.tooltip.clock += elapsed - seconds; // which passes in the window, moving or not

@@ -122,6 +122,11 @@ void update(App& app, double seconds, ViewSize view) {
   advance_glide(app.view, seconds);
 }
 
+double next_progress(const App& app) {
+  constexpr double beat = 0.2;
+  return writing_report(app.report) ? beat : next_progress(app.session);
+}
+
 Layout layout_of(const App& app, float width, float height) {
   if (app.view.alone) return view_alone_layout(width, height);
   return layout_of(app.session, app.ui, app.sizes, width, height);

@@ -67,6 +67,9 @@ struct App {
 
 // The session's update(), and the camera follows. `view` is the size of the 3-D view.
 void update(App& app, double seconds, ViewSize view);
+// s, until the progress of what is computed in the background is worth another look; infinite where nothing
+// is.
+double next_progress(const App& app);
 // The whole interface, between ImGui::NewFrame and ImGui::Render.
 void build_gui(App& app);
 // Where the panels are in a window of this size (pixels).

@@ -75,7 +75,7 @@ void build_gui(App& app) {
   welcome(app.session, app.ui, app.tool, app.dialog, app.commands, layout.view);
   panels.viewport.draw(app.context(), app.dialog, app.notice_age, app.notice_log, app.commands, layout.view);
   if (layout.beside.width > 0) panels.viewport.draw_beside(app.context(), layout.beside);
-  file_banner(app.session, app.ui, app.dialog, app.commands, layout.view);
+  file_banner(app.session, app.ui, app.dialog, app.report, app.commands, layout.view);
   draw_panels(app, layout);
   app.dialog.showing = false;
   show_dialogs(app);

@@ -76,8 +76,9 @@ void update_report(Session& session, ReportExport& report) {
   if (!news) return;
   if (!news->problem.empty())
     show_error(session, "Not saved: " + news->problem);
-  else if (news->result && !news->result->empty())
-    session.notice = "Saved " + news->result->string();
+  else if (news->result)
+    session.notice =
+        news->result->empty() ? "The report was not written." : "Saved " + news->result->string();
 }
 
 } // namespace flyball

@@ -19,7 +19,7 @@ struct ReportExport {
 // Draws the picture for it, which needs OpenGL, and has the rest done in the background.
 void begin_report(App& app, const ExportRequest& request);
 bool writing_report(const ReportExport& report);
-// Once a frame: tells where it was written, or why not.
+// Once a frame: tells where it was written, or why not; a person may have cancelled it.
 void update_report(Session& session, ReportExport& report);
 
 } // namespace flyball

@@ -5,6 +5,10 @@
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
+
+#include <chrono>
+#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -42,6 +46,33 @@ TEST_CASE("a report is exported of what is shown") {
   REQUIRE(dark != std::string::npos);
   CHECK(page.substr(light, 2000) != page.substr(dark, 2000));
   std::filesystem::remove(file);
+}
+
+TEST_CASE("a report that takes long is told of while it is written, and given up by a button") {
+  Robot robot;
+  App& app = robot.app;
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_given_up_report.html";
+  std::filesystem::remove(file);
+  open_document(app.session, Document(shipped("horizontal_rotor"))); // its curves are of many motions
+  robot.frames(3);
+  app.session.options.mode = LiveSolver::Mode::background;
+  app.export_request = ExportRequest{.file = file, .width = 160, .height = 100, .report = true};
+  export_picture(app, robot.size);
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 6000 && !until(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      robot.frames(1);
+    }
+    REQUIRE(until());
+  };
+  wait([&] { return app.ui.widgets.contains("banner/report/cancel"); });
+  CHECK(next_progress(app) < 1);
+  robot.click("banner/report/cancel");
+  wait([&] { return !writing_report(app.report); });
+  robot.frames(1);
+  CHECK(app.session.notice == "The report was not written.");
+  CHECK_FALSE(std::filesystem::exists(file));
+  CHECK_FALSE(app.ui.widgets.contains("banner/report/cancel"));
 }
 
 TEST_CASE("a report that cannot be written says so") {

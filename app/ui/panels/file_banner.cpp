@@ -4,6 +4,8 @@
 #include "app/ui/dialog_state.hpp"
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
+#include "app/ui/report_export.hpp"
+#include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
@@ -52,12 +54,23 @@ void discarded(Session& session, Ui& ui, DialogState& dialog) {
   if (text_button(ui, "banner/close", icon::close)) session.files.aside.clear();
 }
 
+void being_written(Ui& ui, ReportExport& report) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("Writing the report");
+  ImGui::SameLine();
+  task_bar(ui, "banner/report", report.task->progress(), report.task->seconds(), 220 * ui.scale);
+  ImGui::SameLine();
+  if (text_button(ui, "banner/report/cancel", "Cancel")) report.task->cancel();
+}
+
 } // namespace
 
-void file_banner(Session& session, Ui& ui, DialogState& dialog, const CommandRunner& commands,
-                 const PanelRect& view) {
+void file_banner(Session& session, Ui& ui, DialogState& dialog, ReportExport& report,
+                 const CommandRunner& commands, const PanelRect& view) {
+  constexpr double patience = 0.5; // s: a shorter wait is not worth a banner
   const bool both_changed = session.files.conflict && !session.document.file().empty();
-  if (dialog.showing || (!both_changed && session.files.aside.empty())) return;
+  const bool writing = writing_report(report) && report.task->seconds() > patience;
+  if (dialog.showing || (!both_changed && !writing && session.files.aside.empty())) return;
   const float s = ui.scale;
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
   if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
@@ -70,6 +83,8 @@ void file_banner(Session& session, Ui& ui, DialogState& dialog, const CommandRun
   ImGui::PopStyleVar(2);
   if (both_changed)
     conflict(session, ui, commands);
+  else if (writing)
+    being_written(ui, report);
   else
     discarded(session, ui, dialog);
   ImGui::End();
