@@ -2,6 +2,7 @@
 #include "app/report/sections.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
@@ -16,6 +17,10 @@ std::vector<Html> range_cells(const std::string& name, const PeriodicRange& rang
           std::isfinite(range.error) ? magnitude(range.error, unit) : Html("not known")};
 }
 
+const char* not_unique(bool open) {
+  return open ? ", not unique" : "";
+}
+
 Html ranges_table(const PeriodicState& s) {
   HtmlTable table({{"Over a period", false}, {"Mean"}, {"Least"}, {"Most"}, {"Error of each"}});
   for (const PeriodicCoordinate& c : s.coordinates) {
@@ -26,9 +31,61 @@ Html ranges_table(const PeriodicState& s) {
   }
   for (const PeriodicMeasure& m : s.measures)
     table.row(range_cells(m.name, m.range, m.unit));
-  for (const PeriodicTorque& t : s.drive_torques)
-    table.row(range_cells("Drive of " + coordinate_label(t), t.range, force_unit_of(t.angle)));
+  for (const PeriodicTorque& t : s.drive_torques) {
+    table.row(range_cells("Drive of " + coordinate_label(t) + not_unique(t.nonunique), t.range,
+                          force_unit_of(t.angle)));
+    table.row(range_cells("Power of " + coordinate_label(t), t.power, "W"));
+  }
   return table.html();
+}
+
+void vector_rows(HtmlTable& table, const std::string& name, const PeriodicVector& vector,
+                 std::string_view unit) {
+  // What is no more than rounding is not told.
+  const auto told = [](const PeriodicRange& range) {
+    return !std::isfinite(range.mean) || !std::isfinite(range.error) ||
+           std::max(std::abs(range.least), std::abs(range.most)) > range.error;
+  };
+  if (!told(vector.size)) return;
+  table.row(range_cells(name, vector.size, unit));
+  for (std::size_t c = 0; c < 3; ++c)
+    if (told(vector.component[c]))
+      table.row(range_cells(std::string("along ") + "xyz"[c], vector.component[c], unit));
+}
+
+Html loads_tables(const PeriodicState& s) {
+  Html out;
+  const auto add = [&](const char* title, const char* words, const HtmlTable& table) {
+    if (!table.empty()) out += heading_of(title) + paragraph_of(words) + table.html();
+  };
+  const auto head = [](const char* of) {
+    return HtmlTable({{of, false}, {"Mean"}, {"Least"}, {"Most"}, {"Error of each"}});
+  };
+  const auto wrenches = [&](const char* title, const char* of, const char* words,
+                            const std::vector<PeriodicReaction>& all) {
+    HtmlTable table = head(of);
+    for (const PeriodicReaction& r : all) {
+      vector_rows(table, r.name + ", force" + not_unique(r.nonunique), r.force, "N");
+      vector_rows(table, r.name + ", torque" + not_unique(r.nonunique), r.torque, "N m");
+    }
+    add(title, words, table);
+  };
+  wrenches("Reactions", "Joint",
+           "What the parent exerts on the child through the joint, its spring, stop, damper and drive "
+           "included: its size, and along the world's axes; torques about the joint's point. Where loops are "
+           "redundant those of the least multipliers, which are marked as not unique.",
+           s.reactions);
+  wrenches("Bearings", "Bearing", "What each exerts on its second body, torques about the bearing's point.",
+           s.bearings);
+  HtmlTable gears = head("Gear");
+  for (const PeriodicGear& g : s.gears) {
+    gears.row(range_cells(g.joint + ", on its first joint" + not_unique(g.nonunique), g.a,
+                          force_unit_of(g.angle_a)));
+    gears.row(range_cells(g.joint + ", on its second joint" + not_unique(g.nonunique), g.b,
+                          force_unit_of(g.angle_b)));
+  }
+  add("Gears", "Along the coordinates of their two joints, whose reactions include it.", gears);
+  return out;
 }
 
 Html multipliers(const PeriodicState& s) {
@@ -56,7 +113,7 @@ Html told(const PeriodicState& s) {
     const bool own = s.drive_periods == 0;
     terms.term("Period", own ? quantity_within(s.period, s.period_error, "s") : quantity(s.period, "s", 10));
     terms.term("Fails to come back by", magnitude(s.residual, "") + " (scaled)");
-    body += ranges_table(s) + multipliers(s) + heading_of("How it was found");
+    body += ranges_table(s) + loads_tables(s) + multipliers(s) + heading_of("How it was found");
   }
   terms.term("Run time", duration(s.run_time_s));
   return body + terms.html();

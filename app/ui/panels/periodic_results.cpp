@@ -4,6 +4,7 @@
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/panels/result_sections.hpp"
+#include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -24,6 +25,11 @@ struct RangeWords {
   bool amplitude = false; // is told, too
 };
 
+// What is nothing but rounding is told as zero.
+std::string end_text(double value, const PeriodicRange& of, const ShownUnit& unit) {
+  return short_text(std::abs(value) <= of.error ? 0 : unit.shown(value), digits);
+}
+
 void range_row(Session& session, Ui& ui, const RangeWords& words, const PeriodicRange& range,
                const ShownUnit& unit) {
   const auto& [prefix, name, title, help, less, amplitude] = words;
@@ -43,10 +49,9 @@ void range_row(Session& session, Ui& ui, const RangeWords& words, const Periodic
     paragraph(less, colors_of(ui).dim);
     note_widget(ui.widgets, prefix + "/" + name + "/less");
   }
-  right_digits(ui,
-               short_text(unit.shown(range.least), digits) + " … " +
-                   short_text(unit.shown(range.most), digits) + " " + unit.text,
-               colors_of(ui).dim);
+  right_digits(
+      ui, end_text(range.least, range, unit) + " … " + end_text(range.most, range, unit) + " " + unit.text,
+      colors_of(ui).dim);
   ImGui::Dummy({0, 0});
   if (!amplitude) return;
   const std::string within =
@@ -81,8 +86,49 @@ std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
          " a period, and counts less its even share of that.";
 }
 
+// Of what is no more than rounding there are no rows.
+bool told(const PeriodicVector& vector) {
+  const PeriodicRange& size = vector.size;
+  return !std::isfinite(size.mean) || !std::isfinite(size.error) || size.most > size.error;
+}
+
+// What joints, bearings and gears bear: sizes, with the ends of each component over them.
+void load_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
+  const auto vector_rows = [&](const PeriodicReaction& load, const PeriodicVector& vector, const char* unit,
+                               const char* what) {
+    if (!told(vector)) return;
+    const ShownUnit shown = shown_unit(unit, session.units);
+    std::string help = "Its size; along the world's axes:";
+    for (std::size_t c = 0; c < 3; ++c) {
+      const PeriodicRange& along = vector.component[c];
+      help += std::string("\n") + "xyz"[c] + "  " + end_text(along.least, along, shown) + " … " +
+              end_text(along.most, along, shown) + " " + shown.text + ", mean " +
+              end_text(along.mean, along, shown);
+    }
+    if (load.nonunique) help += "\nThe loops hold more than they need; of many possible ones the smallest.";
+    const std::string title = load.name + what;
+    range_row(session, ui, {prefix, title, (load.nonunique ? "≈ " : "") + title, help, "", false},
+              vector.size, shown);
+  };
+  for (const auto list : {&PeriodicState::reactions, &PeriodicState::bearings})
+    for (const PeriodicReaction& load : state.*list) {
+      vector_rows(load, load.force, "N", ", force");
+      vector_rows(load, load.torque, "N m", ", torque");
+    }
+  for (const PeriodicGear& g : state.gears)
+    for (const bool second : {false, true}) {
+      const std::string title = g.joint + (second ? ", on its second joint" : ", on its first joint");
+      range_row(
+          session, ui,
+          {prefix, title, (g.nonunique ? "≈ " : "") + title,
+           "The gear on the joint's child, along the joint's coordinate; part of its reaction.", "", false},
+          second ? g.b : g.a, shown_unit((second ? g.angle_b : g.angle_a) ? "N m" : "N", session.units));
+    }
+}
+
 // Names of widgets begin with `prefix`.
-void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
+void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix,
+                 ResultSections& open) {
   const bool own = state.drive_periods == 0;
   const double error = own ? state.period_error : 1e-7 * state.period;
   row(ui, "Period", value_text(state.period, std::max(error, 1e-12 * state.period), {8, 1e-16, false}), "s",
@@ -107,21 +153,27 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
   for (const PeriodicTorque& t : state.drive_torques) {
     const std::string less = by_torque(session.mechanism(), t) ? " less load" : "";
     range("Drive of " + coordinate_label(t) + less, "Drive of " + coordinate_words(t) + less, t.range,
-          shown_unit(t.angle ? "N m" : "N", session.units));
+          shown_unit(t.angle ? "N m" : "N", session.units),
+          t.nonunique ? "The loops share it among several drives: the smallest that do it." : "");
+    range("Power of " + coordinate_label(t), "Power of " + coordinate_words(t), t.power,
+          shown_unit("W", session.units));
   }
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
   help_on_hover("The motion begins in this one, at the drawn phase.");
+  if (state.reactions.empty() && state.bearings.empty()) return;
+  if (section(ui, prefix + "/reactions", "Reactions over a period", open.reactions))
+    load_rows(session, ui, state, prefix);
 }
 
 } // namespace
 
-void periodic_results(Session& session, Ui& ui) {
+void periodic_results(Session& session, Ui& ui, ResultSections& open) {
   const PeriodicState* state = periodic_motion(session);
   if (!state) return;
   heading(ui, "Over a period");
-  motion_rows(session, ui, *state, "results/periodic");
+  motion_rows(session, ui, *state, "results/periodic", open);
 }
 
 void cycle_offer(Session& session, Ui& ui) {
@@ -135,8 +187,8 @@ void cycle_offer(Session& session, Ui& ui) {
     find_cycle(session, !wanted);
   const PeriodicState* state = limit_cycle(session);
   if (search.running()) {
-    paragraph("Looking for the limit cycle…", colors_of(ui).dim);
-    note_widget(ui.widgets, "results/cycle/running");
+    task_bar(ui, "results/cycle/running", {"Looking for the limit cycle"}, search.seconds());
+    if (text_button(ui, "results/cycle/cancel", "Cancel")) find_cycle(session, false);
   }
   if (!state) return;
   const UiColors& colors = colors_of(ui);
@@ -144,11 +196,11 @@ void cycle_offer(Session& session, Ui& ui) {
   note_widget(ui.widgets, "results/cycle/message");
 }
 
-void cycle_results(Session& session, Ui& ui) {
+void cycle_results(Session& session, Ui& ui, ResultSections& open) {
   const PeriodicState* state = limit_cycle(session);
   if (!state || state->status != PeriodicStatus::found) return;
   heading(ui, state->drive_periods == 0 ? "Limit cycle, over a period" : "Periodic motion, over a period");
-  motion_rows(session, ui, *state, "results/cycle");
+  motion_rows(session, ui, *state, "results/cycle", open);
   if (!state->floquet.multipliers.empty()) {
     heading(ui, "Its Floquet multipliers");
     floquet_rows(ui, state->floquet);

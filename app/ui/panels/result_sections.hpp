@@ -19,10 +19,10 @@ void measure_results(Session& session, Ui& ui);
 // Of a mechanism with friction: its band, and what holding takes.
 void friction_results(const Session& session, Ui& ui);
 // Where a drive makes the balance turn: the motion in its place.
-void periodic_results(Session& session, Ui& ui);
+void periodic_results(Session& session, Ui& ui, ResultSections& open);
 // Where the steady state hunts: the limit cycle beside it can be asked for, and is told.
 void cycle_offer(Session& session, Ui& ui);
-void cycle_results(Session& session, Ui& ui);
+void cycle_results(Session& session, Ui& ui, ResultSections& open);
 void floquet_rows(Ui& ui, const Floquet& floquet);
 void solver_results(const Session& session, Ui& ui);
 // While a hand pulls.

@@ -143,7 +143,7 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, InBearings&
   } else if (session.answer.ticket) {
     verdict(session, ui);
     remedies(session, ui, in_bearings);
-    periodic_results(session, ui);
+    periodic_results(session, ui, open);
     cycle_offer(session, ui);
     warning_rows(session, ui, "results/warnings", 3);
     pull_results(session, ui, tool);
@@ -151,7 +151,7 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, InBearings&
     coordinate_results(session, ui, open);
     friction_results(session, ui);
     measure_results(session, ui);
-    cycle_results(session, ui);
+    cycle_results(session, ui, open);
     body_results(session, ui);
     // What runs away leaves a residual that says nothing: it is small because everything else is large.
     if (session.answer.solution.unheld.empty()) solver_results(session, ui);
