@@ -44,6 +44,11 @@ void read(const json& from, const char* key, const Table& words, Value& value) {
     if (found->template get_ref<const std::string&>() == word) value = meaning;
 }
 
+void read(const json& from, const char* key, bool& value) {
+  if (const auto found = from.find(key); found != from.end() && found->is_boolean())
+    value = found->get<bool>();
+}
+
 template <class Table, class Value>
 std::string word_for(const Table& words, Value value) {
   for (const auto& [word, meaning] : words)
@@ -65,8 +70,10 @@ Settings read_settings(const fs::path& state_folder) {
     read(file, "speed", speeds, settings.units.speed);
     read(file, "navigation", navigations, settings.navigation);
     read(file, "theme", themes, settings.theme);
-    if (const auto legend = file.find("legend"); legend != file.end() && legend->is_boolean())
-      settings.legend = legend->get<bool>();
+    read(file, "legend", settings.legend);
+    read(file, "ghost", settings.ghost);
+    read(file, "grid", settings.grid);
+    read(file, "shadow", settings.shadow);
     if (const auto zoom = file.find("zoom"); zoom != file.end() && zoom->is_number())
       settings.zoom = std::clamp(zoom->get<double>(), least_zoom, most_zoom);
   } catch (const SceneError&) { // unreadable
@@ -81,6 +88,9 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
                      {"speed", word_for(speeds, settings.units.speed)},
                      {"navigation", word_for(navigations, settings.navigation)},
                      {"legend", settings.legend},
+                     {"ghost", settings.ghost},
+                     {"grid", settings.grid},
+                     {"shadow", settings.shadow},
                      {"theme", word_for(themes, settings.theme)},
                      {"zoom", settings.zoom}};
   std::error_code ignored;

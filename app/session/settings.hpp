@@ -19,7 +19,8 @@ inline constexpr double least_zoom = 0.7, most_zoom = 3;
 
 struct Settings {
   DisplayUnits units;
-  bool legend = true; // of the view is open
+  bool legend = true;                            // of the view is open
+  bool ghost = true, grid = true, shadow = true; // are in the view
   Navigation navigation = Navigation::own;
   ThemeChoice theme = ThemeChoice::system;
   double zoom = 1; // of the interface, times what the display has

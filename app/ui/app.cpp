@@ -98,6 +98,9 @@ App::App(AppOptions chosen)
       panels(std::make_unique<Panels>()) {
   const Settings settings = read_settings(session.options.state);
   view.legend = settings.legend;
+  view.ghost = settings.ghost;
+  view.grid = settings.grid;
+  view.shadow = settings.shadow;
   view.navigation = settings.navigation;
   view.animated = chosen.animated;
   ui.system_theme = chosen.theme;

@@ -18,6 +18,9 @@ namespace {
 Settings settings_of(const Session& session, const Ui& ui, const ViewState& view) {
   return {.units = session.units,
           .legend = view.legend,
+          .ghost = view.ghost,
+          .grid = view.grid,
+          .shadow = view.shadow,
           .navigation = view.navigation,
           .theme = ui.theme_choice,
           .zoom = ui.zoom};
@@ -84,6 +87,11 @@ void zoom_interface(const Session& session, Ui& ui, const ViewState& view, int s
 
 void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open) {
   view.legend = open;
+  keep_choices(session, ui, view);
+}
+
+void toggle_in_view(const Session& session, const Ui& ui, ViewState& view, bool ViewState::*what) {
+  view.*what = !(view.*what);
   keep_choices(session, ui, view);
 }
 

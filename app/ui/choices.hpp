@@ -24,6 +24,8 @@ void take_system_theme(Ui& ui, Theme theme);
 void zoom_interface(const Session& session, Ui& ui, const ViewState& view, int steps);
 // Opens or folds the legend of the view; kept.
 void open_legend(const Session& session, const Ui& ui, ViewState& view, bool open);
+// Shows or hides the ghost, the grid or the shadow; kept.
+void toggle_in_view(const Session& session, const Ui& ui, ViewState& view, bool ViewState::*what);
 // How the mouse moves the camera from now on; kept.
 void choose_navigation(const Session& session, const Ui& ui, ViewState& view, Navigation navigation);
 

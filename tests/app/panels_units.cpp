@@ -119,10 +119,13 @@ TEST_CASE("what was chosen is there when the program starts again") {
     CHECK(app.session.units == DisplayUnits{});
     choose_units(app.session, app.ui, app.view, workshop);
     open_legend(app.session, app.ui, app.view, false);
+    app.commands.run("view.shadow");
   }
   App again(options);
   CHECK(again.session.units == workshop);
   CHECK_FALSE(again.view.legend);
+  CHECK_FALSE(again.view.shadow);
+  CHECK(again.view.grid);
 }
 
 TEST_CASE("settings that cannot be read are as at first") {

@@ -18,6 +18,10 @@ template <ThemeChoice choice>
 void choose_colours(App& app) {
   choose_theme(app.session, app.ui, app.view, choice);
 }
+template <bool ViewState::*what>
+void toggle(App& app) {
+  toggle_in_view(app.session, app.ui, app.view, what);
+}
 template <ThemeChoice choice>
 bool colours_chosen(const App& app) {
   return app.ui.theme_choice == choice;
@@ -144,7 +148,7 @@ const std::array view_commands{
             .title = "Ghost",
             .help = "The drawn pose behind the steady state, or the other way round.",
             .key = plain('G'),
-            .run = [](App& app) { app.view.ghost = !app.view.ghost; },
+            .run = toggle<&ViewState::ghost>,
             .checked = [](const App& app) { return app.view.ghost; },
             .separated = true},
     Command{.id = "view.loads",
@@ -161,12 +165,12 @@ const std::array view_commands{
     Command{.id = "view.grid",
             .title = "Grid",
             .help = "The grid on the floor.",
-            .run = [](App& app) { app.view.grid = !app.view.grid; },
+            .run = toggle<&ViewState::grid>,
             .checked = [](const App& app) { return app.view.grid; }},
     Command{.id = "view.shadow",
             .title = "Shadow",
             .help = "The shadow on the floor.",
-            .run = [](App& app) { app.view.shadow = !app.view.shadow; },
+            .run = toggle<&ViewState::shadow>,
             .checked = [](const App& app) { return app.view.shadow; }},
     Command{.id = "view.navigation_own",
             .title = "Mouse: left button orbits",

@@ -141,12 +141,14 @@ bool have_room(const Ui& ui, const PanelRect& rect, std::initializer_list<const 
   return ImGui::GetCursorPosX() + width <= rect.width - end;
 }
 
-void toggle(Ui& ui, const char* name, const char* text, const char* help, bool& on) {
+void toggle(const Session& session, Ui& ui, ViewState& view, bool ViewState::*what, const char* name,
+            const char* text, const char* help) {
+  const bool on = view.*what;
   const UiColors& colors = colors_of(ui);
   ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.accent : colors.dim);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * ui.scale, 5 * ui.scale});
   ImGui::PushID(name);
-  if (ImGui::Button(text)) on = !on;
+  if (ImGui::Button(text)) toggle_in_view(session, ui, view, what);
   ImGui::PopID();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
@@ -199,11 +201,10 @@ void toolbar_panel(Session& session, Ui& ui, ViewState& view, const CommandRunne
     direction_buttons(ui, view);
     space_between_groups(ui);
     if (have_room(ui, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
-      toggle(ui, "toolbar/ghost", "Ghost",
-             session.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)",
-             view.ghost);
-      toggle(ui, "toolbar/grid", "Grid", "The floor", view.grid);
-      toggle(ui, "toolbar/shadow", "Shadow", "Shadow on the floor", view.shadow);
+      toggle(session, ui, view, &ViewState::ghost, "toolbar/ghost", "Ghost",
+             session.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)");
+      toggle(session, ui, view, &ViewState::grid, "toolbar/grid", "Grid", "The floor");
+      toggle(session, ui, view, &ViewState::shadow, "toolbar/shadow", "Shadow", "Shadow on the floor");
     }
   }
   const float side = ImGui::GetFrameHeight() + 2 * s;
