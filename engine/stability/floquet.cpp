@@ -2,6 +2,7 @@
 
 #include "engine/linear/exponential.hpp"
 #include "engine/linear/spectral.hpp"
+#include "engine/stability/contraction.hpp"
 #include "engine/stability/linear_motion.hpp"
 #include "engine/stability/periodic_motion.hpp"
 #include "engine/system/common_period.hpp"
@@ -17,7 +18,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double accuracy = 1e-11; // of multipliers, relative to the largest
+constexpr double accuracy = 1e-11;  // of multipliers, relative to the largest
+constexpr double nothing_left = 40; // e^-40 of what moves is nothing beside 1, however exact
+constexpr int cheap = 32;           // a part of the steps that are reasonable: then multipliers are found
 
 // out = a b - b a
 void commute(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, Eigen::MatrixXd& out) {
@@ -195,11 +198,23 @@ FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Wo
   Eigen::MatrixXd drawn;
   if (!motion->state_matrix(0, drawn)) return fail(FloquetFailure::singular);
   const auto rates = eigenvalues(drawn, problem.cancel);
-  double fastest = 0;
-  for (const Complex rate : rates.value_or(std::vector<Complex>()))
+  double fastest = 0, slowest = std::numeric_limits<double>::infinity(), dies = slowest;
+  for (const Complex rate : rates.value_or(std::vector<Complex>())) {
     fastest = std::max(fastest, std::abs(rate));
+    slowest = std::min(slowest, std::abs(rate));
+    dies = std::min(dies, -rate.real());
+  }
   const double needed = std::max(8. * std::max(1, turns), fastest * motion->period());
   const int most = most_steps(motion->size());
+  if (needed > most / cheap && std::isfinite(dies) && dies * motion->period() > nothing_left)
+    if (const auto log = contraction(*motion, fastest, slowest, problem.cancel); log && *log > nothing_left) {
+      Floquet result;
+      result.period = motion->period();
+      result.multipliers.assign(static_cast<std::size_t>(motion->size()), 0);
+      result.error = std::exp(-std::min(*log, 690.));
+      out.result = std::move(result);
+      return out;
+    }
   if (!(needed <= most)) return fail(FloquetFailure::unresolved);
   for (int steps = static_cast<int>(needed); steps <= most; steps *= 2) {
     const MonodromyOutcome outcome = monodromy(*motion, steps, problem.cancel);

@@ -26,8 +26,9 @@ struct FloquetOutcome {
 // period, of which there are as many as it takes; the monodromy matrix is a product of exponentials by
 // Magnus' expansion of order six (Blanes, Casas, Oteo, Ros, The Magnus expansion and some of its
 // applications, 2009, section 5.3.2), which keeps multipliers of motions without damping on the unit circle.
-// Steps are halved until the multipliers agree. Where speeds are found the multiplier 1 of each phase is left
-// out, and where momentum is kept the one of other momenta.
+// Steps are halved until the multipliers agree. Over periods that are very long beside what dies out the
+// multipliers are told as zero, with a bound for an error, where contraction() says so. Where speeds are
+// found the multiplier 1 of each phase is left out, and where momentum is kept the one of other momenta.
 FloquetOutcome find_floquet(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 
 // Whether motions beside stay near, by the multipliers of a period; `error`: estimated, of the largest. False

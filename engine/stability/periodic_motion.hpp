@@ -19,6 +19,7 @@ class PeriodicMotion {
                                               int turns, Workspace& w);
 
   double period() const { return period_; }
+  Eigen::Index harmonics() const { return series_.cols() / 2; } // of the matrices
   // Whether some direction has neither mass nor damping nor stiffness at all phases.
   bool singular() const { return singular_; }
   // Of the state x = (p of what has mass, its rate in units of rate(), p of what is damped only). What has

@@ -1,6 +1,7 @@
 // The same answers from large matrices, which are decomposed by pieces, as Eigen's own decompositions give.
 #include "engine/linear/exponential.hpp"
 #include "engine/linear/large.hpp"
+#include "engine/linear/lyapunov.hpp"
 #include "engine/linear/spectral.hpp"
 #include "tests/catch.hpp"
 
@@ -144,4 +145,24 @@ TEST_CASE("the logarithm of a rotation is skew and leads back to it; a reflectio
     CHECK((*round + round->transpose()).cwiseAbs().maxCoeff() < 1e-13);
     CHECK((matrix_exponential(*round).value() - turned).cwiseAbs().maxCoeff() < 1e-13);
   }
+}
+
+TEST_CASE("Lyapunov's equation of stable matrices, stiff ones too; of others there is no answer") {
+  std::mt19937 random(7);
+  for (const int size : {1, 4, 9}) {
+    Eigen::MatrixXd a(size, size), half(size, size);
+    for (Eigen::MatrixXd* m : {&a, &half})
+      for (double& entry : m->reshaped())
+        entry = std::normal_distribution<double>()(random);
+    a -= (a.norm() + 1) * Eigen::MatrixXd::Identity(size, size);
+    a.row(0) *= 1e4;
+    const Eigen::MatrixXd q = half * half.transpose() + Eigen::MatrixXd::Identity(size, size);
+    const auto p = solve_lyapunov(a, q, 100);
+    REQUIRE(p);
+    CHECK((a.transpose() * *p + *p * a + q).norm() < 1e-9 * q.norm());
+    CHECK_FALSE(solve_lyapunov(-a, q, 100));
+  }
+  const auto one = solve_lyapunov(Eigen::MatrixXd::Constant(1, 1, -3), Eigen::MatrixXd::Constant(1, 1, 2), 5);
+  REQUIRE(one);
+  CHECK((*one)(0, 0) == Approx(1. / 3));
 }
