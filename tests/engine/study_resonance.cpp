@@ -153,3 +153,32 @@ TEST_CASE("A resonance curve that was stopped goes on with the points that are t
   for (const auto& point : part.points) // not found again
     CHECK(std::ranges::find(rest.points, point) != rest.points.end());
 }
+
+TEST_CASE("A resonance curve takes the motion where a state only nearly stands") {
+  // So small an unbalance, turning slowly, is within what a steady state may be off.
+  Mechanism m = resonant_rotor();
+  m.bodies.back() = body("disc", rotor_mass, {1e-8, 0, 0}, {0.01, 0.01, 0.02});
+  m.joints.back().coordinates[0].drive->speed = 1;
+  const Solution steady = solve(m);
+  REQUIRE(steady.status == Status::converged);
+  CHECK(steady.varies);
+  m.joints.back().coordinates[0].drive->speed = 0;
+  CHECK_FALSE(solve(m).varies);
+  ResonanceOptions options;
+  options.coarse = options.most = 5;
+  const ResonanceCurve curve = resonance_curve(m, rotor_speed, 0, 8, options);
+  REQUIRE(curve.points.size() == 5);
+  const double sag = rotor_mass * 9.81 / rotor_stiffness;
+  for (const auto& point : curve.points) {
+    CAPTURE(point->number);
+    REQUIRE(point->found());
+    CHECK(point->steady == (point->number == 0));
+    CHECK(point->stable == true);
+    const PeriodicRange *y = point->range_of(OutputKind::coordinate, "y"),
+                        *force = point->range_of(OutputKind::force, "spin");
+    REQUIRE((y && force));
+    CHECK_THAT(y->mean, WithinAbs(-sag, 1e-13));
+    CHECK_THAT(force->mean, WithinAbs(rotor_mass * 9.81, 1e-9));
+  }
+  CHECK_FALSE(solve(shipped("governor")).varies);
+}
