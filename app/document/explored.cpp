@@ -29,6 +29,16 @@ std::string renamed(const std::string& name, const std::vector<Part>& before,
   return at == before.end() ? name : after[static_cast<std::size_t>(at - before.begin())].name;
 }
 
+// The parameter that gives the number since the edit, where the edit has made it for that.
+std::string named_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
+  const std::optional<std::string> formula = formula_at(after, address);
+  const bool is_new =
+      formula && parameter_index(after, *formula) >= 0 && parameter_index(before, *formula) < 0;
+  return is_new ? "parameters." + *formula : address;
+}
+
+} // namespace
+
 std::string renamed_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
   const std::size_t begin = address.find('.'), end = address.find('.', begin + 1);
   if (begin == std::string::npos) return address;
@@ -41,16 +51,6 @@ std::string renamed_address(const std::string& address, const Mechanism& before,
   if (list == "points") now = renamed(name, before.points, after.points);
   return list + "." + now + (end == std::string::npos ? "" : address.substr(end));
 }
-
-// The parameter that gives the number since the edit, where the edit has made it for that.
-std::string named_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
-  const std::optional<std::string> formula = formula_at(after, address);
-  const bool is_new =
-      formula && parameter_index(after, *formula) >= 0 && parameter_index(before, *formula) < 0;
-  return is_new ? "parameters." + *formula : address;
-}
-
-} // namespace
 
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value) {
   const std::optional<double> present = number_at(mechanism, address);

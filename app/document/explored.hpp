@@ -24,6 +24,9 @@ void explore_value(Explored& explored, const Mechanism& mechanism, const std::st
 // Throws SceneError where expressions can make nothing of them.
 Mechanism with_explored(Mechanism mechanism, const Explored& explored);
 
+// The address after an edit that has renamed its part in its place; else as it is.
+std::string renamed_address(const std::string& address, const Mechanism& before, const Mechanism& after);
+
 // What is left of them after an edit: a number that the edit has set counts from then on, what is gone is
 // gone, and a part that was renamed in its place keeps what is explored of it. What is explored of a number
 // that the edit names is explored of the new parameter.

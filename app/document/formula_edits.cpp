@@ -336,7 +336,8 @@ std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, cons
   constexpr std::array variables{spring_variable, damper_variable, air_variable};
   NamedParameter lacking;
   try {
-    for (const std::string& name : Expression(text, Expression::Results::allowed).names()) {
+    const Expression expression(text, Expression::Results::allowed);
+    for (const std::string& name : expression.names()) {
       if (!is_expression_name(name) || free_name(mechanism, name) != name ||
           std::ranges::find(variables, name) != variables.end())
         continue;

@@ -1,5 +1,6 @@
 #include "app/session/session.hpp"
 
+#include "app/session/follow_names.hpp"
 #include "app/session/settings.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
@@ -71,6 +72,11 @@ void keep_phase(Session& session) {
 // After the document's mechanism has changed; `address` where that is only the number there.
 void take_document(Session& session, bool another, bool warm, StartValues start = {},
                    const std::string& address = {}) {
+  const std::shared_ptr<const Mechanism> before = std::exchange(session.named, session.document.shared());
+  if (address.empty() && !another && before) {
+    follow_names(session, *before);
+    if (session.on_edited) session.on_edited(*before);
+  }
   if (address.empty())
     validate_all(session);
   else

@@ -70,6 +70,7 @@ struct Session {
   StudyState study;
   MotionState motion;
   GoalState goals;
+  std::shared_ptr<const Mechanism> named; // whose names all has that is chosen beside the document
   DisplayUnits units;
   std::string notice;  // what was last done, in words; whoever shows it takes it away
   std::string failure; // the notice that tells what went wrong; see show_error()
@@ -81,6 +82,8 @@ struct Session {
   std::function<void(bool same_file)> on_document_opened;
   // After set_mode().
   std::function<void()> on_mode_chosen;
+  // After an edit of `before` that may have renamed parts.
+  std::function<void(const Mechanism& before)> on_edited;
 };
 
 // Takes a document's place; what was open is gone (leave_document() of a window asks first).

@@ -72,8 +72,6 @@ std::vector<Tolerance> chosen_tolerances(const Session& session) {
 
 void choose_tolerances(Session& session) {
   SpreadState& state = session.study.spread;
-  std::erase_if(state.choice.tolerances,
-                [&](const ChosenTolerance& each) { return !has_number(session.mechanism(), each.address); });
   if (state.begun || session.parameters.empty()) return;
   state.begun = true;
   // Controls come in groups, pinned ones first.

@@ -1,5 +1,6 @@
 #include "app/ui/app.hpp"
 
+#include "app/session/follow_names.hpp"
 #include "app/session/settings.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
@@ -110,6 +111,10 @@ App::App(AppOptions chosen)
   session.on_document_opened = [this](bool same_file) { show_document(*this, same_file); };
   session.on_mode_chosen = [this] {
     if (session.mode == Mode::explore && tool.tool != Tool::pull) tool.tool = Tool::select;
+  };
+  session.on_edited = [this](const Mechanism& before) {
+    for (Part& part : view.hidden)
+      part = renamed_part(part, before, session.mechanism());
   };
   show_document(*this, false);
 }

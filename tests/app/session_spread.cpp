@@ -1,4 +1,5 @@
 // The study of the spread and the band around the response curve, without a window.
+#include "app/document/rename.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
@@ -121,6 +122,50 @@ TEST_CASE("Session: a tolerance that cannot be is told") {
   session.frames();
   CHECK_FALSE(session.study.spread.samples.found);
   CHECK_THAT(session.study.spread.samples.problem, ContainsSubstring("parameters.c"));
+}
+
+TEST_CASE("Session: what is chosen by names goes along when these change, and when that is undone") {
+  SpreadSession session("governor");
+  constexpr const char* stiffness = "joints.slide.spring.stiffness";
+  session.study.spread.begun = true;
+  open_study(session, StudyKind::spread);
+  add_tolerance(session, stiffness);
+  add_tolerance(session, "bodies.collar.mass");
+  session.study.spread.choice.tolerances[0].width = 7;
+  hold_number(session, stiffness, true);
+  tell_point(session, "collar", Vec3(0, 1, 0));
+  session.frames();
+  const auto tolerances = [&] {
+    std::vector<std::string> all;
+    for (const ChosenTolerance& each : session.study.spread.choice.tolerances)
+      all.push_back(each.address);
+    return all;
+  };
+  const std::vector<std::string> before = tolerances();
+  edit(session, "Rename", [](Mechanism& m, Selection&) {
+    rename_part(m, {PartKind::joint, "slide"}, "way");
+    rename_part(m, {PartKind::body, "collar"}, "sleeve");
+  });
+  session.frames();
+  CHECK(tolerances() == std::vector<std::string>{"joints.way.spring.stiffness", "bodies.sleeve.mass"});
+  CHECK(session.study.spread.choice.tolerances[0].width == 7);
+  CHECK(is_held(session, "joints.way.spring.stiffness"));
+  REQUIRE(told_points(session).size() == 1);
+  CHECK(told_points(session)[0].body == "sleeve");
+  undo(session);
+  session.frames();
+  CHECK(tolerances() == before);
+  CHECK(is_held(session, stiffness));
+  CHECK(told_points(session).size() == 1);
+  // What is taken away has none, and has it again when it is back.
+  edit(session, "Remove", [](Mechanism& m, Selection&) {
+    std::erase_if(m.joints, [](const Joint& joint) { return joint.name == "slide"; });
+  });
+  session.frames();
+  CHECK(chosen_tolerances(session).size() == 1);
+  undo(session);
+  session.frames();
+  CHECK(tolerances() == before);
 }
 
 TEST_CASE("Session: many samples are made in the background, and can be cancelled") {

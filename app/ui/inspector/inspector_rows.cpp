@@ -82,15 +82,6 @@ void begin_rows(const Ui& ui, std::span<const std::string> options) {
   ImGui::BeginChild("rows", {width, rows * ImGui::GetTextLineHeightWithSpacing()});
 }
 
-// A body's point keeps being told of.
-void rename_told_point(Session& session, const Part& part, const std::string& name) {
-  if (part.kind != PartKind::body) return;
-  if (auto told = session.points.extract(part.name)) {
-    told.key() = name;
-    session.points.insert(std::move(told));
-  }
-}
-
 // Of a joint or force, whose fields are called the same.
 template <class Change>
 void change_bodies(Session& session, Ui& ui, const Part& part, const Change& change) {
@@ -210,7 +201,6 @@ bool name_field(Session& session, Ui& ui, const std::string& widget, const Part&
                       },
                   .take =
                       [&session, part](const std::string& typed) {
-                        rename_told_point(session, part, typed);
                         edit(session, "Rename " + part.name + " to " + typed,
                              [&](Mechanism& mechanism, Selection& selection) {
                                rename_part(mechanism, part, typed);
