@@ -98,6 +98,7 @@ const PeriodicState* periodic_motion(const Session& session) {
 void show_periodic_motion(Session& session, const PeriodicState& state) {
   session.motion.saved = state.start;
   session.motion.start = Start::state;
+  session.motion.duration = 2 * state.period;
   if (session.study.open == StudyKind::motion && session.motion.on)
     restart_motion(session);
   else

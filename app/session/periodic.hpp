@@ -33,7 +33,7 @@ void update_periodic(Session& session);
 const PeriodicState* periodic_state(const Session& session);
 // The same where one was found.
 const PeriodicState* periodic_motion(const Session& session);
-// The motion's run begins in it, so that the plots have it.
+// The motion's run begins in it and lasts for two periods, so that the plots have it.
 void show_periodic_motion(Session& session, const PeriodicState& state);
 
 // Whether the steady state that is shown is left by swings that grow: then a limit cycle can be asked for.

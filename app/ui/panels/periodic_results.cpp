@@ -161,7 +161,7 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
-  help_on_hover("The motion begins in this one, at the drawn phase.");
+  help_on_hover("The motion begins in this one, at the drawn phase, and lasts for two periods.");
   if (state.reactions.empty() && state.bearings.empty()) return;
   if (section(ui, prefix + "/reactions", "Reactions over a period", open.reactions))
     load_rows(session, ui, state, prefix);
