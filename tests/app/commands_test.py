@@ -78,6 +78,9 @@ def periodic(_):
         across = told["coordinates"]["across"]
         check("it has ends about its mean", across["min"] < across["mean"] < across["max"])
         check("its multipliers are told", len(told["floquet"]["multipliers"]) == 4)
+        size = told["reactions"]["spin"]["force"]["size"]
+        check("what its shaft bears is told", 0 < size["min"] < size["mean"] < size["max"])
+        check("its power on the average is what dampers take", told["drive_powers"]["spin"]["mean"] > 0)
     code, out, error = run("solve", SCENE, "--json")
     check("a steady state is told alone", code == 0 and "periodic" not in json.loads(out))
     code, _, error = run("solve", CASES / "control_characters.json", "--periodic", "--all")

@@ -95,7 +95,9 @@ TEST_CASE("the response of the horizontal rotor is its periodic motions, with th
   const std::string csv = to_csv(robot.plot());
   CHECK_THAT(csv, ContainsSubstring("whirl [m]"));
   CHECK_THAT(csv, ContainsSubstring("least to most, from"));
-  // Everything that is offered is drawn.
+  // Everything that is offered is drawn, what joints bear among it.
+  CHECK(std::ranges::count(offered_quantities(app.session), "force spin", &ResponseQuantity::key) == 1);
+  CHECK(std::ranges::count(offered_quantities(app.session), "power spin", &ResponseQuantity::key) == 1);
   for (const ResponseQuantity& quantity : offered_quantities(app.session)) {
     CAPTURE(quantity.key);
     choose_quantity(app.session, quantity);

@@ -58,4 +58,14 @@ TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
     going += c.goes_on();
   }
   CHECK(going > 0);
+  // What its joints bear, where it is asked for.
+  app.panels->results.sections().reactions = true;
+  robot.frames(2);
+  REQUIRE_FALSE(motion->reactions.empty());
+  for (const PeriodicReaction& reaction : motion->reactions)
+    CHECK(app.ui.widgets.contains("results/periodic/" + reaction.name + ", force") ==
+          (reaction.force.size.most > reaction.force.size.error));
+  CHECK(std::ranges::any_of(motion->reactions, [](const PeriodicReaction& reaction) {
+    return reaction.force.size.most > reaction.force.size.error;
+  }));
 }
