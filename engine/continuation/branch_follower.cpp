@@ -44,8 +44,13 @@ std::string infinite_rate_text(const InfiniteRate& error) {
   return std::string("a number changes at an infinite rate there: ") + error.what();
 }
 
-// At the beginning of the range, or, where no mechanism can be made there, as it is.
-Mechanism begun(const Mechanism& mechanism, const std::string& address, double from) {
+// At the beginning of the range. Where expressions make no mechanism there, as it is: then the curve ends
+// within the range; a field itself must be one that is possible at both ends.
+Mechanism begun(const Mechanism& mechanism, const std::string& address, double from, double to) {
+  if (!address.starts_with("parameters.") && !address.starts_with("points.")) {
+    (void)with_parameter(mechanism, address, to);
+    return with_parameter(mechanism, address, from);
+  }
   try {
     return with_parameter(mechanism, address, from);
   } catch (const SceneError&) {
@@ -112,8 +117,8 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_for_drives(begun(mechanism, address, from))),
-      family_(system_, begun(mechanism, address, from), address, std::abs(to - from),
+    : options_(options), system_(compile_for_drives(begun(mechanism, address, from, to))),
+      family_(system_, begun(mechanism, address, from, to), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form
                   : KktForm::dense),

@@ -5,6 +5,7 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/validate.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/search/turned_balance.hpp"
 #include "engine/solve/refine.hpp"
@@ -102,6 +103,7 @@ Problem ExtendedBalance::judged() const {
 
 void ExtendedBalance::set(const ExtendedState& state) {
   numbers_.set({state.parameters.data(), addresses_.size()});
+  validate_numbers(mechanism_);
   bind(system_, mechanism_, parameters_);
   if (ties_)
     for (const int link : ties_->found)

@@ -1,6 +1,9 @@
 #include "engine/continuation/family.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/validate.hpp"
+
+#include <limits>
 
 namespace flyball {
 
@@ -13,8 +16,10 @@ Family::Family(const System& system, const Mechanism& mechanism, const std::stri
 }
 
 void Family::set(double value) {
-  if (value == value_) return; // bound already
+  if (value == value_) return;                       // bound already
+  value_ = std::numeric_limits<double>::quiet_NaN(); // till it is bound
   number_.set({&value, 1});
+  validate_numbers(mechanism_);
   bind(system_, mechanism_, parameters_);
   value_ = value;
   turn(starts_);

@@ -371,3 +371,23 @@ TEST_CASE("what hangs on a slide goes as far wherever it is drawn", "[branches]"
   CHECK(d.branches[0].points.back().coordinates[0].value ==
         Approx(0.15 + standard_gravity / 2000).epsilon(1e-12));
 }
+
+TEST_CASE("no curve goes on to numbers that a scene may not have", "[branches]") {
+  const Mechanism m = shipped("governor");
+  CHECK_THROWS_WITH(follow_branches(m, "bodies.ball1.mass", -5, 5),
+                    ContainsSubstring("bodies.ball1.mass") && ContainsSubstring("zero or more"));
+  CHECK_THROWS_AS(follow_branches(m, speed, 0, 1e31), SceneError);
+  // By an expression the curve ends where that is: its parameter may be anything.
+  Mechanism lighter = m;
+  lighter.parameters.push_back({"w", "", 1, "kg", {}, {}});
+  for (Body& b : lighter.bodies)
+    if (b.name == "ball1" || b.name == "ball2") b.formulas.push_back({"mass", "2 kg - w"});
+  validate(lighter);
+  const ResponseDiagram d = follow_branches(lighter, "parameters.w", 0, 6);
+  REQUIRE(!d.branches.empty());
+  CHECK_THAT(d.branches[0].end, ContainsSubstring("beyond it no mechanism can be made"));
+  CHECK(d.branches[0].points.back().parameter == Approx(2).margin(1e-6));
+  for (const ResponseBranch& branch : d.branches)
+    for (const ResponsePoint& p : branch.points)
+      CHECK(p.parameter <= 2);
+}
