@@ -202,14 +202,19 @@ struct FormulaPlan::State {
     const void* place; // see NumberRates
     std::function<void(double)> set;
     std::optional<std::size_t> name; // that it defines
+    double result = 0;               // of the last evaluation
   };
   Mechanism& mechanism;
   std::vector<Assignment> assignments;
   std::vector<Dual> values; // of the names
+  // The same after evaluate_names(), where that came to its end: while they stay, so do all results.
+  std::vector<double> evaluated;
+  bool is_evaluated = false;
 
   explicit State(Mechanism& m) : mechanism(m) {
     const GivenNames names(m);
     values.resize(names.size());
+    evaluated.reserve(values.size());
     const std::vector<Definition> definitions = definitions_of(m, names);
     for (const Definition* each : in_order(definitions, names.size()))
       assignments.push_back({each->where, each->text, each->compiled, place_of(*each->place),
@@ -244,13 +249,27 @@ struct FormulaPlan::State {
       if (body.density) take_mass_rates(body, rates);
   }
 
-  void evaluate() {
-    GivenNames::take_values(mechanism, values);
-    for (const Assignment& each : assignments) {
+  void evaluate_names() {
+    is_evaluated = false;
+    evaluated.clear();
+    for (Assignment& each : assignments) {
       const Dual value = at_place(each.where, each.text, [&] { return each.compiled.evaluate(values); });
       if (each.name) values[*each.name] = value;
-      each.set(value.value);
+      each.result = value.value;
+      each.set(each.result);
     }
+    for (const Dual& value : values)
+      evaluated.push_back(value.value);
+    is_evaluated = true;
+  }
+
+  void evaluate() {
+    GivenNames::take_values(mechanism, values);
+    if (!is_evaluated || !std::ranges::equal(values, evaluated, {}, &Dual::value))
+      evaluate_names();
+    else
+      for (const Assignment& each : assignments)
+        each.set(each.result);
     for (Body& body : mechanism.bodies)
       if (body.density && !weigh(body))
         throw SceneError(
