@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <vector>
 
 namespace flyball {
 
@@ -240,17 +241,22 @@ void MovieWriter::check_frames() const {
   }
 }
 
-// All or none: where one cannot be placed, those before it go again.
+// All or none: where one cannot be placed, those before it go again, but for those that have replaced
+// another.
 void MovieWriter::place_frames() {
   check_frames();
+  std::vector<fs::path> made;
   for (std::size_t i = 0; i < added_; ++i) {
     const fs::path to = frame_file(target_, i, format_.frames);
     std::error_code failed, ignored;
+    const bool replaces = fs::exists(to, ignored);
     fs::rename(part_->path() / to.filename(), to, failed);
-    if (!failed) continue;
-    for (std::size_t placed = 0; placed < i; ++placed)
-      fs::remove(frame_file(target_, placed, format_.frames), ignored);
-    fail(to, failed);
+    if (failed) {
+      for (const fs::path& placed : made)
+        fs::remove(placed, ignored);
+      fail(to, failed);
+    }
+    if (!replaces) made.push_back(to);
   }
   part_.reset();
 }

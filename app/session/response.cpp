@@ -154,6 +154,7 @@ bool left_curves(const Session& session) {
   const auto& found = state.curve.found;
   if (!found || state.curve.running() || !converged(session) || solving(session)) return false;
   if (session.answer.ticket == state.through) return false;
+  if (session.answer.mechanism != session.document.shared()) return false; // of a hand that pulls
   const ResponseRequest& of = found->of;
   const std::optional<ResponsePoint> now = present_point(session, of.address);
   if (!now || (now->parameter - of.from) * (now->parameter - of.to) > 0) return false;

@@ -106,19 +106,28 @@ void duplicate_selected(Session& session, const ViewState& view) {
        });
 }
 
-void copy_selected(Session& session) {
-  if (session.selection().empty()) return;
+namespace {
+
+bool put_on_clipboard(Session& session) {
+  if (session.selection().empty()) return false;
   try {
-    ImGui::SetClipboardText(copy_text(session.mechanism(), session.selection()).c_str());
-    session.notice = "Copied " + words_for(session.selection());
+    ImGui::SetClipboardText(copy_text(session.document.stored(), session.selection()).c_str());
   } catch (const SceneError& error) {
     show_error(session, error.what());
+    return false;
   }
+  session.notice = "Copied " + words_for(session.selection());
+  return true;
+}
+
+} // namespace
+
+void copy_selected(Session& session) {
+  put_on_clipboard(session);
 }
 
 void cut_selected(Session& session) {
-  copy_selected(session);
-  if (!session.selection().empty()) remove_selected(session, "Cut", "Cut");
+  if (put_on_clipboard(session)) remove_selected(session, "Cut", "Cut");
 }
 
 void paste_parts(Session& session, const ViewState& view) {

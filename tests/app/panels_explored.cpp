@@ -103,6 +103,20 @@ TEST_CASE("a slider that is moved leaves nothing to be saved") {
   }
 }
 
+TEST_CASE("what is copied while exploring has the stored numbers, as a duplicate has") {
+  Robot robot({1280, 900});
+  Session& session = robot.app.session;
+  change_parameter(session, "bodies.ball1.mass", 2);
+  select(session, {{{PartKind::body, "ball1"}}});
+  robot.frames(2);
+  const std::size_t bodies = session.document.stored().bodies.size();
+  const bool duplicate = GENERATE(false, true);
+  for (const int key : duplicate ? std::vector<int>{'D'} : std::vector<int>{'C', 'V'})
+    robot.key(key, true);
+  REQUIRE(session.document.stored().bodies.size() == bodies + 1);
+  CHECK(session.document.stored().bodies.back().mass == 1);
+}
+
 TEST_CASE("what is typed in the inspector is an edit while exploring, too") {
   Robot robot({1280, 900});
   App& app = robot.app;

@@ -22,6 +22,17 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk is read again where 
     CHECK(robot.speed_now() == 11.0174);
     CHECK(app.session.document.unsaved());
   }
+  SECTION("twice, without a press between: two steps") {
+    for (const double value : {8., 7.}) {
+      set_speed_in(file, value);
+      robot.pass(3);
+      REQUIRE(robot.speed_now() == value);
+    }
+    undo(app.session);
+    CHECK(robot.speed_now() == 8);
+    undo(app.session);
+    CHECK(robot.speed_now() == 11.0174);
+  }
   SECTION("no scene: the open one stays") {
     const std::string before = read_bytes(file);
     write_bytes(file, "{\"flyball\": 1");
