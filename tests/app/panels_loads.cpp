@@ -11,6 +11,8 @@
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 
 using namespace flyball;
@@ -110,6 +112,28 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
   robot.key('A');
   robot.frames(2);
   CHECK(middle("legend") < middle("view"));
+}
+
+TEST_CASE("what is explored, the legend and a notice stand clear of each other, and of the view cube") {
+  const PixelSize window = GENERATE(PixelSize{900, 600}, PixelSize{1280, 800}, PixelSize{640, 480});
+  Robot robot(window);
+  App& app = robot.app;
+  robot.key('A');
+  change_parameter(app.session, "joints.slide.damping", 14.2857142857);
+  robot.frames(2);
+  app.session.notice = "Undone: Delete the joint slide";
+  robot.frames(2);
+  const std::map<std::string, WidgetRect, std::less<>>& all = app.ui.widgets;
+  const std::array names{"explored", "legend frame", "notice", "status"};
+  for (const char* one : names)
+    for (const char* other : names) {
+      if (std::string_view(one) >= other || !all.contains(one) || !all.contains(other)) continue;
+      INFO(one << " and " << other);
+      const WidgetRect &a = all.at(one), &b = all.at(other);
+      CHECK((a.to.x <= b.from.x || b.to.x <= a.from.x || a.to.y <= b.from.y || b.to.y <= a.from.y));
+    }
+  REQUIRE(all.contains("explored"));
+  CHECK(all.at("explored").from.x >= all.at("view").from.x + 90);
 }
 
 TEST_CASE("arrows that come are taken into the view, unless a part is looked at") {

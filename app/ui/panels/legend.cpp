@@ -116,7 +116,10 @@ int arrows_within(const ViewState& state, const PanelRect& view, ImVec2 from, Im
 // all the same. It does not jump while the view is turned.
 float Legend::top(const Ui& ui, const ViewState& state, const PanelRect& view, ImVec2 size) {
   const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
-  const float upper = view.y + 10 * s, lower = view.y + view.height - 44 * s - size.y; // above the chips
+  const auto explored = ui.widgets.find("explored"); // a chip at the bottom, as the status is
+  const float bottom =
+      explored == ui.widgets.end() ? view.y + view.height - 44 * s : explored->second.from.y - 14 * s;
+  const float upper = view.y + 10 * s, lower = bottom - size.y;
   const auto hidden = [&](float top) {
     return arrows_within(state, view, {left, top}, {left + size.x, top + size.y});
   };
@@ -168,6 +171,8 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoNav);
+  const ImVec2 corner = ImGui::GetWindowPos();
+  context.ui.widgets["legend frame"] = {corner, {corner.x + size.x, corner.y + size.y}};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 from = ImGui::GetCursorScreenPos();
   if (ImGui::InvisibleButton("title", {room, line})) {

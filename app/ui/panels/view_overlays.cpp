@@ -31,9 +31,11 @@ WidgetRect draw_line(const Ui& ui, const PanelRect& rect, const std::string& tex
   const std::string lines = in_lines(text, room);
   const ImVec2 size = ImGui::CalcTextSize(lines.c_str(), nullptr, false, room);
   const float x = std::round(rect.x + (rect.width - size.x) / 2);
-  const auto chip = ui.widgets.find("explored"); // what is explored, at the right
-  if (chip != ui.widgets.end() && x + size.x + 2 * pad > chip->second.from.x)
-    y = std::min(y, chip->second.from.y - 10 * s);
+  for (const char* other : {"explored", "legend frame"}) { // at the right, the legend perhaps below
+    const auto there = ui.widgets.find(other);
+    if (there == ui.widgets.end() || there->second.to.y < y - size.y - 11 * s) continue;
+    if (x + size.x + 2 * pad > there->second.from.x) y = std::min(y, there->second.from.y - 10 * s);
+  }
   y -= size.y + 8 * s;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImVec4 plate = colors.panel;
@@ -187,8 +189,10 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
                    ImGuiWindowFlags_NoNav);
   ImGui::PopStyleVar(4);
+  const float cube = 96 * s; // in the other corner
+  const float buttons = ImGui::CalcTextSize("KeepBack").x + 4 * ImGui::GetStyle().FramePadding.x + 12 * s;
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(tried_text(session).c_str());
+  clipped_text(tried_text(session), std::max(view.width - cube - buttons - 36 * s, 76 * s));
   note_widget(ui.widgets, "explored");
   std::string help = session.mode == Mode::build
                          ? "Tried while exploring and put aside while building; saving leaves it out."

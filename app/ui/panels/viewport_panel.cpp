@@ -76,11 +76,11 @@ void ViewportPanel::draw(const ViewContext& context, const DialogState& dialog, 
   caption(context.session, context.ui, rect);
   status_chip(context.session, context.ui, rect);
   explored_chip(context.session, context.ui, dialog, rect);
-  view_lines(context, age, log, rect); // clear of both
+  tool_strip(context.session, context.ui, context.tool, rect);
+  legend_.draw(context, rect);         // clear of both
+  view_lines(context, age, log, rect); // and these of all
   ImGui::End();
   if (!load_tooltip(context, input)) part_label(context);
-  tool_strip(context.session, context.ui, context.tool, rect);
-  legend_.draw(context, rect);
   error_line(context.session, context.ui, context.view, rect);
   joint_card(context, input);
   problem_banner(context.session, context.ui, commands, rect);
