@@ -3,6 +3,7 @@
 #include "app/plot/branch_plot.hpp"
 #include "app/plot/resonance_plot.hpp"
 #include "app/plot/ribbon_plot.hpp"
+#include "app/session/parameter_list.hpp"
 #include "app/session/response_quantity.hpp"
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
@@ -22,11 +23,13 @@ namespace flyball {
 namespace {
 
 constexpr std::size_t most_curves = 12; // sliders that are followed
+constexpr std::size_t most_unasked = 4; // numbers, where there are no sliders
 constexpr int most_modes = 20;
 constexpr int motions_in_order = 25, most_motions = 65; // points of a curve of periodic motions
 constexpr long most_evaluations = 2'500'000;            // of the equations of motion, for such a curve
 
-// Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice.
+// Over what curves are drawn: the sliders, or else the speeds of the drives from standstill to twice, torques
+// and loads, and named parameters, as the window has sliders for of its own accord.
 std::vector<Slider> curve_parameters(const Mechanism& m) {
   std::vector<Slider> out(m.sliders.begin(), m.sliders.begin() + static_cast<std::ptrdiff_t>(std::min(
                                                                      m.sliders.size(), most_curves)));
@@ -39,6 +42,13 @@ std::vector<Slider> curve_parameters(const Mechanism& m) {
           {.parameter = drive_speed_address(joint, i), .from = 0, .to = 2 * drive->speed, .description = ""});
     }
   }
+  const std::vector<ParameterControl> controls = parameter_controls(m, m);
+  for (const ParameterGroup group : {ParameterGroup::drives, ParameterGroup::named})
+    for (const ParameterControl& control : controls)
+      if (control.group == group && out.size() < most_unasked &&
+          std::ranges::find(out, control.address, &Slider::parameter) == out.end())
+        out.push_back(
+            {.parameter = control.address, .from = control.from, .to = control.to, .description = ""});
   return out;
 }
 

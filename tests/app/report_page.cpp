@@ -194,6 +194,20 @@ TEST_CASE(
   CHECK_FALSE(contents_of("pendulum").periodic);
 }
 
+TEST_CASE("without sliders a report has the curves of what drives are given, and of named parameters") {
+  Mechanism m = load_scene(std::string(FLYBALL_ASSETS) + "/scenes/governor_engine.json");
+  m.sliders.clear();
+  const ReportContents contents = report_contents(std::make_shared<const Mechanism>(m), {});
+  std::vector<std::string> over;
+  for (const ReportCurve& curve : contents.curves) {
+    over.push_back(curve.over.parameter);
+    CHECK_FALSE(curve.plots.empty());
+  }
+  REQUIRE_FALSE(over.empty());
+  CHECK(over.front() == "joints.spin.drive.load");
+  CHECK(std::ranges::find(over, "parameters.gain") != over.end());
+}
+
 TEST_CASE(
     "a report of a steady state that hunts tells its limit cycle, and its curves are of steady states") {
   Mechanism m = load_scene(std::string(FLYBALL_ASSETS) + "/scenes/governor_engine.json");
