@@ -181,7 +181,7 @@ TransmittedForces Equations::reactions() {
     const Eigen::MatrixXd scaled =
         model_.scaling.row.asDiagonal() * linearization_.constraint * model_.scaling.column.asDiagonal();
     ConstraintSpace space;
-    space.factor(scaled, 1e-9);
+    space.factor(scaled, 1e-9, row_rounding);
     const Eigen::VectorXd total = linearization_.constraint.transpose() * lambda_;
     lambda = space.least_norm_multipliers(total.cwiseProduct(model_.scaling.column))
                  .cwiseProduct(model_.scaling.row);
@@ -200,7 +200,7 @@ Equations::Pencil Equations::pencil() {
   for (int v = 0; v < n_; ++v)
     scaled.col(v) = dense_.gradient().col(v) * model_.scaling.column[v];
   ConstraintSpace space;
-  space.factor(scaled, 1e-9);
+  space.factor(scaled, 1e-9, row_rounding);
   const Eigen::MatrixXd basis = model_.scaling.column.asDiagonal() * space.basis();
   const auto project = [&](const Eigen::MatrixXd& m) {
     return Eigen::MatrixXd(basis.transpose() * m.topLeftCorner(n_, n_) * basis);

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double no_mass = 1e-13;     // relative to what moves with a coordinate
 constexpr double dependent = 1e-9;    // pivots of the constraint rows, of the largest
-constexpr double no_gradient = 1e-13; // of a row by a radian or the reach: rounding
 constexpr double no_stiffness = 1e-9; // relative to the mechanism's stiffest
 constexpr double no_force = 1e-8;     // relative to the terms it is made of
 
@@ -54,7 +53,7 @@ void Equations::choose_rows() {
   linearize_constraints(system_, parameters_, kinematics_, linearization_);
   const Eigen::MatrixXd scaled = model_.scaling.row.asDiagonal() * linearization_.constraint.leftCols(n_) *
                                  model_.scaling.column.asDiagonal();
-  if (largest_size(scaled) <= no_gradient) return; // nothing is held that could move
+  if (largest_size(scaled) <= row_rounding) return; // nothing is held that could move
   PivotedQr qr;
   if (!qr.compute(scaled.transpose())) refuse_numbers();
   for (Eigen::Index i = 0; i < qr.rank(dependent); ++i)

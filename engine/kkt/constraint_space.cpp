@@ -6,7 +6,7 @@
 
 namespace flyball {
 
-void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) {
+void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance, double least) {
   rows_ = static_cast<int>(jacobian.rows());
   n_ = static_cast<int>(jacobian.cols());
   rank_ = 0;
@@ -21,7 +21,7 @@ void ConstraintSpace::factor(const Eigen::MatrixXd& jacobian, double tolerance) 
     basis_.setIdentity(n_, n_);
     return;
   }
-  rank_ = static_cast<int>(qr_.rank(tolerance));
+  rank_ = qr_.pivot(0) > least ? static_cast<int>(qr_.rank(std::max(tolerance, least / qr_.pivot(0)))) : 0;
   basis_.setZero(n_, n_ - rank_);
   basis_.bottomRows(n_ - rank_).setIdentity();
   for (int k = rank_ - 1; k >= 0; --k) {

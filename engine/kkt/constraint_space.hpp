@@ -6,11 +6,14 @@
 
 namespace flyball {
 
+// Of a row by a radian or the reach (Scaling): all that the rows of a joint have that is there twice.
+constexpr double row_rounding = 1e-13;
+
 class ConstraintSpace {
  public:
-  // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest count as zero. Of a Jacobian
-  // with an entry that is not finite nothing is known: its rank counts as zero.
-  void factor(const Eigen::MatrixXd& jacobian, double tolerance);
+  // `jacobian` is scaled: (rows, n). Pivots below `tolerance` times the largest, or below `least`, count as
+  // zero. Of a Jacobian with an entry that is not finite nothing is known: its rank counts as zero.
+  void factor(const Eigen::MatrixXd& jacobian, double tolerance, double least = 0);
 
   int size() const { return n_; }
   int rows() const { return rows_; }

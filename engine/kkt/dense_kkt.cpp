@@ -75,7 +75,7 @@ void DenseKkt::scale_constraints(const Problem& problem, const Evaluation& at, C
   for (int j = 0; j < size_; ++j)
     for (int i = 0; i < rows_; ++i)
       jacobian_(i, j) = linearization.constraint(i, j) * problem.scaling.row[i] * problem.scaling.column[j];
-  space.factor(jacobian_, rank_tolerance(problem, at.residual.phi));
+  space.factor(jacobian_, rank_tolerance(problem, at.residual.phi), row_rounding);
   alone_is_later_ = &space == &alone_;
 }
 

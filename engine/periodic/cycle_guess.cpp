@@ -43,7 +43,7 @@ Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
     linearize_constraints(system, flow.model().parameters, k, l);
     const Scaling& scaling = flow.model().scaling;
     ConstraintSpace space;
-    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9);
+    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9, row_rounding);
     basis = space.basis();
   }
   const Eigen::MatrixXd given = cyclic_directions(system, basis, false),

@@ -16,7 +16,8 @@ StateChart::StateChart(const Problem& problem, MotionState base, double rate, co
     forward<double>(*system_, *parameters_, base_.q, base_.time, k);
     linearize_constraints(*system_, *parameters_, k, l);
     ConstraintSpace space;
-    space.factor(scaling_->row.asDiagonal() * l.constraint * scaling_->column.asDiagonal(), 1e-9);
+    space.factor(scaling_->row.asDiagonal() * l.constraint * scaling_->column.asDiagonal(), 1e-9,
+                 row_rounding);
     rates_ = space.basis();
   }
   places_ = rates_;

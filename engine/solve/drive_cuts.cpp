@@ -55,7 +55,7 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
     evaluate_residual<double>(system, p, q, lambda, k, r);
     evaluate_magnitudes(system, p, q, lambda, k, sizes);
     linearize_constraints(system, p, k, l);
-    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9);
+    space.factor(scaling.row.asDiagonal() * l.constraint * scaling.column.asDiagonal(), 1e-9, row_rounding);
     const Eigen::MatrixXd& basis = space.basis();
     Eigen::VectorXd f = basis * (basis.transpose() * r.f.cwiseProduct(scaling.column));
     if (!first)

@@ -86,7 +86,7 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
       jacobian = scaling.row.asDiagonal() *
                  constraints_of_motion(system, problem.parameters, w.kinematics, l.constraint) *
                  scaling.column.asDiagonal();
-    space.factor(jacobian, rank_tolerance(problem, w.residual.phi));
+    space.factor(jacobian, rank_tolerance(problem, w.residual.phi), row_rounding);
     out.basis = space.basis();
     const Eigen::VectorXd change = scaling.column.cwiseQuotient(problem.scaling.column);
     Eigen::MatrixXd stiffness = change.asDiagonal() * w.dense.stiffness() * change.asDiagonal();

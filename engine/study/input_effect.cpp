@@ -4,7 +4,6 @@ namespace flyball {
 namespace {
 
 constexpr double massless = 1e-13;    // beside the largest inertia
-constexpr double no_gradient = 1e-13; // of a row by a radian or the reach: rounding
 constexpr double consistent = 1e-9;   // what an equation may leave of what it is made of
 constexpr double same_balance = 1e-8; // a balance at another angle of a drive, likewise
 
@@ -98,9 +97,7 @@ void MotionAt::find_multipliers() {
   const System& released = model_.released;
   linearize_constraints(released, model_.parameters, kinematics_, l_);
   constraint_ = model_.scaling.row.asDiagonal() * l_.constraint * column_.asDiagonal();
-  if (constraint_.size() > 0 && constraint_.leftCols(n_).cwiseAbs().maxCoeff() <= no_gradient)
-    constraint_.leftCols(n_).setZero(); // nothing is held that could move
-  space_.factor(constraint_.leftCols(n_), consistent);
+  space_.factor(constraint_.leftCols(n_), consistent, row_rounding);
   at.lambda.setZero(released.rows);
   if (released.rows == 0) return;
   evaluate_residual<double>(released, model_.parameters, at.q, at.lambda, kinematics_, residual_);

@@ -3,6 +3,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/continuation/branches.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
@@ -306,4 +307,34 @@ TEST_CASE("only reactions that redundant loops leave open are not unique") {
   CHECK(std::abs(value(s, "upper") - value(s, "lower")) < 1e-14);
   for (const Reaction& r : solve(shipped("governor")).reactions)
     CHECK_FALSE(r.nonunique);
+}
+
+TEST_CASE("a joint that is there twice holds nothing more", "[loops]") {
+  // Oblique hinges and slides, whose rows of the second are zero but for rounding.
+  std::mt19937 random(22);
+  const auto number = [&] { return uniform(random, -1, 1); };
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 axis = Vec3(number(), number(), number()).normalized(),
+               at = 0.3 * Vec3(number(), number(), number());
+    const bool slide = i % 2 == 0;
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("hub", 1, {0, 0, 0}, {0.05, 0.05, 0.05}),
+                body("m", 0.6, 0.4 * Vec3(number(), number(), number()), {0.03, 0.05, 0.03})};
+    m.joints = {
+        driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), 3.6),
+        dampened(joint(slide ? JointType::prismatic : JointType::revolute, "s", "hub", "m", at, axis), 2)};
+    m.joints[1].coordinates[0].spring = CoordinateSpring{slide ? 200. : 20., 0.1, "", 0};
+    validate(m);
+    const Solution one = Analysis(m).solve();
+    m.joints.push_back(joint(m.joints[1].type, "again", "hub", "m", at + 0.1 * axis, axis));
+    validate(m);
+    const Solution two = Analysis(m).solve();
+    INFO(i << ": " << two.message);
+    REQUIRE(one.status == Status::converged);
+    REQUIRE(two.status == Status::converged);
+    CHECK(two.stable == one.stable);
+    CHECK(std::abs(value(two, "s") - value(one, "s")) < 1e-12);
+    CHECK(std::abs(value(two, "s") - value(one, "s")) < 1e-15 + two.coordinates[1].error);
+  }
 }
