@@ -1,6 +1,7 @@
 #include "app/document/redraw.hpp"
 
 #include "app/document/coordinate_image.hpp"
+#include "app/document/drawn_size.hpp"
 #include "app/document/image.hpp"
 #include "engine/mechanism/bearing_axes.hpp"
 
@@ -12,16 +13,6 @@ namespace {
 
 // What rounding leaves of no motion, in radians and in parts of the mechanism's size.
 constexpr double no_motion = 1e-11;
-
-// Half the diagonal of what holds all bodies.
-double half_diagonal(const Mechanism& mechanism) {
-  Eigen::AlignedBox3d box;
-  for (const Body& body : mechanism.bodies)
-    box.extend(body.position);
-  for (const Joint& joint : mechanism.joints)
-    if (has_at(joint.type)) box.extend(joint.at);
-  return box.isEmpty() ? 1 : std::max(box.diagonal().norm() / 2, 1e-300);
-}
 
 // Where a body has gone; nothing where it has stayed.
 std::optional<Isometry> motion_of(const Body& body, const Pose& pose, double size) {
@@ -38,7 +29,7 @@ class Redraw {
  public:
   Redraw(const Mechanism& mechanism, const MechanismPose& pose) : before_(mechanism), pose_(pose) {
     out_.mechanism = mechanism;
-    const double size = half_diagonal(mechanism);
+    const double size = drawn_size(mechanism);
     for (std::size_t b = 0; b < mechanism.bodies.size(); ++b)
       motions_.push_back(motion_of(mechanism.bodies[b], pose.bodies[b], size));
   }
@@ -86,8 +77,8 @@ class Redraw {
     if (const Isometry* by = motion(bearing.bodies[0])) first = by->linear;
     if (const Isometry* by = motion(bearing.bodies[1])) second = by->linear;
     shift = axes.transpose() * (first.transpose() * shift);
-    if (bearing_size(bearing) == 2) return shift.head<2>().norm() > no_motion * half_diagonal(before_);
-    return shift.norm() > no_motion * half_diagonal(before_) || (first - second).norm() > no_motion;
+    if (bearing_size(bearing) == 2) return shift.head<2>().norm() > no_motion * drawn_size(before_);
+    return shift.norm() > no_motion * drawn_size(before_) || (first - second).norm() > no_motion;
   }
 
   void carry(Force& force) {

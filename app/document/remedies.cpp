@@ -1,9 +1,10 @@
 #include "app/document/remedies.hpp"
 
+#include "app/document/drawn_size.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace flyball {
 
@@ -15,21 +16,6 @@ Coordinate* find(Mechanism& mechanism, const RunawayCoordinate& c) {
   Joint& joint = mechanism.joints[static_cast<std::size_t>(j)];
   const auto i = static_cast<std::size_t>(c.index);
   return i < joint.coordinates.size() ? &joint.coordinates[i] : nullptr;
-}
-
-// The diagonal of the box around bodies and joints (m); 1 where they are in one place.
-double size_of(const Mechanism& mechanism) {
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  const auto add = [&](const Vec3& point) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  };
-  for (const Body& body : mechanism.bodies)
-    add(body.position);
-  for (const Joint& joint : mechanism.joints)
-    if (has_at(joint.type)) add(joint.at);
-  const double size = (high - low).norm();
-  return std::isfinite(size) && size > 0 ? size : 1;
 }
 
 // The nearest of 1, 2 and 5 times a power of ten.
@@ -45,7 +31,7 @@ struct Hold {
 };
 Hold hold_for(const Mechanism& mechanism, const RunawayCoordinate& c) {
   const Joint& joint = mechanism.joints[static_cast<std::size_t>(joint_index(mechanism, c.joint))];
-  Hold hold{is_angle(joint.type, c.index) ? 0.3 : 0.2 * size_of(mechanism), 1000};
+  Hold hold{is_angle(joint.type, c.index) ? 0.3 : 0.2 * drawn_size(mechanism), 1000};
   const double wanted = std::abs(c.force) / hold.give;
   if (std::isfinite(wanted) && wanted > 0) hold.stiffness = rounded(wanted);
   return hold;

@@ -1,5 +1,6 @@
 // A body of the steady state pulled by a spring, which is solved with like any other; no edit. Time stands
 // meanwhile.
+#include "app/document/drawn_size.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools_hand.hpp"
@@ -61,22 +62,15 @@ void move_pull(Session& session, ToolState& tool) {
   ask_pulled(session, grab, pulled(mechanism_of(grab), *grab.pull), {});
 }
 
-// Largest distance of a body from where it was, as a part of the mechanism's size.
+// How far a body is at most from where it was, in radians or parts of the mechanism's size.
 double moved_since(const Mechanism& mechanism, const std::vector<Pose>& before,
                    const std::vector<Pose>& after) {
-  Eigen::AlignedBox3d box;
   double most = 0;
-  for (std::size_t i = 0; i < before.size() && i < after.size(); ++i) {
-    box.extend(before[i].position);
-    most = std::max(most, (after[i].position - before[i].position).norm());
-  }
-  for (const Joint& joint : mechanism.joints)
-    if (has_at(joint.type)) box.extend(joint.at);
-  const double size = box.isEmpty() ? 0 : box.diagonal().norm();
-  double turned = 0;
+  const double size = drawn_size(mechanism);
   for (std::size_t i = 0; i < before.size() && i < after.size(); ++i)
-    turned = std::max(turned, before[i].rotation.angularDistance(after[i].rotation));
-  return std::max(turned, size > 0 ? most / size : 0);
+    most = std::max({most, (after[i].position - before[i].position).norm() / size,
+                     before[i].rotation.angularDistance(after[i].rotation)});
+  return most;
 }
 
 // Where it went once the hand was gone.

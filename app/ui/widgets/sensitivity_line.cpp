@@ -1,5 +1,6 @@
 #include "app/ui/widgets/sensitivity_line.hpp"
 
+#include "app/document/drawn_size.hpp"
 #include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -16,21 +17,6 @@ constexpr float small_text = 0.87f;      // of the panel's
 // Round-off: of the rate that moves most, and over a change of the number by as much as itself (rad or parts
 // of the reach).
 constexpr double nothing = 1e-9;
-
-// The size (m) of the mechanism as drawn.
-double size_of_change(const Mechanism& mechanism) {
-  Vec3 low = Vec3::Constant(1e300), high = -low;
-  const auto add = [&](const Vec3& at) {
-    low = low.cwiseMin(at);
-    high = high.cwiseMax(at);
-  };
-  for (const Body& body : mechanism.bodies)
-    add(body.position);
-  for (const Joint& joint : mechanism.joints)
-    add(joint.at);
-  const double size = (high - low).norm();
-  return size > 0 && std::isfinite(size) ? size : 1;
-}
 
 std::string per(const std::string& of, const std::string& unit) {
   if (unit.empty()) return of;
@@ -67,7 +53,7 @@ std::vector<ShownRate> shown_rates(const Session& session, const std::string& ad
   const auto found = std::ranges::find(solution.sensitivities, address, &Sensitivity::address);
   const auto control = std::ranges::find(session.parameters, address, &ParameterControl::address);
   if (found == solution.sensitivities.end() || control == session.parameters.end()) return out;
-  const double size = size_of_change(*session.answer.mechanism);
+  const double size = drawn_size(*session.answer.mechanism);
   // Rates come in the order of the coordinates: each is looked for from where the last was found.
   auto from = solution.coordinates.begin();
   for (const Sensitivity::Rate& rate : found->rates) {
