@@ -56,6 +56,7 @@ std::string AutosaveSlot::write() {
       if (!former.empty() && former != place) fs::remove(former, ignored); // older
       written_ = work->mechanism;
       const std::lock_guard lock(work_mutex_);
+      if (!former.empty() && former != place) former_.push_back(former);
       path_ = place;
       return {};
     }
@@ -71,8 +72,9 @@ void AutosaveSlot::remove() {
   written_.reset();
   const std::lock_guard lock(work_mutex_);
   std::error_code ignored;
-  if (!path_.empty()) fs::remove(path_, ignored);
-  path_.clear();
+  former_.push_back(std::exchange(path_, {}));
+  for (const fs::path& place : std::exchange(former_, {}))
+    if (!place.empty()) fs::remove(place, ignored);
 }
 
 void AutosaveSlot::take_over(const fs::path& path) {

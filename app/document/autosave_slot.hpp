@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -43,11 +44,12 @@ class AutosaveSlot {
   std::filesystem::path path() const;
 
  private:
-  mutable std::mutex work_mutex_; // of work_ and path_, for moments
+  mutable std::mutex work_mutex_; // of work_, path_ and former_, for moments
   std::mutex writing_;            // while the disk is waited for; taken before work_mutex_
   std::optional<UnsavedWork> work_;
   std::shared_ptr<const Mechanism> written_;
   std::filesystem::path path_;
+  std::vector<std::filesystem::path> former_; // places before: one whose folder was away is removed later
 };
 
 } // namespace flyball

@@ -329,6 +329,27 @@ TEST_CASE("work without a file, or beside a folder that cannot be written to, is
   CHECK(find_leftovers(folder / "another folder/governor.json", settings.state_folder).empty());
 }
 
+TEST_CASE("an autosave whose folder was away for a while goes with the others") {
+  const TemporaryFolder folder;
+  const fs::path stick = folder / "stick", file = stick / "governor.json";
+  fs::create_directory(stick);
+  const AutosaveSettings settings{folder / "state", dead_process()};
+  Document document = edited(file);
+  Autosaver autosaver;
+  run(autosaver, document, settings, 2);
+  const fs::path first = autosaver.path();
+  REQUIRE(first.parent_path() == stick);
+  fs::rename(stick, folder / "pulled");
+  document.edit_number("Set mass", "bodies.collar.mass", 3);
+  run(autosaver, document, settings, 2);
+  REQUIRE(autosaver.path().parent_path() == folder / "state/autosave");
+  fs::rename(folder / "pulled", stick);
+  REQUIRE(fs::exists(first));
+  autosaver.remove(); // it is saved
+  CHECK_FALSE(fs::exists(first));
+  CHECK(find_leftovers(file, settings.state_folder).empty());
+}
+
 TEST_CASE("an autosave that cannot be written says so and is tried again") {
   const TemporaryFolder folder;
   const fs::path blocked = folder / "blocked";

@@ -107,6 +107,16 @@ TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as
   CHECK(fs::path(app.panels->picture.query().path).parent_path() == file.parent_path());
 }
 
+TEST_CASE("a picture of a file of the program's own is called without its two endings") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  robot.open(governor_in(folder, "w.flyball.json"));
+  robot.key('E', true);
+  robot.frames(2);
+  REQUIRE(robot.app.dialog.showing);
+  CHECK(fs::path(robot.app.panels->picture.query().path).filename() == "flyball-w.png");
+}
+
 TEST_CASE("saving over another file is asked about, and a failure loses nothing") {
   const TemporaryFolder folder;
   const fs::path file = governor_in(folder), other = folder / "other.json";

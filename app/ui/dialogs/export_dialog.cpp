@@ -27,8 +27,7 @@ void ExportDialog::open(const Session& session, DialogState& dialog, bool loads)
   loads_ = loads;
   show_folder(query_, usual_folder(session));
   query_.replacing.clear();
-  const std::filesystem::path& file = session.document.file();
-  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
+  const std::string stem = file_stem(session);
   query_.path = (query_.list.shown / ("flyball-" + stem + ".png")).string();
 }
 

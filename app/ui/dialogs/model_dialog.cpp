@@ -12,8 +12,7 @@ void ModelDialog::open(const Session& session, DialogState& dialog) {
   dialog.wanted = Dialog::export_model;
   show_folder(query_, usual_folder(session));
   query_.replacing.clear();
-  const std::filesystem::path& file = session.document.file();
-  query_.path = (file.empty() ? file_stem(session.mechanism().name) : file.stem().string()) + "-model.m";
+  query_.path = file_stem(session) + "-model.m";
 }
 
 void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {

@@ -11,8 +11,7 @@ void ReportDialog::open(const Session& session, DialogState& dialog) {
   dialog.wanted = Dialog::export_report;
   show_folder(query_, usual_folder(session));
   query_.replacing.clear();
-  const std::filesystem::path& file = session.document.file();
-  query_.path = (file.empty() ? file_stem(session.mechanism().name) : file.stem().string()) + "-report.html";
+  query_.path = file_stem(session) + "-report.html";
 }
 
 std::optional<ExportRequest> ReportDialog::draw(Session& session, Ui& ui, DialogState& dialog, bool writing) {

@@ -90,8 +90,7 @@ void PlotDialog::open(const Session& session, DialogState& dialog, PlotToSave as
   save.pixels = {pixels(save.width), pixels(save.height)};
   show_folder(query_, usual_folder(session));
   query_.replacing.clear();
-  const std::filesystem::path& file = session.document.file();
-  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
+  const std::string stem = file_stem(session);
   query_.path = stem + "-" + file_stem(asked.name) + extension_of(save.kind);
   save_ = std::make_shared<PlotSave>(std::move(save));
 }

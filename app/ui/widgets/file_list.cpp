@@ -218,4 +218,11 @@ std::string file_stem(const std::string& words) {
   return stem.empty() ? "untitled" : stem;
 }
 
+std::string file_stem(const Session& session) {
+  const fs::path& file = session.document.file();
+  if (file.empty()) return file_stem(session.mechanism().name);
+  const fs::path stem = file.stem();
+  return (stem.extension() == ".flyball" ? stem.stem() : stem).string();
+}
+
 } // namespace flyball

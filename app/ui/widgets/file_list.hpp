@@ -44,5 +44,8 @@ bool asks_to_replace(const Ui& ui, const FileQuery& query, const std::filesystem
 std::filesystem::path usual_folder(const Session& session);
 // A name for a file from words: "Swing pendulum" is swing_pendulum.
 std::string file_stem(const std::string& words);
+// What files about the document are called: as its own without ".json" or ".flyball.json", or as the
+// mechanism.
+std::string file_stem(const Session& session);
 
 } // namespace flyball

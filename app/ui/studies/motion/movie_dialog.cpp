@@ -197,8 +197,7 @@ void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& 
   movie.problem.clear();
   movie.done = false;
   before_ = movie;
-  const std::filesystem::path& file = session.document.file();
-  const std::string stem = file.empty() ? file_stem(session.mechanism().name) : file.stem().string();
+  const std::string stem = file_stem(session);
   const char* const ending = ffmpeg_available() ? ".mp4" : ".png";
   const std::string which =
       of == Filmed::mode ? "-mode-" + std::to_string(*session.study.modes.chosen + 1) : std::string();
