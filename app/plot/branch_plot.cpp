@@ -57,12 +57,17 @@ Plot branch_plot(const Mechanism& m, const std::string& address, const ResponseD
       if (!curve.points.empty()) plot.curves.push_back(std::move(curve));
     }
   }
+  double largest = 0; // of the varied number, beside which rounding is zero
+  for (const ResponseBranch& b : d.branches)
+    for (const ResponsePoint& point : b.points)
+      largest = std::max(largest, std::abs(point.parameter));
   for (const SpecialPoint& s : d.special) {
     const double value = plotted_value(s.at, shown);
     if (!std::isfinite(value)) continue;
     std::string label(word(s.type));
     std::ranges::replace(label, '_', ' ');
-    plot.marks.push_back({{s.at.parameter, value}, fmt::format("{} {:.5g}", label, s.at.parameter)});
+    const double at = std::abs(s.at.parameter) < 1e-12 * largest ? 0 : s.at.parameter;
+    plot.marks.push_back({{s.at.parameter, value}, fmt::format("{} {:.5g}", label, at)});
   }
   return plot;
 }

@@ -3,6 +3,7 @@
 
 #include "engine/solve/solution.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,8 @@ std::string window_message(const Solution& solution);
 // resists, do not count.
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,
                 const std::vector<std::string>& neutral = {});
+
+// What a drive by torque gives and its load, zero where they are rounding beside what the joints bear.
+std::optional<DriveTorque::Given> told_torque(const Solution& solution, const DriveTorque& drive);
 
 } // namespace flyball

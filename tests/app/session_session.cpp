@@ -1,6 +1,7 @@
 // A session without a window: this program is linked without Dear ImGui and without OpenGL.
 #include "app/session/session.hpp"
 #include "app/session/parameter_list.hpp"
+#include "app/session/state_words.hpp"
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
@@ -135,4 +136,22 @@ TEST_CASE("Session: a study that building has put out of sight is shown again") 
   CHECK(study_shown(session, StudyKind::response));
   open_study(session, StudyKind::response);
   CHECK(session.study.open == StudyKind::none);
+}
+
+TEST_CASE("Session: a torque that is rounding beside what the joints bear is told as zero") {
+  // Without load the law's collar stands where it gives nothing.
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, test::shipped_file("governor_engine"));
+  change_parameter(session, "joints.spin.drive.load", 0);
+  update(session, 0);
+  REQUIRE(converged(session));
+  Solution solution = session.answer.solution;
+  REQUIRE(solution.drive_torques.size() == 1);
+  DriveTorque& drive = solution.drive_torques[0];
+  for (const double rounding : {1e-16, -1e-16}) {
+    drive.given->torque = rounding;
+    CHECK(told_torque(solution, drive)->torque == 0);
+  }
+  drive.given->torque = 1e-6;
+  CHECK(told_torque(solution, drive)->torque == 1e-6);
 }

@@ -1,4 +1,5 @@
 // What acts on each coordinate of a joint: drive, spring, damper, stop, friction; and where it settles.
+#include "app/session/state_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/assembly_edits.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
@@ -113,7 +114,7 @@ struct CoordinateRows {
   std::optional<DriveTorque::Given> given() const {
     if (!converged(session)) return std::nullopt;
     for (const DriveTorque& each : session.answer.solution.drive_torques)
-      if (each.joint == joint.name && each.index == i) return each.given;
+      if (each.joint == joint.name && each.index == i) return told_torque(session.answer.solution, each);
     return std::nullopt;
   }
 

@@ -129,12 +129,13 @@ void add_line(const ResponseLine& line, std::size_t index, const ResponseQuantit
   }
 }
 
-std::string mark_label(const SpecialPoint& special, const ShownUnit& unit) {
+// `largest`: of the varied number on the curve, beside which rounding is zero.
+std::string mark_label(const SpecialPoint& special, const ShownUnit& unit, double largest) {
   std::string label(word(special.type));
   std::ranges::replace(label, '_', ' ');
   if (special.type == SpecialPointType::hopf) label = "Hopf";
-  return label + " " + short_text(unit.shown(special.at.parameter), 6) +
-         (unit.text.empty() ? "" : " " + unit.text);
+  const double at = std::abs(special.at.parameter) < 1e-12 * largest ? 0 : special.at.parameter;
+  return label + " " + short_text(unit.shown(at), 6) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
 // What was found of the band, also while it is found anew for a curve that moves.
@@ -211,7 +212,8 @@ Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& qu
     if (const auto y = quantity_mark(special.at, quantity.key))
       plot.marks.push_back(
           {.at = {special.at.parameter, *y * quantity.factor},
-           .label = mark_label(special, shown_unit(unit, units)),
+           .label =
+               mark_label(special, shown_unit(unit, units), std::max(std::abs(of.from), std::abs(of.to))),
            .shape = special.type == SpecialPointType::branch_point ? PlotShape::diamond : PlotShape::circle});
   return plot;
 }
