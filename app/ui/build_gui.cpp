@@ -72,7 +72,8 @@ void build_gui(App& app) {
   if (app.view.alone) return panels.viewport.draw_alone(app.context(), layout.view);
   // ImGui puts windows that never come to the front behind those it has: the first is the topmost.
   drag_splitters(app.session, app.ui, app.sizes, layout);
-  welcome(app.session, app.ui, app.tool, app.dialog, app.commands, layout.view);
+  if (!panels.tutorial.open) // which says the same at more length
+    welcome(app.session, app.ui, app.tool, app.dialog, app.commands, layout.view);
   panels.viewport.draw(app.context(), app.dialog, app.notice_age, app.notice_log, app.commands, layout.view);
   if (layout.beside.width > 0) panels.viewport.draw_beside(app.context(), layout.beside);
   file_banner(app.session, app.ui, app.dialog, app.report, app.commands, layout.view);

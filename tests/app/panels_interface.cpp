@@ -238,6 +238,17 @@ TEST_CASE("the tutorial of the README is in Help, without its marks") {
   CHECK_THAT(robot.app.session.notice, ContainsSubstring("Flyball ") && ContainsSubstring("MIT license"));
 }
 
+TEST_CASE("over an empty document either the first steps are shown or the tutorial") {
+  Robot robot({1280, 800});
+  robot.begin_empty(1);
+  robot.frames(2);
+  CHECK(robot.app.ui.widgets.contains("welcome/examples"));
+  robot.app.commands.run("help.tutorial");
+  robot.frames(2);
+  CHECK(robot.app.ui.widgets.contains("tutorial/1"));
+  CHECK_FALSE(robot.app.ui.widgets.contains("welcome/examples"));
+}
+
 TEST_CASE("a menu taller than the window opens below its title and scrolls") {
   Robot robot({640, 480});
   App& app = robot.app;
