@@ -28,27 +28,55 @@ struct PeriodSamples {
     const std::size_t n = count();
     return sign * values[(i + n + static_cast<std::size_t>(k + static_cast<int>(n))) % n * stride];
   }
-};
-
-// The greatest value of the polynomial through the seven samples about one, no further than the next ones.
-double crest_about(const PeriodSamples& period, std::size_t at) {
-  if (period.count() < 7) return period.at(at);
-  const auto polynomial = [&](double x) {
+  // The polynomial through the seven samples about the i-th, x samples on, -1 <= x <= 1.
+  double near(std::size_t i, double x) const {
     double sum = 0;
-    for (int i = -3; i <= 3; ++i) {
+    for (int k = -3; k <= 3; ++k) {
       double weight = 1;
       for (int j = -3; j <= 3; ++j)
-        if (j != i) weight *= (x - j) / (i - j);
-      sum += weight * period.at(at, i);
+        if (j != k) weight *= (x - j) / (k - j);
+      sum += weight * at(i, k);
     }
     return sum;
-  };
+  }
+};
+
+// The square of the size of a vector likewise: it is smooth where the size has a kink at zero.
+struct SquareSamples {
+  std::array<PeriodSamples, 3> components;
+  double sign = 1;
+
+  std::size_t count() const { return components[0].count(); }
+  double at(std::size_t i, int k = 0) const {
+    double sum = 0;
+    for (const PeriodSamples& c : components)
+      sum += c.at(i, k) * c.at(i, k);
+    return sign * sum;
+  }
+  double near(std::size_t i, double x) const {
+    double sum = 0;
+    for (const PeriodSamples& c : components) {
+      const double value = c.near(i, x);
+      sum += value * value;
+    }
+    return sign * sum;
+  }
+};
+
+constexpr std::size_t fewest = 7; // samples that make a polynomial
+
+// The greatest value near a sample, no further than the next ones.
+template <class Samples>
+double crest_about(const Samples& period, std::size_t at) {
+  if (period.count() < fewest) return period.at(at);
+  const auto polynomial = [&](double x) { return period.near(at, x); };
   return std::max(golden_section(-1, 1, 1e-9, polynomial).value, period.at(at));
 }
 
 // The highest crest. That need not be the one with the highest sample: of several that are nearly as high
 // samples hit some better than others.
-double highest_crest(const PeriodSamples& period) {
+template <class Samples>
+double highest_crest(const Samples& period) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < period.count(); ++i)
     if (period.at(i) > period.at(best)) best = i;
@@ -69,8 +97,57 @@ PeriodicRange range_with(std::span<const double> values, std::size_t stride) {
   for (std::size_t i = 0; i < n; ++i)
     out.mean += values[i * stride];
   out.mean /= static_cast<double>(n);
-  out.least = -highest_crest({values, stride, -1});
-  out.most = highest_crest({values, stride, 1});
+  out.least = -highest_crest(PeriodSamples{values, stride, -1});
+  out.most = highest_crest(PeriodSamples{values, stride, 1});
+  return out;
+}
+
+// The integral of the size from a sample to the next, over their distance, by five points of Gauss in each of
+// `parts`.
+double size_beyond(const SquareSamples& squares, std::size_t at, int parts) {
+  constexpr std::array<double, 3> place{0, 0.5384693101056831, 0.9061798459386640},
+      weight{0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  double sum = 0;
+  for (int part = 0; part < parts; ++part)
+    for (int k = -2; k <= 2; ++k) {
+      const auto of = static_cast<std::size_t>(std::abs(k));
+      const double x = (part + (1 + (k < 0 ? -place[of] : place[of])) / 2) / parts;
+      sum += weight[of] / 2 * std::sqrt(std::max(0., squares.near(at, x)));
+    }
+  return sum / parts;
+}
+
+// By the trapezoidal rule, or where the size vanishes at a few places or nearly so, and turns in kinks, by
+// Gauss's with shorter steps there.
+double mean_size(const SquareSamples& squares) {
+  const std::size_t n = squares.count();
+  std::vector<double> size(n + 1);
+  for (std::size_t i = 0; i <= n; ++i)
+    size[i] = std::sqrt(squares.at(i % n));
+  double step = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    step = std::max(step, std::abs(size[i + 1] - size[i]));
+  std::size_t small = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    small += std::min(size[i], size[i + 1]) < step;
+  const bool smooth = *std::ranges::min_element(size) > 8 * step, rough = small > n / 16; // rounding
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    sum += smooth || rough || n < fewest
+               ? size[i]
+               : size_beyond(squares, i, std::min(size[i], size[i + 1]) < step ? 64 : 1);
+  return sum / static_cast<double>(n);
+}
+
+PeriodicRange size_with(const std::array<std::vector<double>, 3>& components, std::size_t stride) {
+  SquareSamples squares;
+  for (std::size_t c = 0; c < components.size(); ++c)
+    squares.components[c] = {components[c], stride};
+  PeriodicRange out;
+  out.mean = mean_size(squares);
+  out.most = std::sqrt(std::max(0., highest_crest(squares)));
+  squares.sign = -1;
+  out.least = std::sqrt(std::max(0., -highest_crest(squares)));
   return out;
 }
 
@@ -196,21 +273,8 @@ PeriodicRange range_over_period(std::span<const double> values) {
 }
 
 PeriodicRange size_over_period(const std::array<std::vector<double>, 3>& components) {
-  const std::size_t count = components[0].size();
-  std::vector<double> size(count), square(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    size[i] = std::hypot(components[0][i], components[1][i], components[2][i]);
-    square[i] = size[i] * size[i];
-  }
-  PeriodicRange out = range_over_period(size);
-  const PeriodicRange squares = range_over_period(square);
-  const auto root = [](double x) { return std::sqrt(std::max(0., x)); };
-  const double least = root(squares.least), most = root(squares.most);
-  // Of the root: as far as the square's error makes it differ.
-  out.error = std::max(
-      {out.error, root(squares.least + squares.error) - least, most - root(squares.most - squares.error)});
-  out.least = least;
-  out.most = most;
+  PeriodicRange out = size_with(components, 1);
+  out.error = largest_difference(out, size_with(components, 2)) + rounding * out.most;
   return out;
 }
 

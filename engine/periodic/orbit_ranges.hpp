@@ -14,8 +14,8 @@ namespace flyball {
 // samples would have told otherwise.
 PeriodicRange range_over_period(std::span<const double> values);
 
-// The same of the size of a vector with these components. Extremes are those of its square, which is smooth
-// where the size has a kink at zero.
+// The same of the size of a vector with these components, by polynomials through these: the size itself has
+// a kink where it vanishes.
 PeriodicRange size_over_period(const std::array<std::vector<double>, 3>& components);
 
 // Fills coordinates, torques, what joints, bearings and gears bear, and measures, in the run's order. Loads
