@@ -27,7 +27,7 @@ PeriodicState find_cycle_of(const PeriodicRequest& request, const TaskContext<Pe
 }
 
 std::optional<PeriodicRequest> cycle_request(const Session& session) {
-  if (!session.study.periodic.cycle_wanted || !hunts(session)) return std::nullopt;
+  if (!session.study.periodic.cycle_wanted || !may_cycle(session)) return std::nullopt;
   return PeriodicRequest{{session.answer.mechanism}};
 }
 
@@ -107,6 +107,16 @@ void show_periodic_motion(Session& session, const PeriodicState& state) {
 
 bool hunts(const Session& session) {
   return converged(session) && session.answer.mechanism && hunts(session.answer.solution);
+}
+
+bool may_cycle(const Session& session) {
+  const LiveAnswer& answer = session.answer;
+  if (!answer.mechanism || answer.error) return false;
+  if (answer.solution.status != Status::not_converged) return hunts(session);
+  return std::ranges::any_of(answer.mechanism->joints, [](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates,
+                               [](const Coordinate& c) { return c.drive && c.drive->torque; });
+  });
 }
 
 void find_cycle(Session& session, bool wanted) {

@@ -1,6 +1,6 @@
 // Periodic motions: the one that takes the steady state's place where a drive makes the balance turn, and,
-// where a person asks for it, the limit cycle beside a steady state that swings more and more. Nothing else
-// is computed where there is a steady state.
+// where a person asks for it, the limit cycle: beside a steady state that swings more and more, or of what
+// torques drive and no steady state is found of.
 #pragma once
 
 #include "app/session/shared_mechanism.hpp"
@@ -36,8 +36,11 @@ const PeriodicState* periodic_motion(const Session& session);
 // The motion's run begins in it and lasts for two periods, so that the plots have it.
 void show_periodic_motion(Session& session, const PeriodicState& state);
 
-// Whether the steady state that is shown is left by swings that grow: then a limit cycle can be asked for.
+// Whether the steady state that is shown is left by swings that grow.
 bool hunts(const Session& session);
+// Whether a limit cycle can be asked for: where it hunts, and where what torques drive has no steady state,
+// as a crank whose speed swings with every turn.
+bool may_cycle(const Session& session);
 void find_cycle(Session& session, bool wanted);
 // Of the state that is shown, or of the one before while that is looked for; null: not asked. One that is not
 // found says why.

@@ -1,7 +1,9 @@
 // The response where the balance turns: periodic motions over a number, as a person uses them; and the limit
 // cycle beside a steady state that hunts.
 #include "robot.hpp"
+#include "slider_crank.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/plot/csv.hpp"
 #include "app/session/resonance.hpp"
 #include "app/ui/commands.hpp"
@@ -276,4 +278,26 @@ TEST_CASE("the limit cycle is asked for by the palette, and goes where the dampe
   CHECK_FALSE(limit_cycle(app.session));
   CHECK_FALSE(app.commands.enabled(command("study.cycle")));
   CHECK(app.ui.widgets.count("results/cycle") == 0);
+}
+
+TEST_CASE("the motion of a crank that a torque drives is found when it is asked for") {
+  Robot robot({1280, 1000});
+  App& app = robot.app;
+  Mechanism m = Document::empty_mechanism();
+  add_driven_slider_crank(m, 20);
+  m.joints.front().coordinates.front().drive->torque = 0;
+  set_expression(m, "joints." + m.joints.front().name + ".drive.torque",
+                 "60 N m - 3 N m s*rate(" + m.joints.front().name + ")");
+  open_document(app.session, Document(m));
+  set_mode(app.session, Mode::explore);
+  robot.frames(3);
+  REQUIRE(app.session.answer.solution.status == Status::not_converged);
+  REQUIRE(app.commands.enabled(command("study.cycle")));
+  robot.click("results/cycle");
+  robot.frames(3);
+  const PeriodicState* cycle = limit_cycle(app.session);
+  REQUIRE(cycle);
+  CHECK(cycle->status == PeriodicStatus::found);
+  CHECK(cycle->period == Approx(2 * std::numbers::pi / 20).epsilon(0.05));
+  CHECK(app.ui.widgets.contains("results/cycle/motion"));
 }

@@ -95,17 +95,17 @@ const std::array study_commands{
             .lacks = "there is no part yet."},
     Command{.id = "study.cycle",
             .title = "Find the limit cycle",
-            .help = "Where the steady state is left by swings that grow: the motion that they come to, "
-                    "in the results.",
+            .help = "Where the steady state is left by swings that grow, or torques drive and there is "
+                    "none: the motion that it comes to, in the results.",
             .run =
                 [](App& app) {
                   find_cycle(app.session, !app.session.study.periodic.cycle_wanted);
                   set_mode(app.session, Mode::explore);
                 },
-            .enabled = of_session<hunts>,
+            .enabled = of_session<may_cycle>,
             .checked = [](const App& app) { return app.session.study.periodic.cycle_wanted; },
             .words = "hunting",
-            .lacks = "the steady state has no swings that grow."},
+            .lacks = "there is a steady state, and it has no swings that grow."},
     Command{.id = "study.export",
             .title = "Export the run…",
             .help = "Save the motion that is shown as a film: MP4, GIF or numbered pictures.",

@@ -177,13 +177,15 @@ void periodic_results(Session& session, Ui& ui, ResultSections& open) {
 }
 
 void cycle_offer(Session& session, Ui& ui) {
-  if (!hunts(session)) return;
+  if (!may_cycle(session)) return;
   const auto& search = session.study.periodic.cycle;
   const bool wanted = session.study.periodic.cycle_wanted;
   if (check_row(
           ui, "results/cycle", "Find the limit cycle", wanted,
-          "Swings about this state grow: looks for the motion, with a period of its own, that they come "
-          "to, and follows it as numbers change."))
+          (std::string(hunts(session) ? "Swings about this state grow" : "Torques drive it") +
+           ": looks for the motion, with a period of its own, that it comes to, and follows it as numbers "
+           "change.")
+              .c_str()))
     find_cycle(session, !wanted);
   const PeriodicState* state = limit_cycle(session);
   if (search.running()) {
