@@ -475,8 +475,7 @@ TEST_CASE("friction that cannot be is refused") {
   };
   CHECK(mistake(R"({"limit": 1})").empty());
   CHECK_THAT(mistake(R"({"limit": 1})", R"(, "drive": {"speed": 1})"), ContainsSubstring("only the drive"));
-  CHECK_THAT(mistake(R"({"limit": 1})", R"(, "drive": {"torque": 1, "speed": 1})"),
-             ContainsSubstring("tanh(rate(j)"));
+  CHECK(mistake(R"({"limit": 1})", R"(, "drive": {"torque": 1, "speed": 1})").empty());
   CHECK(mistake(R"({"mu": 0.1, "preload": 20, "radius": 0.01})").empty());
   CHECK_THAT(mistake(R"({})"), ContainsSubstring("expected `limit`, or `mu` and `preload`"));
   CHECK_THAT(mistake(R"({"limit": 1, "mu": 0.1})"), ContainsSubstring("expected `limit` alone"));
