@@ -479,8 +479,6 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
   return std::nullopt;
 }
 
-constexpr const char* without_friction = "Without friction there is no steady state. ";
-
 } // namespace
 
 std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
@@ -561,7 +559,6 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
   std::vector<Part> at_start;
   for (const CoordinateReference& at : frictions)
     at_start.push_back(part_at_start(mechanism, at));
-  const bool turned = std::ranges::any_of(at_start, is_slipping);
   std::ranges::stable_sort(all, std::greater(), [&](const FrictionParts& parts) { // as it begins goes first
     int count = 0;
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -574,7 +571,6 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
       if (slip_search > 0 && !any_slips(parts)) continue;
       auto state = solve_with_parts(mechanism, parts, options, slip_search);
       if (!state || !state->goes) continue;
-      if (!turned) state->solution.message.insert(0, without_friction); // else there may be one
       if (!any_slips(parts) || state->solution.stable != false) return state;
       if (!unstable) unstable = std::move(state);
     }

@@ -82,9 +82,8 @@ class FrictionFollower {
     if (runs.empty()) return;
     const std::string count =
         std::to_string(runs.size()) + (runs.size() == 1 ? " branch rests" : " branches rest");
-    out_.message = out_.status == Status::converged
-                       ? out_.message + " " + count + " on friction."
-                       : count + " on friction: without it there is no steady state.";
+    out_.message = out_.status == Status::converged ? out_.message + " " + count + " on friction."
+                                                    : count + " on friction; no others were found.";
     out_.status = Status::converged;
   }
 
