@@ -7,14 +7,14 @@ namespace {
 
 class Collector {
  public:
-  void add(const Vec3& point, Part part, std::string what, const std::string& named = {}) {
+  void add(const Vec3& point, Part part, std::string what, const std::string& named = {}, bool face = false) {
     if (!point.allFinite()) return;
     if (SnapPoint* other = there(point)) {
       if (other->named.empty()) other->named = named;
       return;
     }
     along_.emplace(direction().dot(point), all_.size());
-    all_.push_back({point, std::move(part), std::move(what), named});
+    all_.push_back({point, std::move(part), std::move(what), named, face});
   }
   std::vector<SnapPoint> take() { return std::move(all_); }
 
@@ -55,7 +55,8 @@ std::vector<SnapPoint> snap_points(const Mechanism& mechanism) {
     for (const Shape& shape : body.shapes)
       if (shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule)
         for (const Vec3& point : {shape.from, shape.to})
-          all.add(point, {PartKind::body, body.name}, "end of " + body.name);
+          all.add(point, {PartKind::body, body.name}, "end of " + body.name, {},
+                  (shape.to - shape.from).norm() < 2 * shape.radius);
   for (const NamedPoint& point : mechanism.points)
     all.add(point.at, {}, "point " + point.name, point.name);
   all.add(Vec3::Zero(), {}, "origin");

@@ -13,6 +13,7 @@ struct SnapPoint {
   Part part;                 // whose it is
   std::string what;          // "arm1", "centre of ball1", "end of rod1", "point A", "origin"
   std::string named{};       // the named point that is there
+  bool face = false;         // of a disc, which gives way to the disc's centre
 };
 
 // Joints' points, mass centres, ends of springs and distance joints, ends of bodies' rods, named points, and

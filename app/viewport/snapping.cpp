@@ -14,14 +14,16 @@ constexpr double same_place = 0.5; // pixels
 const SnapPoint* snap_point(std::span<const SnapPoint> points, const ViewCamera& camera, ViewSize view,
                             Vec2 cursor, double reach) {
   const SnapPoint* best = nullptr;
-  double nearest = reach, front = 0;
+  double nearest = 1.5 * reach, front = 0;
   for (const SnapPoint& candidate : points) {
     const auto pixel = camera.project(candidate.point, view);
     if (!pixel) continue;
-    const double gap = (*pixel - cursor).norm();
+    double gap = (*pixel - cursor).norm();
+    if (gap > reach) continue;
+    if (candidate.face) gap += reach / 2;
     const double toward = camera.backward().dot(candidate.point - camera.target);
     const bool nearer = gap < nearest - same_place || (gap <= nearest + same_place && toward > front);
-    if (gap > reach || (best && !nearer)) continue;
+    if (best && !nearer) continue;
     best = &candidate;
     nearest = gap;
     front = toward;

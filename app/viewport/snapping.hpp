@@ -12,7 +12,8 @@ namespace flyball {
 inline constexpr double snap_reach = 10; // points of the picture around a point that catches the cursor
 
 // The point whose picture is nearest to the cursor, within `reach` pixels; of those that coincide in the
-// picture the one nearest to the eye. Null where there is none.
+// picture the one nearest to the eye. A disc's face is meant only where the cursor is off what lies beside
+// it. Null where there is none.
 const SnapPoint* snap_point(std::span<const SnapPoint> points, const ViewCamera& camera, ViewSize view,
                             Vec2 cursor, double reach);
 

@@ -49,6 +49,25 @@ TEST_CASE("of points behind each other the nearest one to the eye is meant") {
   CHECK_FALSE(snap_point(unseen, camera, view, {400, 300}, 1e9));
 }
 
+TEST_CASE("from the front a disc is caught by its centre, off that by its face") {
+  const ViewCamera camera = front();
+  for (const double x : {0., 0.3}) { // seen in perspective the face is beside the centre
+    const std::vector<SnapPoint> points{{{x, 0, 0}, {}, "centre"}, {{x, 0, 0.005}, {}, "face", {}, true}};
+    for (const SnapPoint& each : points) {
+      const SnapPoint* found = snap_point(points, camera, view, *camera.project(each.point, view), 10);
+      REQUIRE(found);
+      CHECK(found->what == "centre");
+    }
+  }
+  // Obliquely it is a place of its own.
+  ViewCamera side = front();
+  side.azimuth = 1;
+  const std::vector<SnapPoint> points{{{0, 0, 0}, {}, "centre"}, {{0, 0, 0.05}, {}, "face", {}, true}};
+  const SnapPoint* found = snap_point(points, side, view, *side.project({0, 0, 0.05}, view), 10);
+  REQUIRE(found);
+  CHECK(found->what == "face");
+}
+
 TEST_CASE("grid steps are 1, 2 or 5 of a power of ten") {
   CHECK(step_above(0.011) == 0.02);
   CHECK(step_above(0.01) == 0.01);
