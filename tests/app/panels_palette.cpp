@@ -258,3 +258,14 @@ TEST_CASE("a whole word of what a command does goes before letters that are scat
   // First letters of words are no scattered ones.
   CHECK(fuzzy_match("sos", "speed of spin", "").score > word);
 }
+
+TEST_CASE("a command that is not possible now comes before what has its letters somewhere") {
+  Finder robot;
+  REQUIRE_FALSE(robot.app.commands.enabled(command("study.cycle")));
+  robot.find("limit");
+  CHECK(robot.entry().name == "study.cycle");
+  robot.key(key_escape);
+  robot.frames(2);
+  robot.find("save"); // what is possible comes first among what answers alike
+  CHECK(robot.entry().enabled);
+}

@@ -17,7 +17,9 @@ namespace flyball {
 namespace {
 
 constexpr std::size_t most_entries = 200;
-constexpr int recently_used = 30, disabled_command = -1000; // added to how well it answers
+// Added to how well it answers: a command that is not possible now comes before letters that are scattered
+// over a name.
+constexpr int recently_used = 30, disabled_command = -50;
 
 std::string words_of_address(std::string address) {
   std::ranges::replace(address, '.', ' ');
