@@ -45,6 +45,19 @@ TEST_CASE("renaming takes every reference along and refuses names that are taken
   CHECK(hand.app.session.mistakes.empty());
 }
 
+TEST_CASE("a right click on a row brings the menu of the part, as in the view") {
+  Hand hand;
+  const WidgetRect row = hand.widget("outline/bodies/ball1");
+  hand.click(row.center(), 1);
+  hand.frames(3);
+  CHECK(hand.app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
+  for (const char* item : {"edit.rename", "edit.copy", "view.hide", "view.fit_selected", "view.loads"})
+    CHECK(hand.app.ui.widgets.contains(std::string("view/menu/") + item));
+  hand.click("view/menu/view.hide");
+  hand.frames(2);
+  CHECK(hand.app.view.hidden == std::vector{Part{PartKind::body, "ball1"}});
+}
+
 TEST_CASE("the outline selects one, some and a range, and shows what is pointed at") {
   Hand hand;
   hand.click("outline/bodies/spindle");

@@ -116,6 +116,8 @@ void free_body_item(Session& session, Ui& ui, ViewState& view) {
   help_on_hover("What acts on this body alone in the steady state; it adds up to zero.");
 }
 
+} // namespace
+
 void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& commands) {
   const Selection selection = session.selection(); // a copy, as what is chosen may change it
   const Mechanism& mechanism = session.mechanism();
@@ -144,6 +146,8 @@ void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& 
   ImGui::Separator();
   command_items(ui, commands, {"view.fit_selected", "view.hide", "view.isolate", "view.show_all"});
 }
+
+namespace {
 
 void view_items(const Session& session, Ui& ui, const CommandRunner& commands) {
   menu_title(ui, "View", "");

@@ -8,6 +8,9 @@ namespace flyball {
 
 class CommandRunner;
 
+// The lines of the menu of the selected parts, of which there are some, wherever that opens.
+void part_items(Session& session, Ui& ui, ViewState& view, const CommandRunner& commands);
+
 class ContextMenu {
  public:
   // In the view's window. A part under the cursor is selected first.

@@ -5,6 +5,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/panels/context_menu.hpp"
 #include "app/ui/view_state.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
 #include "app/ui/widgets/typed_field.hpp"
@@ -151,19 +152,19 @@ void choose(Outline& outline, const Part& part) {
   later(outline.ui, [&session = outline.session, selection] { select(session, selection); });
 }
 
-void row_menu(Session& session, Ui& ui, const CommandRunner& commands, const Part& part) {
-  if (!ImGui::BeginPopupContextItem()) return;
-  if (ImGui::IsWindowAppearing() && !session.selection().has(part))
-    later(ui, [&session, part] { select(session, {{part}}); });
-  for (const char* id : {"edit.rename", "edit.duplicate", "edit.mirror", "edit.circular", "edit.delete"}) {
-    const Command& wanted = command(id);
-    const std::string keys = key_text(wanted.key);
-    if (ImGui::MenuItem(wanted.title, keys.c_str(), false, commands.enabled(wanted)))
-      later(ui, [commands, id] { commands.run(id); });
-    note_widget(ui.widgets, std::string("outline/menu/") + id);
-    help_on_hover(wanted.help);
+// The same as in the view.
+void row_menu(const Outline& outline, const Part& part) {
+  Session& session = outline.session;
+  const float s = outline.ui.scale;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 8 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 6 * s}); // that of the rows is none
+  if (ImGui::BeginPopupContextItem()) {
+    if (ImGui::IsWindowAppearing() && !session.selection().has(part))
+      later(outline.ui, [&session, part] { select(session, {{part}}); });
+    if (session.selection().has(part)) part_items(session, outline.ui, outline.view, outline.commands);
+    ImGui::EndPopup();
   }
-  ImGui::EndPopup();
+  ImGui::PopStyleVar(2);
 }
 
 // The body's colour, or what kind of part it is.
@@ -263,7 +264,7 @@ void part_row(Outline& outline, PartId id) {
       start_typing(session, ui, field, name);
     });
   if (takes_menu_key(outline.ui, widget)) ImGui::OpenPopup(ImGui::GetItemID());
-  row_menu(outline.session, outline.ui, outline.commands, part);
+  row_menu(outline, part);
   ImGui::PopID();
   draw_row(outline, id, part, from, width, hovered);
   ImGui::SetCursorScreenPos({from.x, from.y + outline.height});
