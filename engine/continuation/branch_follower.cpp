@@ -40,6 +40,21 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
 
 namespace {
 
+// Whether a coordinate is at a stop of its own, which it touches or leaves there.
+bool stands_at_stop(const Problem& problem, const Eigen::VectorXd& q) {
+  constexpr double at = 1e-6; // scaled
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0 || link.type == LinkType::spherical || finds_speed(link)) continue;
+    const CoordinateForce& force = problem.parameters.links[l].force[0];
+    const double near = at * problem.scaling.column[link.v];
+    if ((force.has_lower && std::abs(q[link.q] - force.lower) < near) ||
+        (force.has_upper && std::abs(q[link.q] - force.upper) < near))
+      return true;
+  }
+  return false;
+}
+
 std::string infinite_rate_text(const InfiniteRate& error) {
   return std::string("a number changes at an infinite rate there: ") + error.what();
 }
@@ -89,6 +104,10 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   point.singular_loops = at_singular_loops(problem, z, w);
   Stability stability = find_stability(at, details.eigenvalues);
   if (sign_is_open(at, stability)) leave_open(stability);
+  if (point.singular_loops) { // along their tangents more moves than can (leave_out_modes() of report/)
+    stability.eigenvalues.reset();
+    if (stability.stable == false) leave_open(stability);
+  }
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;
@@ -352,7 +371,9 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       const bool ends = position(state.parameter) > 0.5;
       const double border = ends ? to_ : from_;
       if (impossible.empty()) {
-        out.end = "the corrector fails: the loops lock or a part of the mechanism becomes singular";
+        out.end = stands_at_stop(family_.problem(), state.z.q)
+                      ? "a stop is reached, where the curve turns back"
+                      : "the corrector fails: the loops lock or a part of the mechanism becomes singular";
       } else if (std::abs(state.parameter - border) < at_border * family_.scale()) {
         land_on_border(state, border, out);
         out.end = ends ? "the end of the range" : "the beginning of the range";
@@ -408,8 +429,11 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
 
 void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
                                    const Described& now, const Described& then, FollowedBranch& out) {
-  int explained = 0; // eigenvalues that go through zero
-  if (!families_ && state.turning * next.turning < 0) {
+  if (now.point.singular_loops && then.point.singular_loops) return; // of a balance that says nothing
+  constexpr double rounding = 1e-9; // of a tangent, as along a family at one value of the parameter
+  int explained = 0;                // eigenvalues that go through zero
+  if (!families_ && state.turning * next.turning < 0 &&
+      std::max(std::abs(state.turning), std::abs(next.turning)) > rounding) {
     // At a crossing the tangent can jump; a fold's own balance stays regular.
     const BranchState at =
         locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s, double) {

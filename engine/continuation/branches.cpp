@@ -147,8 +147,13 @@ class Diagram {
       return;
     }
     out_.status = Status::converged;
-    if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) follower_.expect_families();
-    if (const auto first = follower_.begin(found.z, from_, true)) {
+    std::optional<BranchState> first;
+    if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) {
+      first = begin_beside(start);
+      if (!first) follower_.expect_families();
+    }
+    if (!first) first = follower_.begin(found.z, from_, true);
+    if (first) {
       FollowedBranch branch = follower_.follow(*first, true);
       if (first->parameter != from_) { // it could not begin there itself
         BranchState border = *first;
@@ -161,6 +166,29 @@ class Diagram {
     } else
       out_.message = "The start is a singular state; begin beside it.";
     if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
+  }
+
+  // Where nothing resists some direction at the beginning of the range alone, as of a load that begins at
+  // zero: from a state a little inside. None where it is so there, too.
+  std::optional<BranchState> begin_beside(const Eigen::VectorXd& start) {
+    constexpr double inside = 1e-6; // of the range
+    const double value = from_ + inside * (to_ - from_);
+    std::optional<BranchState> out;
+    try {
+      const Problem problem = follower_.problem_at(value);
+      Workspace& w = follower_.workspace();
+      Found found;
+      std::vector<double> history;
+      find_equilibrium(problem, start, true, false, w, history, found);
+      if (found.status == Status::converged &&
+          check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q), w)
+              .holds &&
+          find_stability(factor_at(problem, found.z, w), false).neutral.empty())
+        out = follower_.begin(found.z, value, true);
+    } catch (const SceneError&) { // no mechanism can be made there
+    }
+    follower_.problem_at(from_);
+    return out;
   }
 
   // With what turns at other angles than drawn, where drives give torques.

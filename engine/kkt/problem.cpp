@@ -68,7 +68,7 @@ double found_speed_unit(const System& system, const Parameters& p, const Link& l
 }
 
 double largest_found_speed(const Problem& problem, const Link& link) {
-  return 1e4 * problem.scaling.column[link.v];
+  return 1e8 * problem.scaling.column[link.v];
 }
 
 void set_scaling(const System& system, const Parameters& p, Scaling& out) {

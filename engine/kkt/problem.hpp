@@ -47,7 +47,8 @@ struct Problem {
 // beside what others have either would be lost.
 Scaling motion_scaling(const Problem& problem);
 
-// Up to which a speed that is found is followed, rad/s or m/s: ten thousand times what it is measured by.
+// Up to which a speed that is found is followed, rad/s or m/s: far above what it is measured by, since a
+// search may begin almost at rest.
 double largest_found_speed(const Problem& problem, const Link& link);
 
 // Pivots of the constraints below this, of the largest, belong to dependent rows: where the loops, whose rows

@@ -391,3 +391,42 @@ TEST_CASE("no curve goes on to numbers that a scene may not have", "[branches]")
     for (const ResponsePoint& p : branch.points)
       CHECK(p.parameter <= 2);
 }
+
+TEST_CASE("what nothing resists at the beginning of a range alone is followed from beside it", "[branches]") {
+  // The slider's own range: without load the last wheel lies anywhere within its play.
+  const ResponseDiagram d = follow_branches(shipped("gear_train"), "parameters.load_c", 0, 8);
+  REQUIRE(!d.branches.empty());
+  CHECK(d.branches[0].end == "the end of the range");
+  CHECK(d.branches[0].points.front().parameter == 0);
+  CHECK(d.branches[0].points.size() > 40);
+}
+
+TEST_CASE("a family at one value of the parameter has no folds", "[branches]") {
+  // A sleeping top, whose spin and precession turn about one axis.
+  const ResponseDiagram d = follow_branches(shipped("free_top"), "joints.precession.drive.speed", 0, 10);
+  REQUIRE(!d.branches.empty());
+  int folds = 0;
+  for (const SpecialPoint& point : d.special)
+    if (point.type == SpecialPointType::fold) ++folds;
+  CHECK(folds <= 1);
+}
+
+TEST_CASE("where loops are singular all along a branch no points are special", "[branches]") {
+  // Arms that hang straight: along either alone more moves than the links let.
+  const ResponseDiagram d = follow_branches(shipped("governor"), speed, 2.2, 22);
+  for (const ResponseBranch& branch : d.branches)
+    for (const ResponsePoint& p : branch.points)
+      if (p.singular_loops) {
+        CHECK(p.eigenvalues.empty());
+        CHECK(p.stable != false);
+      }
+  for (const SpecialPoint& point : d.special)
+    CHECK(std::abs(point.at.parameter - std::sqrt(standard_gravity / 0.16)) > 1e-3);
+}
+
+TEST_CASE("a curve that turns back at a stop says so", "[branches]") {
+  const ResponseDiagram d = follow_branches(shipped("governor_hartnell"), "parameters.k", 2000, 40000);
+  REQUIRE(!d.branches.empty());
+  for (const ResponseBranch& branch : d.branches)
+    CHECK_THAT(branch.end, !ContainsSubstring("singular"));
+}

@@ -4,6 +4,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
@@ -213,6 +214,19 @@ TEST_CASE("an unstable steady speed is left for the stable one that the motion g
     REQUIRE(s.status == Status::converged);
     CHECK(s.stable != false);
     CHECK(s.message.find("goes on without end") == std::string::npos);
+  }
+}
+
+TEST_CASE("a speed is found from almost at rest", "[torque]") {
+  Mechanism m = shipped("governor_engine");
+  const double speed_there = speed(Analysis(m).solve(), "spin");
+  for (const double start : {1e-6, 1e-3, 0.1, 1e3}) {
+    INFO(start << " rad/s");
+    set_parameter(m, "joints.spin.drive.speed", start);
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "spin"), WithinRel(speed_there, 1e-12));
   }
 }
 
