@@ -9,7 +9,7 @@ void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view n
   PlotCurve curve{.name = "slow rise and fall",
                   .points = {},
                   .line = PlotLine::dashed,
-                  .color = plot_color::vermillion,
+                  .color = plot_color::sky_blue,
                   .width = 1.4};
   for (std::size_t i = 0; i < way.size(); ++i)
     curve.points.push_back({points[i].number, way[i].forth});
