@@ -32,7 +32,37 @@ constexpr double least_share = 1e-6;    // of a unit vector: less is rounding
 constexpr int most_ways = 64, most_tries = 4096; // of turning: that are tried, and sets of what stands still
 constexpr double evenly = 1e-4; // of a mean speed: what changes less between two looks has settled
 
-// Of the drives by torque, with what loops and gears move along.
+void append(Eigen::MatrixXd& columns, const Eigen::VectorXd& column) {
+  columns.conservativeResize(column.size(), columns.cols() + 1);
+  columns.rightCols<1>() = column;
+}
+
+// What of a vector is at right angles to these columns.
+Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& way) {
+  if (columns.cols() == 0) return way;
+  const auto shares = least_squares(columns, way);
+  return shares ? Eigen::VectorXd(way - columns * *shares) : way;
+}
+
+// Links of the drives by torque, and then of what loops and gears turn at speeds of their own with them.
+std::vector<int> turning_links(const System& system) {
+  std::vector<int> out;
+  for (const DriveTorqueElement& drive : system.torques)
+    out.push_back(drive.link);
+  for (int l = 0; l < static_cast<int>(system.links.size()); ++l) {
+    const Link& link =
+        system.links[static_cast<std::size_t>(l)]; // a frame that moves freely: see TorqueDriven
+    if (link.v >= 0 && link.frame == l && std::ranges::find(out, l) == out.end()) out.push_back(l);
+  }
+  return out;
+}
+
+Eigen::Index entry_of(const System& system, int link) {
+  return system.links[static_cast<std::size_t>(link)].v;
+}
+
+// Of the drives by torque, with what loops and gears move along, and of what these leave to itself, as the
+// other wheel of a differential.
 Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
   const System& system = flow.model().system;
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system.nv, system.nv);
@@ -50,26 +80,19 @@ Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
                         kept = cyclic_directions(system, basis, true);
   Eigen::MatrixXd out(system.nv, given.cols() + kept.cols());
   out << basis * given, basis * kept;
+  for (const int link : turning_links(system)) {
+    const Eigen::VectorXd way = basis * basis.row(entry_of(system, link)).transpose(),
+                          left = beyond(out, way);
+    if (left.norm() > least_share * std::max(1., way.norm())) append(out, left.normalized());
+  }
   return out;
-}
-
-void append(Eigen::MatrixXd& columns, const Eigen::VectorXd& column) {
-  columns.conservativeResize(column.size(), columns.cols() + 1);
-  columns.rightCols<1>() = column;
-}
-
-// What of a vector is at right angles to these columns.
-Eigen::VectorXd beyond(const Eigen::MatrixXd& columns, const Eigen::VectorXd& way) {
-  if (columns.cols() == 0) return way;
-  const auto shares = least_squares(columns, way);
-  return shares ? Eigen::VectorXd(way - columns * *shares) : way;
 }
 
 // Entries of revolute drives, what loops turn along included, by how far they turn along a direction.
 std::vector<Eigen::Index> drives_by_turn(const System& system, const Eigen::VectorXd& way) {
   std::vector<Eigen::Index> out;
-  for (const DriveTorqueElement& drive : system.torques)
-    if (const Link& link = system.links[static_cast<std::size_t>(drive.link)];
+  for (const int l : turning_links(system))
+    if (const Link& link = system.links[static_cast<std::size_t>(l)];
         link.type == LinkType::revolute && std::abs(way[link.v]) > least_share)
       out.push_back(link.v);
   std::ranges::stable_sort(out, std::greater(), [&](Eigen::Index v) { return std::abs(way[v]); });
@@ -82,7 +105,8 @@ std::vector<Eigen::VectorXd> ways_of_turning(const System& system, const Eigen::
   std::vector<Eigen::VectorXd> out;
   if (space.cols() == 1) out.push_back(space.col(0).normalized());
   if (space.cols() < 2) return out;
-  const auto drives = static_cast<int>(system.torques.size());
+  const std::vector<int> links = turning_links(system);
+  const auto drives = static_cast<int>(links.size());
   const auto still_count = static_cast<int>(space.cols()) - 1;
   std::vector<bool> chosen(static_cast<std::size_t>(drives), false);
   std::fill_n(chosen.begin(), std::min(still_count, drives), true);
@@ -91,8 +115,7 @@ std::vector<Eigen::VectorXd> ways_of_turning(const System& system, const Eigen::
     Eigen::MatrixXd rows(still_count, space.cols());
     Eigen::Index row = 0;
     for (std::size_t d = 0; d < chosen.size() && row < still_count; ++d)
-      if (chosen[d])
-        rows.row(row++) = space.row(system.links[static_cast<std::size_t>(system.torques[d].link)].v);
+      if (chosen[d]) rows.row(row++) = space.row(entry_of(system, links[d]));
     ConstraintSpace still;
     still.factor(rows.topRows(row), 1e-9);
     if (still.basis().cols() != 1) continue; // some move along with others
@@ -144,18 +167,22 @@ Eigen::VectorXd shape_of_swing(Flow& flow, const StateChart& steady, double peri
 }
 
 // Of the drives by torque the greatest of what is told of their links, of those at whose angles the motion
-// does not go on alike if there are such; zero where none turns.
+// does not go on alike if there are such, or else of what turns with them likewise; zero where none turns.
 template <class Told>
 double greatest_of_drives(const Flow& flow, const AlikeAngles& alike, const Told& told) {
-  double greatest = 0, of_alike = 0;
-  for (const DriveTorqueElement& drive : flow.model().system.torques) {
-    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
+  const System& system = flow.model().system;
+  double greatest = 0, of_others = 0, of_alike = 0;
+  for (const int l : turning_links(system)) {
+    const Link& link = system.links[static_cast<std::size_t>(l)];
     if (link.type != LinkType::revolute) continue;
-    const bool matters = alike.anywhere.cols() == 0 || alike.anywhere.row(link.v).norm() < 1e-6;
-    double& most = matters ? greatest : of_alike;
+    const bool matters = alike.anywhere.cols() == 0 || alike.anywhere.row(link.v).norm() < 1e-6,
+               drives =
+                   std::ranges::find(system.torques, l, &DriveTorqueElement::link) != system.torques.end();
+    if (!matters && !drives) continue;
+    double& most = !matters ? of_alike : drives ? greatest : of_others;
     most = std::max(most, std::abs(told(link)));
   }
-  return greatest > 0 ? greatest : of_alike;
+  return greatest > 0 ? greatest : of_others > 0 && alike.anywhere.cols() > 0 ? of_others : of_alike;
 }
 
 // s, of a turn of the fastest of them.
@@ -243,12 +270,16 @@ Eigen::VectorXd mean_speeds(const std::vector<MotionState>& trace) {
 // What is said where the speeds have settled and the motion does not return.
 std::string quasi_periodic_message(const Flow& flow, const AlikeAngles& alike,
                                    const Eigen::VectorXd& speeds) {
+  const System& system = flow.model().system;
   std::vector<std::string> turning;
-  for (const DriveTorqueElement& drive : flow.model().system.torques) {
-    const Link& link = flow.model().system.links[static_cast<std::size_t>(drive.link)];
-    if (!alike.drives.empty() && std::ranges::find(alike.drives, link.v) == alike.drives.end()) continue;
-    if (link.type != LinkType::revolute || (alike.drives.empty() && drive.implied)) continue;
-    const TreeJoint& joint = flow.model().system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  for (const int l : turning_links(system)) {
+    const Link& link = system.links[static_cast<std::size_t>(l)];
+    const bool drives =
+        std::ranges::find(system.torques, l, &DriveTorqueElement::link) != system.torques.end();
+    const bool named =
+        alike.drives.empty() ? drives : std::ranges::find(alike.drives, link.v) != alike.drives.end();
+    if (!named || link.type != LinkType::revolute) continue;
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
     turning.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
                       rounded_text(speeds[link.v], 6) + " rad/s");
   }
