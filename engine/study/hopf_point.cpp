@@ -4,7 +4,10 @@
 #include "engine/continuation/pair_crossing.hpp"
 #include "engine/dynamics/local_motion.hpp"
 #include "engine/dynamics/start.hpp"
+#include "engine/kkt/tied_angles.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/solve/drive_cuts.hpp"
+#include "engine/stability/phase_stiffness.hpp"
 #include "engine/study/lyapunov.hpp"
 #include "engine/system/drive_rates.hpp"
 
@@ -36,6 +39,25 @@ void expect_one_motion(LocalMotion& motion, const Eigen::VectorXcd& swing,
     if (!motion.evaluate(x, times[i], turned[i % turned.size()], there) ||
         !((there - here).norm() <= (1e-9 + 4 * angle_rounding(rates, times[i])) * here.norm()))
       throw NoCoefficient{"the motion beside it turns with the drives"};
+}
+
+// Whether the angle of something that turns at a speed that is found matters, of which LocalMotion knows
+// nothing.
+bool angles_matter(const Mechanism& mechanism, const ResponsePoint& at) {
+  const System system = compile_for_drives(mechanism);
+  if (system.torques.empty()) return false;
+  Parameters parameters;
+  Scaling scaling;
+  bind(system, mechanism, parameters);
+  set_scaling(system, parameters, scaling);
+  const Problem problem{system, parameters, scaling};
+  const Eigen::VectorXd starts = starts_of(problem, at.coordinates);
+  Unknowns z{configuration_of(problem, at.coordinates), {}};
+  for (std::size_t l = 0; l < system.links.size(); ++l)
+    if (finds_speed(system.links[l])) parameters.links[l].start = starts[static_cast<Eigen::Index>(l)];
+  Workspace w;
+  evaluate_with_multipliers(problem, z, w);
+  return loops_tie_angles(problem, w.kinematics) || !phase_stiffness(problem, z, w).entries.empty();
 }
 
 struct Amplitude {
@@ -88,6 +110,9 @@ void find_coefficient(const Mechanism& mechanism, const ResponsePoint& at, doubl
     throw NoCoefficient{"the motion beside it turns with the drives"};
   if (has_friction(mechanism)) throw NoCoefficient{"dry friction holds small motions"};
   if (!(frequency > 0)) throw NoCoefficient{"no pair of eigenvalues swings"};
+  if (angles_matter(mechanism, at))
+    throw NoCoefficient{
+        "it is looked for without the angles of what turns at speeds that are found, which matter"};
   MotionModel model = make_motion_model(mechanism, true);
   if (model.system.nv > most_coordinates)
     throw NoCoefficient{"it is looked for up to " + std::to_string(most_coordinates) + " coordinates"};

@@ -634,6 +634,6 @@ TEST_CASE("where a load that eggs itself on makes two coupled shafts hunt", "[ph
     REQUIRE(p.hopf);
     CHECK_THAT(p.hopf->frequency, WithinRel(frequency, 1e-6));
     CHECK(p.hopf->loss() == HopfLoss::undecided); // the motion beside it is told without its angles
-    CHECK(!p.hopf->reason.empty());
+    CHECK_THAT(p.hopf->reason, ContainsSubstring("without the angles"));
   }
 }
