@@ -134,9 +134,10 @@ std::string to_text(const Mechanism& mechanism, const Comparison& c) {
   if (c.best)
     out += fmt::format(
         "\nThe motion comes nearest with {} at tolerance {:.0e} over {:.4g} s: error {:.1e} after {}.\n"
-        "The direct solution is as near after {}: {:.0f} times sooner.\n",
+        "The direct solution is as near after {}: {:.0f} times {}.\n",
         word(c.best->method), c.best->tolerance, c.best->duration, c.best->error, time_text(c.best->motion_s),
-        time_text(c.best->direct_s), c.best->ratio());
+        time_text(c.best->direct_s), std::max(c.best->ratio(), 1 / c.best->ratio()),
+        c.best->ratio() < 1 ? "later" : "sooner");
   return out;
 }
 

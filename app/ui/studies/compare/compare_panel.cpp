@@ -34,8 +34,10 @@ void found(const Session& session, Ui& ui, const Comparison& c) {
       "The run whose end comes nearest to the reference.");
   row(ui, "its error", magnitude_text(c.best->error, numbers), "");
   ImGui::PushFont(ui.fonts.strong);
-  paragraph("The direct solution is as near " + std::to_string(std::lround(c.best->ratio())) +
-                " times sooner.",
+  const double speed_ratio = c.best->ratio();
+  paragraph("The direct solution is as near " +
+                std::to_string(std::lround(std::max(speed_ratio, 1 / speed_ratio))) +
+                (speed_ratio < 1 ? " times later." : " times sooner."),
             colors.good);
   ImGui::PopFont();
   note_widget(ui.widgets, "compare/ratio");
