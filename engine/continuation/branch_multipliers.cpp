@@ -5,6 +5,9 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/stability/stability.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace flyball {
 namespace {
 
@@ -18,7 +21,7 @@ std::optional<LargestMultiplier> largest_multiplier(const Problem& problem, cons
   const Stability stability = find_stability(factor_at(problem, z, w), false);
   if (!stability.floquet) return {};
   const std::complex<double> mu = stability.floquet->multipliers.front();
-  return LargestMultiplier{std::log(std::abs(mu)), mu};
+  return LargestMultiplier{std::log(std::max(std::abs(mu), stability.floquet->error)), mu}; // 0: a bound
 }
 
 } // namespace

@@ -18,9 +18,11 @@ std::string cut_name(const ReportInput& in, int cut) {
 }
 
 std::string floquet_message(const Floquet& f, std::optional<bool> stable) {
-  std::string out = " The linearised motion turns with the drives: in a period of " +
-                    rounded_text(f.period, 4) + " s its largest multiplier is " +
-                    rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
+  std::string out =
+      " The linearised motion turns with the drives: in a period of " + rounded_text(f.period, 4) + " s ";
+  if (f.multipliers.front() == 0.)
+    return out + "all of it dies out: less than " + rounded_text(f.error, 1) + " is left.";
+  out += "its largest multiplier is " + rounded_text(std::abs(f.multipliers.front()), 7) + " in size.";
   if (stable == true && !f.growth.empty() && f.growth.front() > -1e-9 / f.period)
     out += " Motions beside the state neither grow nor die out.";
   else if (!stable)
