@@ -182,6 +182,10 @@ std::string to_text(const PeriodicState& s) {
     loads.insert(loads.begin(),
                  {"parent on child, and bearings on their second body", "mean", "min", "max", "", ""});
     out += "\n" + aligned(loads, true);
+    const auto open = [](const auto& load) { return load.nonunique; };
+    if (std::ranges::any_of(s.reactions, open) || std::ranges::any_of(s.gears, open))
+      out += "  (not unique): the loops are redundant; of many possible ones these have the least "
+             "multipliers.\n";
   }
   if (!s.floquet.multipliers.empty()) {
     out += fmt::format("\nFloquet multipliers, to an estimated {:.1g}\n", s.floquet.error);

@@ -130,7 +130,7 @@ double mean_size(const SquareSamples& squares) {
   std::size_t small = 0;
   for (std::size_t i = 0; i < n; ++i)
     small += std::min(size[i], size[i + 1]) < step;
-  const bool smooth = *std::ranges::min_element(size) > 8 * step, rough = small > n / 16; // rounding
+  const bool smooth = *std::ranges::min_element(size) > 8 * step, rough = small > n / 4; // rounding
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i)
     sum += smooth || rough || n < fewest

@@ -166,6 +166,9 @@ TEST_CASE("A slider-crank's pins and slide bear what accelerates its piston") {
   // Its planar loop holds more than it needs, out of its plane.
   CHECK(load(s.reactions, "crankpin").nonunique);
   CHECK_THAT(s.drive_torques.at(0).range.mean, WithinAbs(0, 1e-9 * size));
+  // Of what changes its direction four times a turn, and so has as many kinks, the size is known, too.
+  const PeriodicRange& turning = load(s.reactions, "crankshaft").torque.size;
+  CHECK(turning.error < 1e-5 * turning.most);
 }
 
 TEST_CASE("What a gear bears over a period turns the wheel behind it") {
