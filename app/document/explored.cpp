@@ -11,14 +11,6 @@ namespace flyball {
 
 namespace {
 
-std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
-  try {
-    return get_parameter(mechanism, address);
-  } catch (const SceneError&) {
-    return std::nullopt;
-  }
-}
-
 // The part's name in the list after the edit, where only names have changed there.
 template <class Part>
 std::string renamed(const std::string& name, const std::vector<Part>& before,
@@ -39,6 +31,14 @@ std::string named_address(const std::string& address, const Mechanism& before, c
 
 } // namespace
 
+std::optional<double> find_number(const Mechanism& mechanism, const std::string& address) {
+  try {
+    return get_parameter(mechanism, address);
+  } catch (const SceneError&) {
+    return std::nullopt;
+  }
+}
+
 std::string renamed_address(const std::string& address, const Mechanism& before, const Mechanism& after) {
   const std::size_t begin = address.find('.'), end = address.find('.', begin + 1);
   if (begin == std::string::npos) return address;
@@ -53,7 +53,7 @@ std::string renamed_address(const std::string& address, const Mechanism& before,
 }
 
 void explore_value(Explored& explored, const Mechanism& mechanism, const std::string& address, double value) {
-  const std::optional<double> present = number_at(mechanism, address);
+  const std::optional<double> present = find_number(mechanism, address);
   const auto found = std::ranges::find(explored, address, &ExploredValue::address);
   if (!present || *present == value || formula_at(mechanism, address)) {
     if (found != explored.end()) explored.erase(found);
@@ -67,7 +67,7 @@ void explore_value(Explored& explored, const Mechanism& mechanism, const std::st
 Mechanism with_explored(Mechanism mechanism, const Explored& explored) {
   std::vector<ParameterValue> there;
   for (const ExploredValue& each : explored)
-    if (number_at(mechanism, each.address) && !formula_at(mechanism, each.address))
+    if (find_number(mechanism, each.address) && !formula_at(mechanism, each.address))
       there.push_back({each.address, each.value});
   set_parameters(mechanism, there);
   return mechanism;
@@ -77,7 +77,7 @@ Explored carried_explored(const Explored& explored, const Mechanism& before, con
   Explored left;
   for (const ExploredValue& each : explored) {
     const std::string address = named_address(renamed_address(each.address, before, after), before, after);
-    if (number_at(before, each.address) == number_at(after, address))
+    if (find_number(before, each.address) == find_number(after, address))
       explore_value(left, after, address, each.value);
   }
   return left;

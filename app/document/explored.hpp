@@ -4,6 +4,7 @@
 
 #include "engine/mechanism/mechanism.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct ExploredValue {
   bool operator==(const ExploredValue&) const = default;
 };
 using Explored = std::vector<ExploredValue>; // each address once
+
+// Nothing where there is no number at the address.
+std::optional<double> find_number(const Mechanism& mechanism, const std::string& address);
 
 // With one more number, in its place where the address is there; without the address where the mechanism has
 // this value anyway, an expression gives it, or there is no such number.

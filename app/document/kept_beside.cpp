@@ -1,6 +1,5 @@
 #include "app/document/kept_beside.hpp"
 
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
 #include "engine/mechanism/formulas.hpp"
@@ -43,11 +42,8 @@ Explored read_numbers(const json& entry, const char* key) {
 }
 
 // Nothing where there is none, or an expression gives it.
-std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) try {
-  if (formula_at(mechanism, address)) return {};
-  return get_parameter(mechanism, address);
-} catch (const SceneError&) {
-  return {};
+std::optional<double> own_number(const Mechanism& mechanism, const std::string& address) {
+  return formula_at(mechanism, address) ? std::nullopt : find_number(mechanism, address);
 }
 
 // In JSON, which has UTF-8 alone.
@@ -67,14 +63,15 @@ void keep_explored(KeptBeside& kept, const Mechanism& stored, const Explored& ex
   kept.explored = explored;
   kept.stored.clear();
   for (const ExploredValue& each : explored)
-    if (const auto beneath = number_at(stored, each.address)) kept.stored.push_back({each.address, *beneath});
+    if (const auto beneath = own_number(stored, each.address))
+      kept.stored.push_back({each.address, *beneath});
 }
 
 Explored still_explored(const KeptBeside& kept, const Mechanism& mechanism) {
   Explored out;
   for (const ExploredValue& each : kept.explored) {
     const auto beneath = std::ranges::find(kept.stored, each.address, &ExploredValue::address);
-    if (beneath != kept.stored.end() && number_at(mechanism, each.address) == beneath->value)
+    if (beneath != kept.stored.end() && own_number(mechanism, each.address) == beneath->value)
       out.push_back(each);
   }
   return out;

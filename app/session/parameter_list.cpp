@@ -1,5 +1,6 @@
 #include "app/session/parameter_list.hpp"
 
+#include "app/document/explored.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
@@ -134,14 +135,6 @@ std::string owner_of(const std::vector<std::string>& parts) {
   return one || parts.size() < 2 ? parts[0] : parts[1];
 }
 
-std::optional<double> number_at(const Mechanism& mechanism, const std::string& address) {
-  try {
-    return get_parameter(mechanism, address);
-  } catch (const SceneError&) {
-    return std::nullopt;
-  }
-}
-
 ParameterControl named_control(const std::string& address, ParameterGroup group, std::string unit,
                                double value, std::optional<double> file_value) {
   ParameterControl control;
@@ -202,7 +195,7 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
   for (const NamedParameter& parameter : mechanism.parameters) {
     const std::string address = "parameters." + parameter.name;
     controls.push_back(named_control(address, ParameterGroup::named, parameter.unit, parameter.value,
-                                     number_at(file, address)));
+                                     find_number(file, address)));
   }
   for (const Joint& joint : mechanism.joints)
     for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
@@ -272,12 +265,12 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
   std::unordered_set<std::string> pinned;
   for (const Slider& slider : mechanism.sliders) {
     // Of an unfinished mechanism, it may be of a number that is not there.
-    const std::optional<double> value = number_at(mechanism, slider.parameter);
+    const std::optional<double> value = find_number(mechanism, slider.parameter);
     if (!value || formula_at(mechanism, slider.parameter) || !pinned.insert(slider.parameter).second)
       continue;
     ParameterControl& control = controls.emplace_back(
         named_control(slider.parameter, ParameterGroup::pinned, parameter_unit(mechanism, slider.parameter),
-                      *value, number_at(file, slider.parameter)));
+                      *value, find_number(file, slider.parameter)));
     control.from = slider.from;
     control.to = slider.to;
     control.log = slider.scale == SliderScale::log;
@@ -292,10 +285,10 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
 
 std::optional<ParameterControl> number_control(const Mechanism& mechanism, const Mechanism& file,
                                                const std::string& address, const DisplayUnits& units) {
-  const std::optional<double> value = number_at(mechanism, address);
+  const std::optional<double> value = find_number(mechanism, address);
   if (!value || formula_at(mechanism, address)) return std::nullopt;
   ParameterControl control = named_control(address, ParameterGroup::named, parameter_unit(mechanism, address),
-                                           *value, number_at(file, address));
+                                           *value, find_number(file, address));
   set_range(control, range_of(mechanism, address, control.file_value, control.unit, units));
   set_step(control);
   return control;
@@ -304,7 +297,7 @@ std::optional<ParameterControl> number_control(const Mechanism& mechanism, const
 bool take_value(std::vector<ParameterControl>& controls, const Mechanism& mechanism, const Mechanism& file,
                 const std::string& address) {
   const auto control = std::ranges::find(controls, address, &ParameterControl::address);
-  const std::optional<double> value = number_at(mechanism, address), saved = number_at(file, address);
+  const std::optional<double> value = find_number(mechanism, address), saved = find_number(file, address);
   if (control == controls.end() || !value || saved != control->file_value) return false;
   // Springs and dampers of zero have no slider of their own.
   const bool always = control->group == ParameterGroup::pinned || control->group == ParameterGroup::named ||
