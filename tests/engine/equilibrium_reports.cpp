@@ -324,7 +324,7 @@ TEST_CASE("a joint that is there twice holds nothing more", "[loops]") {
     m.joints = {
         driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), 3.6),
         dampened(joint(slide ? JointType::prismatic : JointType::revolute, "s", "hub", "m", at, axis), 2)};
-    m.joints[1].coordinates[0].spring = CoordinateSpring{slide ? 200. : 20., 0.1, "", 0};
+    m.joints[1].coordinates[0].spring = CoordinateSpring{slide ? 200. : 20., 0.1};
     validate(m);
     const Solution one = Analysis(m).solve();
     m.joints.push_back(joint(m.joints[1].type, "again", "hub", "m", at + 0.1 * axis, axis));
