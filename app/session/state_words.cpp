@@ -89,9 +89,13 @@ bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<Coor
 
 std::optional<DriveTorque::Given> told_torque(const Solution& solution, const DriveTorque& drive) {
   if (!drive.given) return std::nullopt;
+  double size = 0; // m
+  for (const Pose& pose : solution.poses)
+    size = std::max(size, (pose.position - solution.poses.front().position).norm());
   double largest = 0;
   for (const Reaction& r : solution.reactions)
-    largest = std::max(largest, drive.angle ? r.torque.norm() : r.force.norm());
+    largest =
+        std::max(largest, drive.angle ? std::max(r.torque.norm(), size * r.force.norm()) : r.force.norm());
   const auto told = [&](double value) { return std::abs(value) < 1e-12 * largest ? 0 : value; };
   return DriveTorque::Given{told(drive.given->torque), told(drive.given->load)};
 }

@@ -90,16 +90,17 @@ TEST_CASE("Session: the spread begins with the pinned numbers, and is what the c
     CHECK(session.output("slide").linear_deviation == Approx(2 * before).epsilon(1e-6));
   }
   SECTION("what is gone has none, and what is zero is given one in its unit") {
-    state.choice.tolerances.push_back({"parameters.gone"});
+    state.choice.tolerances.push_back({"parameters.gone"}); // it may come back, by Undo
     session.frames();
-    CHECK(state.choice.tolerances.size() == 2);
+    CHECK(chosen_tolerances(session).size() == 2);
     add_tolerance(session, "gravity.0");
-    REQUIRE(state.choice.tolerances.size() == 3);
-    CHECK_FALSE(state.choice.tolerances[2].percent);
-    CHECK(state.choice.tolerances[2].width > 0);
-    tell_in_percent(session, 2, true); // of nothing
-    CHECK_FALSE(state.choice.tolerances[2].percent);
-    state.choice.tolerances[2].percent = true;
+    REQUIRE(state.choice.tolerances.size() == 4);
+    ChosenTolerance& zero = state.choice.tolerances[3];
+    CHECK_FALSE(zero.percent);
+    CHECK(zero.width > 0);
+    tell_in_percent(session, 3, true); // of nothing
+    CHECK_FALSE(zero.percent);
+    zero.percent = true;
     CHECK(chosen_tolerances(session).size() == 2);
   }
   SECTION("closed it takes everything along but what was chosen") {
