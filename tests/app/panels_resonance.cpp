@@ -226,7 +226,7 @@ namespace {
 
 // The governor with its engine and so little damping that it hunts.
 struct HuntingRobot : Robot {
-  explicit HuntingRobot(double damping = 15) : Robot({1280, 1000}) {
+  explicit HuntingRobot(double damping = 15) : Robot({1280, 1400}) {
     open_scene(app.session, shipped_file("governor_engine"));
     frames(2);
     change_parameter(app.session, "joints.slide.damping", damping);
@@ -281,7 +281,7 @@ TEST_CASE("the limit cycle is asked for by the palette, and goes where the dampe
 }
 
 TEST_CASE("the motion of a crank that a torque drives is found when it is asked for") {
-  Robot robot({1280, 1000});
+  Robot robot({1280, 1400});
   App& app = robot.app;
   Mechanism m = Document::empty_mechanism();
   add_driven_slider_crank(m, 20);
