@@ -218,15 +218,14 @@ TEST_CASE("the File menu exports the model of what is shown, whichever panel is 
   robot.frames(2);
   REQUIRE(app.session.study.open == StudyKind::none);
   REQUIRE(app.commands.enabled(command("file.model")));
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_model_of_file_menu.m";
+  std::filesystem::remove(file);
   app.commands.run("file.model");
+  app.panels->model.query().path = file.string(); // before the field has it
   robot.frames(3);
   REQUIRE(app.dialog.showing);
   CHECK(app.session.study.open == StudyKind::transfer);
   CHECK(app.ui.widgets.contains("model/of"));
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_model_of_file_menu.m";
-  std::filesystem::remove(file);
-  robot.point({2, 2});
-  app.panels->model.query().path = file.string();
   robot.click("model/save");
   robot.frames(2);
   CHECK(app.session.notice == "Saved " + file.string());
