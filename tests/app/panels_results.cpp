@@ -1,6 +1,7 @@
 // What the list of results says, and does not say twice.
 #include "app/session/periodic.hpp"
 #include "app/ui/choices.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "robot.hpp"
