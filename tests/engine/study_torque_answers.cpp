@@ -192,7 +192,7 @@ TEST_CASE("an unstable steady speed is left for the stable one that the motion g
                 dampened(joint(JointType::prismatic, "rb", "hub", "b", {-0.1, 0, 0}, {-1, 0, 0}), 1)};
     for (std::size_t i : {1U, 2U})
       m.joints[i].coordinates[0].stop = Stop{-0.05, 0.2, 1e6};
-    m.forces = {point_spring("tie", "a", "b", {0, 0, 0}, {0, 0, 0}, 1000, 0.2)};
+    m.forces = {point_spring("tie", "a", "b", {0.1, 0, 0}, {-0.1, 0, 0}, 1000, 0.2)};
     validate(m);
     SolveOptions options;
     options.search = 0; // by the motion alone
