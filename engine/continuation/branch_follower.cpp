@@ -62,7 +62,7 @@ std::string infinite_rate_text(const InfiniteRate& error) {
 // At the beginning of the range. Where expressions make no mechanism there, as it is: then the curve ends
 // within the range; a field itself must be one that is possible at both ends.
 Mechanism begun(const Mechanism& mechanism, const std::string& address, double from, double to) {
-  if (!address.starts_with("parameters.") && !address.starts_with("points.")) {
+  if (!makes_others(address)) {
     (void)with_parameter(mechanism, address, to);
     return with_parameter(mechanism, address, from);
   }
@@ -574,7 +574,11 @@ std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_
 
 std::optional<BranchState> BranchFollower::off(const BranchState& crossing, double length) {
   BranchState first;
-  if (!continuation_.switch_branch(crossing, length, first)) return {};
+  try {
+    if (!continuation_.switch_branch(crossing, length, first)) return {};
+  } catch (const SceneError&) { // no mechanism can be made there
+    return {};
+  }
   if (position(first.parameter) < 0 || position(first.parameter) > 1) return {};
   return first;
 }

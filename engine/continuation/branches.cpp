@@ -148,17 +148,24 @@ class Diagram {
     }
     out_.status = Status::converged;
     std::optional<BranchState> first;
+    Unknowns begins = found.z;
     if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) {
       first = begin_beside(start);
-      if (!first) follower_.expect_families();
+      if (first)
+        begins = first->z;
+      else
+        follower_.expect_families();
     }
     if (!first) first = follower_.begin(found.z, from_, true);
     if (first) {
       FollowedBranch branch = follower_.follow(*first, true);
-      if (first->parameter != from_) { // it could not begin there itself
-        BranchState border = *first;
-        border.z = found.z;
-        border.parameter = from_;
+      BranchState border = *first;
+      border.z = std::move(begins);
+      border.parameter = from_;
+      // It could not begin there itself: of many that are balanced there the curve goes on from this one.
+      if (first->parameter != from_ &&
+          newton(follower_.problem_at(from_), border.z, w, {}, nullptr).converged &&
+          same_pose(problem, border.z.q, first->z.q, 1e-3)) {
         branch.points.insert(branch.points.begin(), follower_.point(border));
         branch.states.insert(branch.states.begin(), std::move(border));
       }

@@ -55,6 +55,7 @@ bool Continuation::correct(const BranchState& from, const Eigen::VectorXd& tange
     if (size < tolerance::step) {
       family_.turn(to.starts);
       family_.set(to.parameter);
+      family_.expect_possible();
       const Problem problem = family_.problem();
       evaluate(problem, to.z, 0, w_);
       return scaled_residual(problem, w_) < tolerance::balance;
@@ -89,6 +90,7 @@ bool Continuation::step(const BranchState& from, double length, BranchState& to,
 bool Continuation::land(BranchState& state) {
   if (!family_.ties()) {
     family_.set(state.parameter);
+    family_.expect_possible();
     return newton(family_.problem(), state.z, w_, {}, nullptr).converged;
   }
   BranchState at;

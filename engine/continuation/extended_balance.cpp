@@ -1,5 +1,6 @@
 #include "engine/continuation/extended_balance.hpp"
 
+#include "engine/continuation/family.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
@@ -103,7 +104,6 @@ Problem ExtendedBalance::judged() const {
 
 void ExtendedBalance::set(const ExtendedState& state) {
   numbers_.set({state.parameters.data(), addresses_.size()});
-  validate_numbers(mechanism_);
   bind(system_, mechanism_, parameters_);
   if (ties_)
     for (const int link : ties_->found)
@@ -366,6 +366,13 @@ std::optional<ExtendedBalance::Step> ExtendedBalance::solve_bordered(Rhs rhs, co
   return step;
 }
 
+bool ExtendedBalance::is_possible() const try {
+  if (std::ranges::any_of(addresses_, makes_others)) validate_numbers(mechanism_);
+  return true;
+} catch (const SceneError&) {
+  return false;
+}
+
 ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::VectorXd& row) {
   ExtendedOutcome outcome;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(unknowns());
@@ -394,7 +401,7 @@ ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::Vect
   if (outcome.converged) {
     set(state);
     factor_with_multipliers(problem(), state.z, w_);
-    outcome.converged = outcome.residual < 1e-8;
+    outcome.converged = outcome.residual < 1e-8 && is_possible();
   }
   return outcome;
 }

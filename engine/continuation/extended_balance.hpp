@@ -105,6 +105,7 @@ class ExtendedBalance {
   double transversality(const ExtendedState& state, std::size_t index, Workspace& w) const;
 
  private:
+  bool is_possible() const; // what expressions make of the parameters set
   // Unknowns y, m (and the unfolding) of the matrices: the scaled step is r0 + N y + R m, and m for the
   // parameters.
   struct Assembled {

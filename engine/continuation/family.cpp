@@ -7,10 +7,15 @@
 
 namespace flyball {
 
+bool makes_others(const std::string& address) {
+  return address.starts_with("parameters.") || address.starts_with("points.");
+}
+
 Family::Family(const System& system, const Mechanism& mechanism, const std::string& address, double scale,
                KktForm form)
-    : system_(system), mechanism_(mechanism), number_(mechanism_, {&address, 1}), scale_(scale),
-      value_(get_parameter(mechanism, address)), form_(form) {
+    : system_(system), mechanism_(mechanism), number_(mechanism_, {&address, 1}),
+      makes_others_(makes_others(address)), scale_(scale), value_(get_parameter(mechanism, address)),
+      form_(form) {
   bind(system_, mechanism_, parameters_);
   set_scaling(system_, parameters_, scaling_);
 }
@@ -19,10 +24,13 @@ void Family::set(double value) {
   if (value == value_) return;                       // bound already
   value_ = std::numeric_limits<double>::quiet_NaN(); // till it is bound
   number_.set({&value, 1});
-  validate_numbers(mechanism_);
   bind(system_, mechanism_, parameters_);
   value_ = value;
   turn(starts_);
+}
+
+void Family::expect_possible() const {
+  if (makes_others_) validate_numbers(mechanism_);
 }
 
 void Family::tie(std::optional<AngleTies> ties) {

@@ -10,6 +10,10 @@
 
 namespace flyball {
 
+// Whether an address is of a number that expressions may make others of: of the mechanism's parameters and
+// points. Both ends of a range of any other being possible, all between them is.
+bool makes_others(const std::string& address);
+
 class Family {
  public:
   // `scale`: the range of interest, in the parameter's unit.
@@ -19,6 +23,8 @@ class Family {
   Family& operator=(const Family&) = delete;
 
   void set(double value);
+  // Throws SceneError where expressions make a number of this value's that no scene may have.
+  void expect_possible() const;
   // Of states that stand turned (search/phase_search.hpp): with the angles of what turns among the unknowns.
   void tie(std::optional<AngleTies> ties);
   const std::optional<AngleTies>& ties() const { return ties_; }
@@ -35,6 +41,7 @@ class Family {
   const System& system_;
   Mechanism mechanism_;
   VariedNumbers number_; // of mechanism_
+  bool makes_others_;
   double scale_, value_ = 0;
   KktForm form_;
   Parameters parameters_;
