@@ -126,10 +126,10 @@ TEST_CASE("another number gets a tolerance, another output is shown, and more sa
   CHECK(samples_in(robot.plot().bands[0]) == 500);
 }
 
-TEST_CASE("a number that an undo takes away takes its tolerance along, while its row is shown") {
+TEST_CASE("a number that an undo takes away has no tolerance until it is back, while its row is shown") {
   SpreadRobot robot;
   App& app = robot.app;
-  const std::size_t before = robot.state().choice.tolerances.size();
+  const std::size_t before = chosen_tolerances(app.session).size();
   edit(app.session, "Name a number", [](Mechanism& m, Selection&) {
     m.parameters.push_back({"extra", "", 1, "", {}});
   });
@@ -140,7 +140,12 @@ TEST_CASE("a number that an undo takes away takes its tolerance along, while its
   robot.key('Z', true);
   robot.frames(3);
   CHECK(app.session.mechanism().parameters.back().name != "extra");
-  CHECK(robot.state().choice.tolerances.size() == before);
+  CHECK(chosen_tolerances(app.session).size() == before);
+  CHECK(app.ui.widgets.count("spread/parameters.extra/width") == 0);
+  redo(app.session);
+  robot.frames(3);
+  CHECK(chosen_tolerances(app.session).size() == before + 1);
+  CHECK(app.ui.widgets.count("spread/parameters.extra/width") == 1);
 }
 
 TEST_CASE("the spread is reached by keys") {
