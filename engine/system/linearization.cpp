@@ -8,6 +8,7 @@
 #include "engine/system/pair_stiffness.hpp"
 #include "engine/system/rotation_vector.hpp"
 
+#include <limits>
 #include <optional>
 
 namespace flyball {
@@ -269,6 +270,20 @@ void fill_speed_column(const System& system, const Kinematics<double>& k, int tu
   }
 }
 
+// What has no inertia about its own axis, as a thin rod that turns about itself, has rounding of what it has
+// about others.
+void clear_rounding_of_mass(const System& system, Linearization& out) {
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  for (std::size_t l = 0; l < system.links.size(); ++l) {
+    const int v = system.links[l].v;
+    if (v < 0 || system.links[l].type != LinkType::revolute ||
+        out.mass(v, v) > rounding * out.composites[l].inertia.norm())
+      continue;
+    out.mass.row(v).setZero();
+    out.mass.col(v).setZero();
+  }
+}
+
 // Of a system whose linearize() has filled screws and composites.
 void fill_velocity(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                    const Kinematics<double>& k, Linearization& out) {
@@ -366,6 +381,7 @@ void linearize_motion(const System& system, const Parameters& p, const Eigen::Ve
       [](const LinearizedRow& row, const ScrewRates& s, const Vec3& arm) {
         return apply_inertia(row, s.sw, s.sv, arm);
       });
+  clear_rounding_of_mass(system, out);
   fill_velocity(system, p, q, k, out);
 }
 

@@ -4,6 +4,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/linear/uniform_random.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -457,4 +458,32 @@ TEST_CASE("the torque of a drive that another goes along with ranges over a turn
   CHECK_THAT(torque->range->mean, WithinRel(-1, 1e-9));
   CHECK_THAT(torque->range->least, WithinRel(-1 - weight, 1e-9));
   CHECK_THAT(torque->range->most, WithinRel(-1 + weight, 1e-9));
+}
+
+TEST_CASE("a thin rod that turns about itself has no mode there", "[torque]") {
+  // On a shaft that a torque turns: its damper and spring alone tell the rate, -k / c. Its inertia about its
+  // own axis is rounding.
+  std::mt19937 random(5);
+  for (int i = 0; i < 30; ++i) {
+    const auto number = [&] { return uniform(random, -1, 1); };
+    const Vec3 e = Vec3(number(), number(), number()).normalized();
+    Mechanism m;
+    m.bodies = {body("hub", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("rod", 0.8, 0.3 * e)};
+    const Mat3 inertia = 0.01 * (Mat3::Identity() - e * e.transpose());
+    m.bodies[1].inertia = {inertia(0, 0), inertia(1, 1), inertia(2, 2),
+                           inertia(0, 1), inertia(0, 2), inertia(1, 2)};
+    m.joints = {torque_driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), 5,
+                              "2 N m - 0.2 N m s * rate(spin)"),
+                dampened(revolute("roll", "hub", "rod", {0, 0, 0}, e), 0.3)};
+    m.joints[1].coordinates[0].spring = CoordinateSpring{5, 0};
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    INFO(i << ": " << s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == true);
+    REQUIRE(s.eigenvalues);
+    CHECK(std::ranges::any_of(*s.eigenvalues,
+                              [](std::complex<double> x) { return std::abs(x + 5 / 0.3) < 1e-6; }));
+    CHECK(std::ranges::none_of(*s.eigenvalues, [](std::complex<double> x) { return std::abs(x) > 1e3; }));
+  }
 }
