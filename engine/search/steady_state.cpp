@@ -1,7 +1,6 @@
 #include "engine/search/steady_state.hpp"
 
 #include "engine/linear/largest.hpp"
-#include "engine/linear/uniform_random.hpp"
 #include "engine/solve/slow_motion.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
@@ -42,15 +41,6 @@ bool went_far(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Vec
             return finds_speed(link) &&
                    std::abs(b[link.q] - a[link.q]) > 0.5 * std::max(std::abs(a[link.q]), std::abs(b[link.q]));
           }));
-}
-
-// A step (scaled) that no symmetry keeps: with a share of every direction in which a state may grow.
-Eigen::VectorXd any_direction(int coordinates) {
-  std::mt19937 random(3);
-  Eigen::VectorXd out(coordinates);
-  for (double& share : out)
-    share = uniform(random, 0.5, 1);
-  return out;
 }
 
 struct AnswerSearch {
@@ -291,8 +281,7 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
   for (const double side : {0., beside, -beside}) {
     Found candidate;
     candidate.z = {side == 0 ? start : found.z.q, Eigen::VectorXd::Zero(problem.system.rows)};
-    const Eigen::VectorXd step =
-        (side * any_direction(problem.system.nv)).cwiseProduct(problem.scaling.column);
+    const Eigen::VectorXd step = side * problem.scaling.column;
     retract<double>(problem.system, step, candidate.z.q);
     candidate.newton = follow_slow_motion(problem, candidate.z, w, nullptr);
     if (problem.cancelled()) return;

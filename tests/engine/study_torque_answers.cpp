@@ -195,9 +195,7 @@ TEST_CASE("an unstable steady speed is left for the stable one that the motion g
       m.joints[i].coordinates[0].stop = Stop{-0.05, 0.2, 1e6};
     m.forces = {point_spring("tie", "a", "b", {0.1, 0, 0}, {-0.1, 0, 0}, 1000, 0.2)};
     validate(m);
-    SolveOptions options;
-    options.search = 0; // by the motion alone
-    const Solution s = Analysis(m).solve(options);
+    const Solution s = Analysis(m).solve();
     INFO(s.message);
     CHECK(s.stable == true);
     CHECK_THAT(speed(s, "spin"), WithinRel(10, 1e-10));
