@@ -273,11 +273,11 @@ void fill_speed_column(const System& system, const Kinematics<double>& k, int tu
 // What has no inertia about its own axis, as a thin rod that turns about itself, has rounding of what it has
 // about others.
 void clear_rounding_of_mass(const System& system, Linearization& out) {
-  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  constexpr double negligible = 32 * std::numeric_limits<double>::epsilon();
   for (std::size_t l = 0; l < system.links.size(); ++l) {
     const int v = system.links[l].v;
     if (v < 0 || system.links[l].type != LinkType::revolute ||
-        out.mass(v, v) > rounding * out.composites[l].inertia.norm())
+        out.mass(v, v) > negligible * out.composites[l].inertia.norm())
       continue;
     out.mass.row(v).setZero();
     out.mass.col(v).setZero();
