@@ -33,9 +33,11 @@ class SlowMotion {
   // Bounded so that a refusal takes no more than a second or so.
   int most_steps() const { return p_.system.nv <= 30 || p_.form != KktForm::dense ? 3000 : 300; }
 
+  // It may go far beyond where it comes to: its steps are parts of the speed.
   bool runs_away() const {
+    constexpr double beyond = 1e4;
     return std::ranges::any_of(p_.system.links, [&](const Link& link) {
-      return finds_speed(link) && std::abs(z_.q[link.q]) > largest_found_speed(p_, link);
+      return finds_speed(link) && std::abs(z_.q[link.q]) > beyond * largest_found_speed(p_, link);
     });
   }
 
