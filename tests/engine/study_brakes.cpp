@@ -252,8 +252,8 @@ TEST_CASE("random trains of gears with several brakes and torques: as summed on 
 }
 
 TEST_CASE("along the torque a brake holds between where it slips either way") {
-  Mechanism m = countershaft(0.5, "T - 0.4 N m s*rate(pa)",
-                             R"("parameters": {"T": {"value": 2, "unit": "N m"}}, )");
+  Mechanism m =
+      countershaft(0.5, "T - 0.4 N m s*rate(pa)", R"("parameters": {"T": {"value": 2, "unit": "N m"}}, )");
   const ResponseDiagram d = follow_response(m, "parameters.T", -3, 3);
   INFO(d.message);
   REQUIRE(d.special.size() == 2);
