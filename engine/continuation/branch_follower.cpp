@@ -372,7 +372,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       const double border = ends ? to_ : from_;
       if (impossible.empty()) {
         out.end = stands_at_stop(family_.problem(), state.z.q)
-                      ? "a stop is reached, where the curve turns back"
+                      ? "the corrector fails at a stop, where the curve may turn back"
                       : "the corrector fails: the loops lock or a part of the mechanism becomes singular";
       } else if (std::abs(state.parameter - border) < at_border * family_.scale()) {
         land_on_border(state, border, out);
