@@ -22,4 +22,16 @@ void BorderedBalance::find_rates(const Unknowns& z, double parameter) {
   evaluate(problem, z, 0, w_);
 }
 
+bool BorderedBalance::off_tangent(const Eigen::MatrixXd& null_space, const Eigen::VectorXd& tangent,
+                                  Eigen::VectorXd& out) {
+  out = Eigen::VectorXd::Zero(tangent.size());
+  for (const auto& direction : null_space.colwise()) {
+    const Eigen::VectorXd v = direction - tangent * tangent.dot(direction);
+    if (v.norm() > out.norm()) out = v;
+  }
+  if (out.norm() < 1e-6) return false;
+  out.normalize();
+  return true;
+}
+
 } // namespace flyball

@@ -50,6 +50,11 @@ class BorderedBalance {
  protected:
   BorderedBalance(Family& family, Workspace& w) : family_(family), w_(w) {}
 
+  // Of the null space of a singular B (its two columns, orthonormal, spanned by the tangent and one direction
+  // more) that direction. False where there is none.
+  static bool off_tangent(const Eigen::MatrixXd& null_space, const Eigen::VectorXd& tangent,
+                          Eigen::VectorXd& out);
+
   // f_p and phi_p, scaled; leaves the family at the parameter and the balance evaluated at z.
   void find_rates(const Unknowns& z, double parameter);
 

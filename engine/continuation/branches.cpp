@@ -148,27 +148,17 @@ class Diagram {
     }
     out_.status = Status::converged;
     std::optional<BranchState> first;
-    Unknowns begins = found.z;
+    bool beside = false;
     if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) {
       first = begin_beside(start);
-      if (first)
-        begins = first->z;
-      else
-        follower_.expect_families();
+      beside = first.has_value();
+      if (!beside) follower_.expect_families();
     }
     if (!first) first = follower_.begin(found.z, from_, true);
     if (first) {
       FollowedBranch branch = follower_.follow(*first, true);
-      BranchState border = *first;
-      border.z = std::move(begins);
-      border.parameter = from_;
-      // It could not begin there itself: of many that are balanced there the curve goes on from this one.
-      if (first->parameter != from_ &&
-          newton(follower_.problem_at(from_), border.z, w, {}, nullptr).converged &&
-          same_pose(problem, border.z.q, first->z.q, 1e-3)) {
-        branch.points.insert(branch.points.begin(), follower_.point(border));
-        branch.states.insert(branch.states.begin(), std::move(border));
-      }
+      if (first->parameter != from_) // it could not begin there itself
+        begin_at_border(*first, beside ? first->z : found.z, branch);
       add(std::move(branch), true);
     } else
       out_.message = "The start is a singular state; begin beside it.";
@@ -196,6 +186,21 @@ class Diagram {
     }
     follower_.problem_at(from_);
     return out;
+  }
+
+  // Puts the state at the beginning of the range before the branch, `z` or what Newton-Raphson makes of it
+  // there, where that is beside the first.
+  void begin_at_border(const BranchState& first, const Unknowns& z, FollowedBranch& branch) {
+    constexpr double near = 1e-3; // scaled
+    BranchState border = first;
+    border.z = z;
+    border.parameter = from_;
+    const Problem problem = follower_.problem_at(from_);
+    if (!newton(problem, border.z, follower_.workspace(), {}, nullptr).converged ||
+        !same_pose(problem, border.z.q, first.z.q, near))
+      return;
+    branch.points.insert(branch.points.begin(), follower_.point(border));
+    branch.states.insert(branch.states.begin(), std::move(border));
   }
 
   // With what turns at other angles than drawn, where drives give torques.

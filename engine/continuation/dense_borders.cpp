@@ -119,16 +119,10 @@ bool DenseBorders::second_direction(const Eigen::VectorXd& tangent, Eigen::Vecto
   if (basis_.cols() == 0) return false;
   const auto null_directions = last_right_vectors(h_);
   if (!null_directions) return false;
-  // The null space is spanned by the tangent and one more direction.
-  out = Eigen::VectorXd::Zero(tangent.size());
-  for (Eigen::Index i : {0, 1}) {
-    Eigen::VectorXd v = expand(null_directions->col(i), 0);
-    v -= tangent * tangent.dot(v);
-    if (v.norm() > out.norm()) out = v;
-  }
-  if (out.norm() < 1e-6) return false;
-  out.normalize();
-  return true;
+  Eigen::MatrixXd null_space(tangent.size(), 2);
+  for (const Eigen::Index i : {0, 1})
+    null_space.col(i) = expand(null_directions->col(i), 0);
+  return off_tangent(null_space, tangent, out);
 }
 
 } // namespace flyball

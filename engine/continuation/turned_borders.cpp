@@ -69,16 +69,10 @@ bool TurnedBorders::second_direction(const Eigen::VectorXd& tangent, Eigen::Vect
   open << balance_->matrix(), rate_;
   const auto parts = singular_vectors(open);
   if (!parts) return false;
-  // The null space is spanned by the tangent and one more direction.
-  out = Eigen::VectorXd::Zero(tangent.size());
-  for (const Eigen::Index i : {0, 1}) {
-    Eigen::VectorXd v = direction_of(parts->right.col(rate_.size() - i));
-    v -= tangent * tangent.dot(v);
-    if (v.norm() > out.norm()) out = v;
-  }
-  if (out.norm() < 1e-6) return false;
-  out.normalize();
-  return true;
+  Eigen::MatrixXd null_space(tangent.size(), 2);
+  for (const Eigen::Index i : {0, 1})
+    null_space.col(i) = direction_of(parts->right.col(rate_.size() - i));
+  return off_tangent(null_space, tangent, out);
 }
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 #include "engine/mechanism/frictions.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/referred_to.hpp"
 
 namespace flyball {
 
@@ -14,13 +15,11 @@ std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
 }
 
 const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at) {
-  return *mechanism.joints[static_cast<std::size_t>(at.joint)]
-              .coordinates[static_cast<std::size_t>(at.coordinate)]
-              .friction;
+  return *coordinate_of(mechanism, at).friction;
 }
 
 std::string share_address(const Mechanism& mechanism, CoordinateReference at) {
-  const Joint& joint = mechanism.joints[static_cast<std::size_t>(at.joint)];
+  const Joint& joint = joint_of(mechanism, at);
   return "joints." + joint.name + "." +
          coordinate_key(joint, static_cast<std::size_t>(at.coordinate), "friction") + ".share";
 }

@@ -8,6 +8,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/report/standstill.hpp"
@@ -30,14 +31,10 @@ std::size_t place(int i) {
   return static_cast<std::size_t>(i);
 }
 
-auto& coordinate_at(auto& mechanism, CoordinateReference at) {
-  return mechanism.joints[place(at.joint)].coordinates[place(at.coordinate)];
-}
-
 // Of one axis, along which it may go on and on.
 bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
-  const Joint& joint = mechanism.joints[place(at.joint)];
-  const Coordinate& c = coordinate_at(mechanism, at);
+  const Joint& joint = joint_of(mechanism, at);
+  const Coordinate& c = coordinate_of(mechanism, at);
   return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
 }
 
@@ -96,13 +93,13 @@ class Attempt {
   Standstill driven(std::span<const CoordinateReference> at_rest = {}) const {
     std::vector<Standing> standing;
     for (const CoordinateReference& at : held())
-      standing.push_back({at, coordinate_at(mechanism_, at).drawn});
+      standing.push_back({at, coordinate_of(mechanism_, at).drawn});
     Standstill still = stand_still(mechanism_, standing, {}, at_rest);
     Mechanism& out = still.mechanism;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       if (!slips(i)) continue;
-      Joint& joint = out.joints[place(frictions_[i].joint)];
-      Coordinate& c = joint.coordinates[place(frictions_[i].coordinate)];
+      Joint& joint = joint_of(out, frictions_[i]);
+      Coordinate& c = coordinate_of(out, frictions_[i]);
       c.friction.reset();
       if (implied_[i])
         put_as_damper(i, joint, c);
@@ -155,13 +152,13 @@ class Attempt {
     const double way = parts_[which] == Part::slips_forwards ? 1 : -1;
     double speed = drive_speeds(mechanism_).most;
     for (const GearedCoordinate& geared : gear_train(mechanism_, at)) {
-      std::optional<Drive>& drive = coordinate_at(out, geared.at).drive;
+      std::optional<Drive>& drive = coordinate_of(out, geared.at).drive;
       if (!drive || !finds_speed(*drive)) continue;
       speed = std::abs(drive->speed / geared.ratio);
       drive->speed = std::copysign(drive->speed, way * geared.ratio);
     }
-    Joint& joint = out.joints[place(at.joint)];
-    Coordinate& c = joint.coordinates[place(at.coordinate)];
+    Joint& joint = joint_of(out, at);
+    Coordinate& c = coordinate_of(out, at);
     if (c.drive) return add_load(joint, at.coordinate, -slipping_force(which));
     joint.cut = false;
     c.drive = Drive{.speed = way * speed, .torque = slipping_force(which), .load = 0};
@@ -229,11 +226,11 @@ class Attempt {
   std::optional<double> of_geared_springs(CoordinateReference held) const {
     double sum = 0;
     for (const GearedCoordinate& geared : gear_train(mechanism_, held)) {
-      const Coordinate& c = coordinate_at(mechanism_, geared.at);
+      const Coordinate& c = coordinate_of(mechanism_, geared.at);
       if (c.stop) return std::nullopt;
       if (c.spring)
-        sum -= geared.ratio * elastic_force(mechanism_, mechanism_.joints[place(geared.at.joint)],
-                                            geared.at.coordinate, c.drawn - c.spring->free)
+        sum -= geared.ratio * elastic_force(mechanism_, joint_of(mechanism_, geared.at), geared.at.coordinate,
+                                            c.drawn - c.spring->free)
                                   .force;
     }
     return sum;
@@ -284,7 +281,7 @@ class Attempt {
     out.goes = true;
     bool slipping = false;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Joint& joint = mechanism_.joints[place(frictions_[i].joint)];
+      const Joint& joint = joint_of(mechanism_, frictions_[i]);
       const auto is_it = [&](const auto& x) {
         return x.joint == joint.name && x.index == frictions_[i].coordinate;
       };
@@ -336,7 +333,7 @@ class Attempt {
         out.goes = out.goes && out.margins[i] >= 0;
       }
       if (drive == s.drive_torques.end()) continue;
-      if (force.slips && coordinate_at(mechanism_, frictions_[i]).drive) { // its load without the friction
+      if (force.slips && coordinate_of(mechanism_, frictions_[i]).drive) { // its load without the friction
         drive->value -= slipping_force(i);
         if (drive->given) drive->given->load += slipping_force(i);
       } else {
@@ -360,7 +357,7 @@ class Attempt {
       for (const TorqueAtRest& torque : *list) {
         const std::optional<std::array<double, 2>> value = values_at_rest(torque, s.measures);
         if (!value) return false;
-        const Joint& joint = mechanism_.joints[place(torque.at.joint)];
+        const Joint& joint = joint_of(mechanism_, torque.at);
         const auto c = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& x) {
           return x.joint == joint.name && x.index == torque.at.coordinate;
         });
@@ -369,7 +366,7 @@ class Attempt {
           c->driven = true;
           c->speed = 0;
           c->speed_error = 0;
-          c->speed_scale = std::abs(coordinate_at(mechanism_, torque.at).drive->speed);
+          c->speed_scale = std::abs(coordinate_of(mechanism_, torque.at).drive->speed);
         }
         DriveTorque drive;
         drive.joint = joint.name;
@@ -424,7 +421,7 @@ void add_message(StateOnFriction& state, std::string text) {
 // Of what a torque turns, itself or through gears, the way of the speed with which its search begins.
 Part part_at_start(const Mechanism& mechanism, CoordinateReference friction) {
   for (const GearedCoordinate& geared : gear_train(mechanism, friction))
-    if (const std::optional<Drive>& drive = coordinate_at(mechanism, geared.at).drive; drive && drive->torque)
+    if (const std::optional<Drive>& drive = coordinate_of(mechanism, geared.at).drive; drive && drive->torque)
       return drive->speed * geared.ratio > 0 ? Part::slips_forwards : Part::slips_backwards;
   return Part::none;
 }
@@ -550,7 +547,7 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
   for (const auto& [name, value] : options.start) {
     const CoordinateReference named = find_coordinate(mechanism, name);
     if (named.joint < 0) continue;
-    const Coordinate& c = mechanism.joints[place(named.joint)].coordinates[place(named.coordinate)];
+    const Coordinate& c = coordinate_of(mechanism, named);
     if (c.friction && c.drawn != value) return std::nullopt;
   }
   std::optional<StateOnFriction> unstable;

@@ -6,6 +6,7 @@
 #include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/found_speeds.hpp"
 #include "engine/report/measures.hpp"
@@ -227,10 +228,10 @@ class HoldingAttempt {
     Standstill still = stand_still(mechanism_, held, others, at_rest);
     Mechanism& locked = still.mechanism;
     for (const CoordinateReference& f : frictions_)
-      if (auto& c = locked.joints[static_cast<std::size_t>(f.joint)].coordinates; !c.empty())
+      if (auto& c = joint_of(locked, f).coordinates; !c.empty())
         c[static_cast<std::size_t>(f.coordinate)].friction.reset();
     for (std::size_t k = 0; k < held.size(); ++k) {
-      const Joint& joint = mechanism_.joints[static_cast<std::size_t>(held[k].at.joint)];
+      const Joint& joint = joint_of(mechanism_, held[k].at);
       if (still.fixed[k] &&
           held[k].value != joint.coordinates[static_cast<std::size_t>(held[k].at.coordinate)].drawn) {
         out.message = "What holding takes is not found away from the drawn pose: " + joint.name +
@@ -336,7 +337,7 @@ class HoldingAttempt {
 
   std::optional<double> needed_by_fixed(std::size_t k, const Compiled& held, const Kinematics<double>& drawn,
                                         const ReportedForces& forces, Holding& out) const {
-    const Joint& joint = mechanism_.joints[static_cast<std::size_t>(independent_[k].joint)];
+    const Joint& joint = joint_of(mechanism_, independent_[k]);
     const auto reaction = std::ranges::find(forces.reactions, joint.name, &Reaction::joint);
     if (reaction == forces.reactions.end() || reaction->varying) {
       out.message = "What holding takes is not found: what " + joint.name +
@@ -396,7 +397,7 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   Holding out;
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   for (const CoordinateReference& f : frictions) {
-    const Joint& joint = mechanism.joints[static_cast<std::size_t>(f.joint)];
+    const Joint& joint = joint_of(mechanism, f);
     out.joints.push_back({joint.name,
                           f.coordinate,
                           coordinate_count(joint.type),

@@ -8,6 +8,7 @@
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/gear_train.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/elastic_force.hpp"
 
@@ -19,16 +20,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> torque_and_load_keys{"torque", "load"};
 constexpr std::size_t most_that_may_rest = 3;
-
-Joint& joint_of(Mechanism& mechanism, CoordinateReference at) {
-  return mechanism.joints[static_cast<std::size_t>(at.joint)];
-}
-const Joint& joint_of(const Mechanism& mechanism, CoordinateReference at) {
-  return mechanism.joints[static_cast<std::size_t>(at.joint)];
-}
-auto& coordinate_of(auto& mechanism, CoordinateReference at) {
-  return joint_of(mechanism, at).coordinates[static_cast<std::size_t>(at.coordinate)];
-}
 
 bool same(CoordinateReference a, CoordinateReference b) {
   return a.joint == b.joint && a.coordinate == b.coordinate;

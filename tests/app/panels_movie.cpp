@@ -24,20 +24,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// With half a second of the governor's motion, and its dialog open.
-class MovieRobot : public Robot {
+// With small pictures.
+class FilmRobot : public Robot {
  public:
-  MovieRobot() {
-    app.session.motion.duration = 0.5;
-    app.commands.run("study.motion");
-    frames(3);
+  FilmRobot() {
     app.movie.width = 160;
     app.movie.height = 91;
     app.movie.rate = 10;
-    app.commands.run("study.export");
-    frames(3);
-    REQUIRE(app.dialog.showing);
-    point({2, 2}); // nothing lights up
   }
   // Types the name of the film.
   void name(const fs::path& file) {
@@ -56,6 +49,20 @@ class MovieRobot : public Robot {
     return count;
   }
   std::size_t most_drawn = 0;
+};
+
+// With half a second of the governor's motion, and its dialog open.
+class MovieRobot : public FilmRobot {
+ public:
+  MovieRobot() {
+    app.session.motion.duration = 0.5;
+    app.commands.run("study.motion");
+    frames(3);
+    app.commands.run("study.export");
+    frames(3);
+    REQUIRE(app.dialog.showing);
+    point({2, 2}); // nothing lights up
+  }
 };
 
 std::set<std::string> names_in(const TemporaryFolder& folder) {
@@ -136,7 +143,7 @@ TEST_CASE("a film has no forces of the moment it was begun at, whatever the wind
 
 TEST_CASE("the mode that is shown is exported as it is shown") {
   const TemporaryFolder folder;
-  Robot robot;
+  FilmRobot robot;
   App& app = robot.app;
   robot.key('O');
   robot.frames(3);
@@ -145,21 +152,14 @@ TEST_CASE("the mode that is shown is exported as it is shown") {
   REQUIRE_FALSE(app.dialog.showing);
   robot.click("modes/row/1");
   app.session.study.modes.amplitude = 0.2;
-  app.movie.width = 160;
-  app.movie.height = 91;
-  app.movie.rate = 10;
   robot.click("modes/export");
   robot.frames(3);
   REQUIRE(app.dialog.showing);
   CHECK(fs::path(app.panels->movie.query().path).stem() == "flyball-governor-mode-1");
   robot.point({2, 2});
-  robot.click("movie/png");
-  app.panels->movie.query().path = (folder / "swing.png").string();
-  robot.frames(2);
+  robot.name(folder / "swing.png");
   robot.click("movie/save");
-  for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
-    robot.frames(1);
-  robot.frames(2);
+  robot.wait();
   CHECK_FALSE(app.dialog.showing);
   // At 1.04 Hz, as fast as it is.
   CHECK(app.session.notice ==
@@ -279,7 +279,7 @@ TEST_CASE("the export is on offer where a motion is shown") {
 
 TEST_CASE("the File menu exports a film of the motion, which begins for that, or of the mode that moves") {
   const TemporaryFolder folder;
-  Robot robot;
+  FilmRobot robot;
   App& app = robot.app;
   app.session.motion.duration = 0.2;
   const bool mode = GENERATE(false, true);
@@ -294,17 +294,10 @@ TEST_CASE("the File menu exports a film of the motion, which begins for that, or
   REQUIRE(app.dialog.showing);
   CHECK(app.session.motion.on == !mode);
   CHECK(app.movie.of == (mode ? Filmed::mode : Filmed::run));
-  app.movie.width = 160;
-  app.movie.height = 91;
-  app.movie.rate = 10;
   robot.point({2, 2});
-  robot.click("movie/png");
-  app.panels->movie.query().path = (folder / "film.png").string();
-  robot.frames(2);
+  robot.name(folder / "film.png");
   robot.click("movie/save");
-  for (int i = 0; i < 2000 && (app.movie.request || app.movie.progress); ++i)
-    robot.frames(1);
-  robot.frames(2);
+  robot.wait();
   CHECK_FALSE(app.dialog.showing);
   CHECK(names_in(folder).size() == (mode ? 10 : 3));
 }

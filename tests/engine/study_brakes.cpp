@@ -10,6 +10,7 @@
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/friction_report.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <cmath>
@@ -41,7 +42,7 @@ std::string torque(const std::string& law, double speed = 5) {
   return R"("drive": {"torque": "=)" + law + R"(", "speed": )" + number_text(speed) + "}";
 }
 
-std::string gear(const std::string& name, const std::string& a, const std::string& b, double ratio) {
+std::string meshing(const std::string& name, const std::string& a, const std::string& b, double ratio) {
   return R"({"name": ")" + name + R"(", "type": "gear", "joints": [")" + a + R"(", ")" + b +
          R"("], "ratio": )" + number_text(ratio) + "}";
 }
@@ -56,7 +57,7 @@ Mechanism countershaft(double limit, const std::string& law = "2 N m - 0.4 N m s
                        const std::string& more = "") {
   return scene(body_at("a", 0) + ", " + body_at("c", 0.3),
                bearing_at("pa", "a", 0, torque(law)) + ", " + bearing_at("pc", "c", 0.3, friction(limit)) +
-                   ", " + gear("g", "pa", "pc", -2),
+                   ", " + meshing("g", "pa", "pc", -2),
                more);
 }
 
@@ -73,22 +74,6 @@ Mechanism jack(double at_rest) {
       R"("gravity": [0, -9.81, 0], )");
 }
 
-double speed_of(const Solution& s, std::string_view joint) {
-  INFO(s.message);
-  return coordinate(s, joint).speed.value();
-}
-
-// The motion from the drawn pose comes to the speed that was found.
-void expect_same_motion(const Mechanism& m, const Solution& s, const std::string& joint) {
-  SimulationOptions options;
-  options.duration = 30;
-  const Run motion = simulate(m, options);
-  INFO(motion.message);
-  const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
-  REQUIRE(track != motion.coordinates.end());
-  CHECK_THAT(track->rate.back(), WithinAbs(speed_of(s, joint), 1e-7 * (1 + std::abs(speed_of(s, joint)))));
-}
-
 } // namespace
 
 TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
@@ -96,8 +81,8 @@ TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
   const Solution s = Analysis(m).solve();
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
-  CHECK_THAT(speed_of(s, "pa"), WithinRel((2 - 2 * 0.5) / 0.4, 1e-12));
-  CHECK_THAT(speed_of(s, "pc"), WithinRel(-2 * (2 - 2 * 0.5) / 0.4, 1e-12));
+  CHECK_THAT(speed(s, "pa"), WithinRel((2 - 2 * 0.5) / 0.4, 1e-12));
+  CHECK_THAT(speed(s, "pc"), WithinRel(-2 * (2 - 2 * 0.5) / 0.4, 1e-12));
   REQUIRE(s.frictions.size() == 1);
   CHECK(s.frictions[0].slips);
   CHECK(s.frictions[0].value == 0.5);
@@ -106,7 +91,7 @@ TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
   CHECK(s.stable == true);
   CHECK_THAT(s.message, ContainsSubstring("pc slips at a constant rate"));
   CHECK_THAT(s.message, !ContainsSubstring("Without friction there is no steady state"));
-  expect_same_motion(m, s, "pa");
+  expect_same_motion(m, s, "pa", 30, 1);
 }
 
 TEST_CASE("a brake on a countershaft that holds takes the torque at rest over the ratio") {
@@ -114,7 +99,7 @@ TEST_CASE("a brake on a countershaft that holds takes the torque at rest over th
   const Solution s = Analysis(m).solve();
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
-  CHECK(speed_of(s, "pa") == 0);
+  CHECK(speed(s, "pa") == 0);
   REQUIRE(s.frictions.size() == 1);
   CHECK_FALSE(s.frictions[0].slips);
   CHECK_THAT(s.frictions[0].value.value(), WithinRel(1., 1e-12));
@@ -125,7 +110,7 @@ TEST_CASE("a brake on a countershaft that holds takes the torque at rest over th
   INFO(holding.message);
   CHECK_THAT(holding.takes.value(), WithinRel(1 / 1.5, 1e-12));
   CHECK_FALSE(report_friction(m, s).band.found);
-  expect_same_motion(m, s, "pa");
+  expect_same_motion(m, s, "pa", 30, 1);
 }
 
 TEST_CASE("friction at the very joint that a torque turns") {
@@ -137,7 +122,7 @@ TEST_CASE("friction at the very joint that a torque turns") {
   const Solution s = Analysis(m).solve();
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
-  CHECK_THAT(speed_of(s, "pa"), WithinAbs(std::max(0., (2 - limit) / 0.4), 1e-12));
+  CHECK_THAT(speed(s, "pa"), WithinAbs(std::max(0., (2 - limit) / 0.4), 1e-12));
   REQUIRE(s.frictions.size() == 1);
   CHECK(s.frictions[0].slips == (limit < 2));
   CHECK_THAT(s.frictions[0].value.value(), WithinRel(-std::min(limit, 2.), 1e-12));
@@ -145,25 +130,25 @@ TEST_CASE("friction at the very joint that a torque turns") {
   CHECK_THAT(s.drive_torques[0].value, WithinRel(std::min(limit, 2.), 1e-12));
   REQUIRE(s.drive_torques[0].given);
   CHECK_THAT(s.drive_torques[0].given->load, WithinAbs(0, 1e-15));
-  expect_same_motion(m, s, "pa");
+  expect_same_motion(m, s, "pa", 30, 1);
 }
 
 TEST_CASE("a screw jack rises, sinks, and locks itself") {
   const double r = 0.01 / (2 * std::numbers::pi), weight = 5 * 9.81;
   const Solution up = Analysis(jack(0.2)).solve();
   REQUIRE(up.status == Status::converged);
-  CHECK_THAT(speed_of(up, "pa"), WithinRel((0.2 - r * (weight + 30)) / 0.4, 1e-12));
-  expect_same_motion(jack(0.2), up, "pa");
+  CHECK_THAT(speed(up, "pa"), WithinRel((0.2 - r * (weight + 30)) / 0.4, 1e-12));
+  expect_same_motion(jack(0.2), up, "pa", 30, 1);
   const Solution down = Analysis(jack(-0.2)).solve();
   REQUIRE(down.status == Status::converged);
-  CHECK_THAT(speed_of(down, "pa"), WithinRel((-0.2 - r * (weight - 30)) / 0.4, 1e-12));
+  CHECK_THAT(speed(down, "pa"), WithinRel((-0.2 - r * (weight - 30)) / 0.4, 1e-12));
   const Solution locks = Analysis(jack(0.05)).solve();
   INFO(locks.message);
   REQUIRE(locks.status == Status::converged);
-  CHECK(speed_of(locks, "pa") == 0);
+  CHECK(speed(locks, "pa") == 0);
   CHECK_THAT(locks.frictions.at(0).value.value(), WithinRel(weight - 0.05 / r, 1e-12));
   CHECK_THAT(find_holding(jack(0.05), {}).takes.value(), WithinRel((weight - 0.05 / r) / 30, 1e-12));
-  expect_same_motion(jack(0.05), locks, "pa");
+  expect_same_motion(jack(0.05), locks, "pa", 30, 1);
 }
 
 TEST_CASE("the torque at rest may depend on where others stand") {
@@ -172,7 +157,7 @@ TEST_CASE("the torque at rest may depend on where others stand") {
   const Mechanism m =
       scene(body_at("a", 0) + ", " + body_at("c", 0.3) + ", " + body_at("b", 1, 2),
             bearing_at("pa", "a", 0, torque("2 N m - 0.4 N m s*rate(pa) + 10 N*coordinate(slide)")) + ", " +
-                bearing_at("pc", "c", 0.3, friction(limit)) + ", " + gear("g", "pa", "pc", -2) +
+                bearing_at("pc", "c", 0.3, friction(limit)) + ", " + meshing("g", "pa", "pc", -2) +
                 R"(, {"name": "slide", "type": "prismatic", "bodies": ["ground", "b"], "at": [1, 0, 0],
               "axis": [0, -1, 0], "spring": {"stiffness": 200}, "damping": 50})",
             R"("gravity": [0, -10, 0], )");
@@ -180,7 +165,7 @@ TEST_CASE("the torque at rest may depend on where others stand") {
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
   CHECK_THAT(value(s, "slide"), WithinRel(0.1, 1e-10));
-  CHECK_THAT(speed_of(s, "pa"), WithinAbs(std::max(0., (3 - 2 * limit) / 0.4), 1e-10));
+  CHECK_THAT(speed(s, "pa"), WithinAbs(std::max(0., (3 - 2 * limit) / 0.4), 1e-10));
   CHECK_THAT(s.frictions.at(0).value.value(), WithinRel(std::min(limit, 1.5), 1e-10));
   CHECK_THAT(find_holding(m, {}).takes.value(), WithinRel(1.5 / limit, 1e-10));
   CHECK(s.measures.empty());
@@ -195,7 +180,7 @@ TEST_CASE("a shaft that starts fast runs on where one that rests is held") {
   const Solution runs = Analysis(shaft(9)).solve();
   INFO(runs.message);
   REQUIRE(runs.status == Status::converged);
-  CHECK_THAT(speed_of(runs, "pa"), WithinRel(5 + std::sqrt(25 - 0.2 / 0.06), 1e-10));
+  CHECK_THAT(speed(runs, "pa"), WithinRel(5 + std::sqrt(25 - 0.2 / 0.06), 1e-10));
   const AllSolutions all = Analysis(shaft(9)).solve_all();
   INFO(all.message);
   CHECK(std::ranges::any_of(all.equilibria, [](const Solution& s) { return s.frictions.at(0).slips; }));
@@ -215,7 +200,7 @@ TEST_CASE("random trains of gears with several brakes and torques: as summed on 
       const bool brake = i == (trial + 1) % shafts || (uniform(random, 0, 1) < 0.4 && limits == 0);
       if (i > 0) {
         const double step = std::copysign(uniform(random, 0.4, 2.5), uniform(random, -1, 1));
-        joints += ", " + gear("g" + std::to_string(i), "j" + std::to_string(i - 1), j, step) + ", ";
+        joints += ", " + meshing("g" + std::to_string(i), "j" + std::to_string(i - 1), j, step) + ", ";
         ratio *= step;
       }
       std::string more;
@@ -300,7 +285,7 @@ TEST_CASE("behind a brake that holds, a flexible coupling winds up and its shaft
     }));
   } else {
     CHECK(s.frictions[0].slips);
-    CHECK_THAT(speed_of(s, "pa"), WithinRel(2., 1e-9));
+    CHECK_THAT(speed(s, "pa"), WithinRel(2., 1e-9));
     CHECK_THAT(value(s, "c"), WithinRel(-0.3, 1e-9));
   }
 }

@@ -9,6 +9,7 @@
 #include "engine/study/sweep.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/solutions.hpp"
 
 #include <string>
@@ -39,21 +40,6 @@ std::string turning(const std::string& name, const std::string& parent, const st
 const std::string paddles =
     R"({"name": "a", "type": "drag", "body": "disc", "at": [0.3, 0, 0], "linear": 0.5},
        {"name": "b", "type": "drag", "body": "disc", "at": [-0.3, 0, 0], "linear": 0.5})";
-
-double rate(const Solution& s, std::string_view joint) {
-  INFO(s.message);
-  return coordinate(s, joint).speed.value();
-}
-
-void expect_motion(const Mechanism& m, const Solution& s, const std::string& joint) {
-  SimulationOptions options;
-  options.duration = 10;
-  const Run motion = simulate(m, options);
-  INFO(motion.message);
-  const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
-  REQUIRE(track != motion.coordinates.end());
-  CHECK_THAT(track->rate.back(), WithinRel(rate(s, joint), 1e-7));
-}
 
 } // namespace
 
@@ -86,8 +72,8 @@ TEST_CASE("a clutch between two shafts in bearings of their own locks or slips")
   const bool locks = limit > taken;
   CHECK(s.frictions[0].slips == !locks);
   CHECK_THAT(s.frictions[0].value.value(), WithinRel(locks ? taken : limit, 1e-10));
-  CHECK_THAT(rate(s, "pa"), WithinRel(locks ? 5 / 1.2 : 5 - limit, 1e-10));
-  CHECK_THAT(rate(s, "pb"), WithinRel(locks ? 5 / 1.2 : limit / 0.2, 1e-10));
+  CHECK_THAT(speed(s, "pa"), WithinRel(locks ? 5 / 1.2 : 5 - limit, 1e-10));
+  CHECK_THAT(speed(s, "pb"), WithinRel(locks ? 5 / 1.2 : limit / 0.2, 1e-10));
   if (!locks) return;
   CHECK(value(s, "c") == 0);
   CHECK_THAT(s.message, ContainsSubstring("Friction holds c as drawn"));
@@ -117,8 +103,8 @@ TEST_CASE("a clutch that slips drives against a brake: T / c") {
   const Solution s = Analysis(m).solve();
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
-  CHECK_THAT(rate(s, "clutch"), WithinRel(0.5 / 0.1 - 20, 1e-12));
-  CHECK_THAT(rate(s, "brake"), WithinRel(0.5 / 0.1, 1e-12));
+  CHECK_THAT(speed(s, "clutch"), WithinRel(0.5 / 0.1 - 20, 1e-12));
+  CHECK_THAT(speed(s, "brake"), WithinRel(0.5 / 0.1, 1e-12));
   CHECK(s.stable == true);
   REQUIRE(s.frictions.size() == 1);
   CHECK(s.frictions[0].slips);
@@ -126,22 +112,22 @@ TEST_CASE("a clutch that slips drives against a brake: T / c") {
   REQUIRE(s.drive_torques.size() == 1);
   CHECK_THAT(s.drive_torques[0].value, WithinRel(0.5, 1e-12));
   CHECK_THAT(s.message, ContainsSubstring("clutch slips at a constant rate"));
-  expect_motion(m, s, "clutch");
+  expect_same_motion(m, s, "clutch", 10, 0);
 }
 
 TEST_CASE("friction in the brake, which closes the loop") {
   const Mechanism m = disc_on_shaft(turning("free", "shaft", R"("damping": 0.1)") + ", " +
                                     turning("brake", "ground", R"("friction": {"limit": 0.5})"));
   const Solution s = Analysis(m).solve();
-  CHECK_THAT(rate(s, "brake"), WithinRel(20 - 0.5 / 0.1, 1e-12));
-  expect_motion(m, s, "brake");
+  CHECK_THAT(speed(s, "brake"), WithinRel(20 - 0.5 / 0.1, 1e-12));
+  expect_same_motion(m, s, "brake", 10, 0);
 }
 
 TEST_CASE("a disc that the air brakes: held by enough friction, slipping with less") {
   const Mechanism slips = disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 0.5})"), paddles);
   const Solution s = Analysis(slips).solve();
-  CHECK_THAT(rate(s, "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
-  expect_motion(slips, s, "free");
+  CHECK_THAT(speed(s, "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
+  expect_same_motion(slips, s, "free", 10, 0);
 
   const Mechanism holds = disc_on_shaft(turning("free", "shaft", R"("friction": {"limit": 5})"), paddles);
   const Solution held = Analysis(holds).solve();
@@ -221,7 +207,7 @@ TEST_CASE("friction in the planet of a differential that slips, against the moti
   INFO(s.message);
   REQUIRE(s.status == Status::converged);
   CHECK(s.frictions.at(0).slips);
-  expect_motion(m, s, "planet");
+  expect_same_motion(m, s, "planet", 10, 0);
 }
 
 TEST_CASE("the load of a clutch rises: it holds up to T / w, then slips, in a sweep and in a branch") {
@@ -235,7 +221,7 @@ TEST_CASE("the load of a clutch rises: it holds up to T / w, then slips, in a sw
     REQUIRE(p.solution.status == Status::converged);
     REQUIRE(p.solution.frictions.size() == 1);
     CHECK(p.solution.frictions[0].slips == (c > change));
-    CHECK_THAT(rate(p.solution, "brake"), WithinRel(c > change ? limit / c : speed, 1e-12));
+    CHECK_THAT(test::speed(p.solution, "brake"), WithinRel(c > change ? limit / c : speed, 1e-12));
   }
   for (const bool rises : {true, false}) {
     CAPTURE(rises);
@@ -313,7 +299,7 @@ TEST_CASE("all steady states: what slips is listed, and bands tell of what frict
   INFO(slipping.message);
   REQUIRE(slipping.equilibria.size() == 1);
   CHECK(slipping.equilibria[0].frictions.at(0).slips);
-  CHECK_THAT(rate(slipping.equilibria[0], "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
+  CHECK_THAT(speed(slipping.equilibria[0], "free"), WithinRel(-20 + 0.5 / 0.09, 1e-12));
   CHECK_THAT(slipping.message, ContainsSubstring("No steady state without friction in it was found"));
   CHECK_THAT(slipping.message, ContainsSubstring("One rests on friction."));
 

@@ -1,11 +1,13 @@
 // Drives that give a torque, and Haug's governor in closed form.
 #pragma once
 
+#include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -21,6 +23,20 @@ namespace flyball::test {
 inline double speed(const Solution& s, std::string_view joint) {
   INFO(s.message);
   return coordinate(s, joint).speed.value();
+}
+
+// That the motion from the drawn pose has come to the speed that was found of a joint, after this time (s),
+// within 1e-7 of `size` (rad/s, m/s) and the speed.
+inline void expect_same_motion(const Mechanism& m, const Solution& s, const std::string& joint,
+                               double duration, double size) {
+  SimulationOptions options;
+  options.duration = duration;
+  const Run motion = simulate(m, options);
+  INFO(motion.message);
+  const auto track = std::ranges::find(motion.coordinates, joint, &CoordinateTrack::joint);
+  REQUIRE(track != motion.coordinates.end());
+  const double found = speed(s, joint);
+  CHECK_THAT(track->rate.back(), Catch::Matchers::WithinAbs(found, 1e-7 * (size + std::abs(found))));
 }
 
 // A joint whose drive gives a torque by a law, or as a number. The search for its speed begins at `guess`.
