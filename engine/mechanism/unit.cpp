@@ -33,6 +33,7 @@ std::span<const Unit> units() {
       Unit{"deg", degree, angle},
       Unit{"°", degree, angle},
       Unit{"rev", turn, angle},
+      Unit{"turn", turn, angle},
       Unit{"s", 1, time},
       Unit{"ms", 1e-3, time},
       Unit{"min", 60, time},

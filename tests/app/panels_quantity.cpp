@@ -88,6 +88,7 @@ TEST_CASE("units of the same kind are converted") {
       Typed{"45 deg", "rad", 45 * degree},
       Typed{"45°", "rad", 45 * degree},
       Typed{"1/4 rev", "rad", pi / 2},
+      Typed{"1/4 turn", "rad", pi / 2},
       Typed{"2 pi rad", "rad", 2 * pi},
       Typed{"20 mrad", "rad", 0.02},
       Typed{"pi rad", "rad", pi},

@@ -1,4 +1,5 @@
 // Numbers are shown in the units a person has chosen, in fields, results and plots alike; files stay in SI.
+#include "app/document/formula_edits.hpp"
 #include "app/plot/csv.hpp"
 #include "app/session/quantity.hpp"
 #include "app/session/settings.hpp"
@@ -231,4 +232,59 @@ TEST_CASE("an expression of numbers alone is in the unit of its field") {
   robot.frames(3);
   enter("inspector/drive/speed", "=60");
   CHECK(get_parameter(app.session.document.stored(), speed) == Approx(2 * std::numbers::pi).epsilon(1e-14));
+  enter("inspector/drive/speed", "=exp(0)*60"); // a function that is known in expressions alone
+  CHECK(get_parameter(app.session.document.stored(), speed) == Approx(2 * std::numbers::pi).epsilon(1e-14));
+}
+
+TEST_CASE("numbers have the same value with and without the sign of an expression") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  choose_units(app.session, app.ui, app.view, workshop); // mm, degrees, rpm
+  set_mode(app.session, Mode::build);
+  select(app.session, {{{PartKind::body, "collar"}}});
+  robot.frames(3);
+  const auto entered = [&](const char* field, const std::string& text) {
+    robot.frames(60); // no double click
+    robot.click(field);
+    robot.key('A', true);
+    robot.type(text);
+    robot.key(key_enter);
+    robot.frames(2);
+    return app.session.document.stored();
+  };
+  for (const char* text : {"10*pi", "10 + 5 mm", "1/2 in", "sqrt(2)", "-3", "2*0.1 m", "0.03"}) {
+    INFO(text);
+    const double plain = entered("inspector/position/x", text).bodies.back().position.x();
+    entered("inspector/position/x", "1");
+    CHECK(entered("inspector/position/x", "=" + std::string(text)).bodies.back().position.x() ==
+          Approx(plain).epsilon(1e-14));
+  }
+  robot.click("inspector/rotation section");
+  robot.frames(2);
+  for (const char* text : {"pi/18", "10", "2*asin(0.5)", "1/8 turn"}) {
+    INFO(text);
+    const Eigen::Quaterniond plain = entered("inspector/rotation/z", text).bodies.back().rotation;
+    entered("inspector/rotation/z", "1");
+    CHECK(entered("inspector/rotation/z", "=" + std::string(text))
+              .bodies.back()
+              .rotation.isApprox(plain, 1e-13));
+  }
+}
+
+TEST_CASE("an expression of a file is in SI units, and is shown so where it is typed at") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  choose_units(app.session, app.ui, app.view, workshop);
+  set_mode(app.session, Mode::build);
+  edit(app.session, "Place", [](Mechanism& mechanism, Selection& selection) {
+    set_expression(mechanism, "bodies.collar.position.0", "2*0.05");
+    selection.set({PartKind::body, "collar"});
+  });
+  robot.frames(3);
+  robot.click("inspector/position/x");
+  robot.frames(2);
+  CHECK(app.ui.fields.typing.text == "=(2*0.05)*1 m");
+  robot.key(key_enter);
+  robot.frames(2);
+  CHECK(formula_at(app.session.document.stored(), "bodies.collar.position.0") == "2*0.05");
 }

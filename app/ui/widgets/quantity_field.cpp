@@ -79,21 +79,59 @@ bool is_expression(const QuantityField& field, std::string_view text) {
   return !place_of(field).empty() && text.starts_with('=');
 }
 
-// An expression of numbers alone is in the field's unit, as a number by itself is: "=60" is 60 mm where these
-// are shown.
+// "60 rpm", "2*3": it rests on nothing that could change.
+bool is_of_numbers_alone(const std::string& text) {
+  try {
+    const Expression expression(text, Expression::Results::allowed);
+    return expression.names().empty() && expression.results().empty();
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+// "2*3", "exp(2)": of numbers alone, without a unit.
+bool is_plain(const std::string& numbers) {
+  try {
+    return Expression(numbers).dimension({}).plain;
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+// "60 mm", "(2*3)*1 mm"; the unit as in files ("deg").
+std::string times_one(const std::string& numbers, const std::string& unit) {
+  const std::size_t begin = numbers.find_first_not_of(' '), end = numbers.find_last_not_of(' ') + 1;
+  const std::string trimmed = numbers.substr(begin, end - begin);
+  const bool single = trimmed.find_first_not_of("0123456789.") == std::string::npos;
+  return (single ? trimmed : "(" + trimmed + ")*1") + " " + unit;
+}
+
+// An expression of numbers alone has the value that it has without the "=": "=60" is 60 mm where these are
+// shown. In the mechanism numbers without a unit are in SI units, so theirs is written behind them.
 std::string with_field_unit(const Session& session, const QuantityField& field, const std::string& typed) {
   const std::string text = plain_signs(typed);
-  const std::string shown = shown_unit(field.unit, session.units).text;
-  const bool numbers = text.find_first_not_of("0123456789.eE+-*/^() ") == std::string::npos &&
-                       text.find_first_of("0123456789") != std::string::npos;
-  if (!numbers || field.unit.empty() || (shown == written_unit(field.unit) && field.unit != "deg"))
-    return text;
-  std::string unit = shown;
-  if (unit.starts_with("°")) unit.replace(0, std::string("°").size(), "deg");
-  const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ') + 1;
-  const std::string trimmed = text.substr(begin, end - begin);
-  const bool single = trimmed.find_first_not_of("0123456789.") == std::string::npos;
-  return (single ? trimmed : "(" + trimmed + ")*1") + " " + plain_signs(unit);
+  const ShownUnit shown = shown_unit(field.unit, session.units);
+  const std::optional<Unit> unit = parse_unit(field.unit);
+  if (shown.text.empty() || !unit || !is_of_numbers_alone(text)) return text;
+  std::string written = plain_signs(shown.text);
+  if (written.starts_with("°")) written.replace(0, std::string("°").size(), "deg");
+  const std::string united = times_one(text, written);
+  const Quantity value = typed_quantity(session, text, field);
+  if (!value) return is_plain(text) ? united : text; // "exp(2)"; "2 kg" of a length
+  const double meant = times_unit(value.value, unit->factor);
+  const auto means = [&](const std::string& numbers) { // all of it in SI units and radians
+    return std::abs(Expression(numbers).evaluate({}).value - meant) <= 1e-12 * std::abs(meant);
+  };
+  if (means(text)) return text;
+  if (means(united)) return united;
+  return number_text(shown.shown(value.value)) + " " + written; // "10 + 5 mm"
+}
+
+// The expression that is kept, to be typed at: with the unit that it has in files where the field's is
+// another.
+std::string typed_again(const Session& session, const QuantityField& field, const std::string& kept) {
+  if (with_field_unit(session, field, kept) == kept || !is_plain(kept)) return kept;
+  return times_one(kept, field.unit == "deg" ? "rad" : field.unit);
 }
 
 // What a typed expression does; a point's name alone gives all three numbers of a vector.
@@ -124,16 +162,6 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
   constexpr double largest = 1e30; // as in a scene
   if (typed && std::abs(typed.value) > largest) return "Expected no more than 1e30 in size.";
   return typed ? too_small(typed.value, field.least) : typed.mistake;
-}
-
-// "60 rpm", "2*3": it rests on nothing that could change.
-bool is_of_numbers_alone(const std::string& text) {
-  try {
-    const Expression expression(text, Expression::Results::allowed);
-    return expression.names().empty() && expression.results().empty();
-  } catch (const ExpressionError&) {
-    return false;
-  }
 }
 
 bool has_slider(const Session& session, const std::string& address) {
@@ -301,7 +329,7 @@ void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& s
   list.PopClipRect();
 }
 
-std::string tooltip(const QuantityField& field, const ShownNumber& shown,
+std::string tooltip(const Session& session, const QuantityField& field, const ShownNumber& shown,
                     const std::optional<std::string>& formula) {
   std::string text = field.help;
   const auto line = [&](const std::string& more) { text += (text.empty() ? "" : "\n") + more; };
@@ -316,7 +344,9 @@ std::string tooltip(const QuantityField& field, const ShownNumber& shown,
       exact += " = " + short_text(field.value * degrees / 6, 9) + " rpm";
     line(exact + (field.standard ? ", as the scene does not say otherwise" : ""));
   }
-  if (formula) line("=" + *formula + "\nNumbers without a unit are in SI units and radians.");
+  if (formula)
+    line("=" + typed_again(session, field, *formula) +
+         "\nBeside names, numbers without a unit are in SI units and radians.");
   if (!field.address.empty()) line(field.address);
   return text;
 }
@@ -356,7 +386,7 @@ void scrub_label(Session& session, Ui& ui, const std::string& label, const Quant
   const bool lit = draggable && (active || ImGui::IsItemHovered());
   if (lit) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   const ShownNumber shown(session, field);
-  if (!active) help_on_hover(tooltip(field, shown, formula_of(session, field)).c_str());
+  if (!active) help_on_hover(tooltip(session, field, shown, formula_of(session, field)).c_str());
   if (const auto dragged = dragged_number(ui, name, shown.value, shown.unit.text); dragged && draggable) {
     const double next = shown.unit.si(*dragged);
     if (next != field.value && too_small(next, field.least).empty()) set(session, ui, field, next);
@@ -435,7 +465,7 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
   Stepping stepping{field, shown, ui.fields.typing};
   TextField text{
       .name = field.name,
-      .text = formula                 ? "=" + *formula
+      .text = formula                 ? "=" + typed_again(session, field, *formula)
               : field.various.empty() ? with_unit(number_text(shown.value), shown.unit.text)
                                       : "",
       .check = [&session, field](const std::string& typed) { return mistake_in(session, typed, field); },
@@ -459,7 +489,7 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
   const bool asked = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
   if (!typing) {
     draw_resting(ui, field, shown, padding, formula.has_value());
-    help_on_hover(tooltip(field, shown, formula).c_str());
+    help_on_hover(tooltip(session, field, shown, formula).c_str());
   } else if (stepping.stepped) {
     if (const Quantity typed = typed_quantity(session, ui.fields.typing.text, field))
       set(session, ui, field, typed.value);
