@@ -50,8 +50,9 @@ void fit_view(const ViewContext& context, ViewSize size) {
   if (!context.view.fit) return;
   const ViewScene& scene = *shown_scene(context);
   Bounds bounds = scene.solid.bounds;
-  for (const Instance& instance : scene.ghost)
-    bounds.add(instance_bounds(instance));
+  for (const std::vector<Instance>* beside : {&scene.ghost, &scene.drawn})
+    for (const Instance& instance : *beside)
+      bounds.add(instance_bounds(instance));
   if (context.view.keep_direction) {
     (context.view.glide ? context.view.glide->to : context.view.camera).fit(bounds, size);
   } else {

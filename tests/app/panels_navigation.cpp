@@ -144,3 +144,20 @@ TEST_CASE("how the mouse came to where it is pressed is no drag") {
     robot.point({view.from.x + 20, view.to.y - 20});
   }
 }
+
+TEST_CASE("a scene that is opened has its drawn pose in view, too") {
+  Robot robot({1280, 800});
+  App& app = robot.app;
+  robot.frames(2);
+  REQUIRE(app.view.scene.scene);
+  REQUIRE_FALSE(app.view.scene.scene->drawn.empty());
+  for (const Instance& instance : app.view.scene.scene->drawn) {
+    const Bounds bounds = instance_bounds(instance);
+    for (const Vec3& corner : {bounds.lower, bounds.upper}) {
+      const std::optional<Vec2> at = app.view.camera.project(corner, app.view.size);
+      REQUIRE(at);
+      CHECK((at->x() > 0 && at->x() < app.view.size.width));
+      CHECK((at->y() > 0 && at->y() < app.view.size.height));
+    }
+  }
+}
