@@ -1,6 +1,7 @@
 #include "engine/continuation/crossing_pair.hpp"
 
 #include "engine/stability/stability.hpp"
+#include "engine/stability/steady_motion.hpp"
 
 #include <cmath>
 #include <limits>

@@ -77,9 +77,11 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
     out.basis = w.dense.constraints().basis();
     out.unit = problem.scaling.column;
     out.stiffness = w.dense.reduced();
+    out.noise = w.dense.noise();
   } else {
     const Scaling scaling = motion_scaling(problem);
     out.unit = scaling.column;
+    const Eigen::VectorXd terms = w.magnitudes.force.cwiseProduct(out.unit);
     ConstraintSpace space;
     Eigen::MatrixXd jacobian(system.rows, system.nv);
     if (system.rows > 0)
@@ -100,6 +102,7 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
     }
     out.stiffness_terms = stiffness.norm();
     out.stiffness = large::projected(stiffness, out.basis);
+    out.noise = KktSystem::rounding * out.basis.cwiseAbs2().transpose() * terms;
   }
   const auto s = out.unit.asDiagonal();
   out.mass = large::projected(s * l.mass * s, out.basis);

@@ -23,6 +23,7 @@ struct ReducedMotion {
   Eigen::MatrixXd mass, velocity, stiffness; // (k, k)
   Eigen::MatrixXd basis;                     // (n, k), orthonormal
   Eigen::VectorXd unit;                      // (n), rad or m per unit of it
+  Eigen::VectorXd noise; // (k), below what size a diagonal entry of the stiffness is rounding
   // Whether the angle of something that turns at a speed that is found matters (phase_stiffness.hpp): then it
   // is none of the cyclic ones.
   bool of_angles = false;

@@ -2,6 +2,7 @@
 
 #include "engine/linear/largest.hpp"
 #include "engine/solve/refine.hpp"
+#include "engine/stability/steady_motion.hpp"
 
 #include <algorithm>
 

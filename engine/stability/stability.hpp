@@ -3,21 +3,16 @@
 // turns with the drives, the multipliers of Floquet's theory alone.
 #pragma once
 
-#include "engine/solve/factored_state.hpp"
-#include "engine/solve/solution.hpp"
+#include "engine/stability/certificates.hpp"
 #include "engine/stability/floquet.hpp"
 #include "engine/stability/kinks.hpp"
-
-#include <complex>
 
 namespace flyball {
 
 // Coordinates up to which eigenvalues are found without being asked for.
 inline constexpr int largest_for_eigenvalues = 200;
 
-struct Stability {
-  std::optional<bool> stable;
-  std::optional<StabilityReason> reason;
+struct Stability : Verdict {
   // 1/s, by size of the imaginary part: of the linearised motion, or Floquet's exponents.
   std::optional<std::vector<std::complex<double>>> eigenvalues;
   int null_eigenvalues = 0;       // at most as many of these, the smallest, belong to null directions
@@ -31,9 +26,6 @@ struct Stability {
   bool kinks_leave_open = false; // stable or not: the sides differ, or there is no potential to compare them
 };
 
-// How far from zero (1/s) rounding may put the real part of an eigenvalue, `largest` the size of the largest.
-double real_part_rounding(std::complex<double> s, double largest);
-
 // Whether f is the gradient of the amended potential at a steady state z although drives ride on drives:
 // whether the scaled `stiffness` there is symmetric and agrees with the potential's second differences, which
 // are taken in `w`.
@@ -42,12 +34,6 @@ bool has_potential(const Problem& problem, const Unknowns& z, const Eigen::Matri
 // Whether the linearised motion turns with the drives, as far as is known: comparing it over the phases
 // would take too long in very large mechanisms.
 bool may_vary(const Problem& problem, const Unknowns& z, const std::vector<double>& phases, Workspace& w);
-
-// Eigenvalues (1/s) of the motion linearised at the drawn phase, whatever it is at others: of a dense problem
-// that is evaluated and factored at z in the workspace, with its best multipliers. Nothing where they cannot
-// be found.
-std::optional<std::vector<std::complex<double>>> motion_eigenvalues(const Problem& problem, const Unknowns& z,
-                                                                    Workspace& w);
 
 // Of a steady state. Of a dense problem `with_eigenvalues` asks for the full picture, else only the sign of a
 // minimum is found; of others the signs of the pivots decide (pivot_stability.hpp). On kinks of laws it is

@@ -327,6 +327,24 @@ TEST_CASE("what a minimum at given speeds proves needs torques that fall with th
     CHECK(s.stable == true);
     CHECK_THAT(speed(s, "s9"), WithinRel(10. / 3, 1e-12));
   }
+  SECTION("where eigenvalues leave it open: balls that swing against each other without damping") {
+    Mechanism m;
+    m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1}), body("right", 1, {0.5, 0, -0.3}, {0, 0, 0}),
+                body("left", 1, {-0.5, 0, -0.3}, {0, 0, 0})};
+    m.joints = {torque_driven(revolute("spin", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), 4,
+                              "2 N m - 0.4 N m s * rate(spin)"),
+                revolute("a", "rotor", "right", {0.2, 0, 0}, {0, 1, 0}),
+                revolute("b", "rotor", "left", {-0.2, 0, 0}, {0, 1, 0})};
+    validate(m);
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "spin"), WithinRel(5., 1e-12));
+    REQUIRE(s.eigenvalues);
+    CHECK(std::ranges::any_of(
+        *s.eigenvalues, [](std::complex<double> x) { return std::abs(x.real()) < 1e-9 && x.imag() > 1; }));
+    CHECK(s.stable == true);
+    CHECK(s.stability_reason == StabilityReason::minimum);
+  }
   SECTION("kinks of torque and load together: no side alone tells") {
     const int count = GENERATE(4, 9, 20);
     Mechanism m = sprung_chain(count);
