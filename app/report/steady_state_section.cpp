@@ -2,11 +2,18 @@
 #include "app/report/sections.hpp"
 #include "engine/mechanism/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace flyball {
 namespace {
+
+// Of a coordinate, or of its speed: nothing where rounding is all that there is of it.
+Html everyday(double value, double error, double shown, std::string_view unit) {
+  constexpr double rounding = 1e-15; // rad, m, rad/s, m/s
+  return quantity(std::abs(value) <= std::max(error, rounding) ? 0 : value * shown, unit);
+}
 
 Html coordinates_table(const Solution& s) {
   HtmlTable table(
@@ -17,7 +24,7 @@ Html coordinates_table(const Solution& s) {
       const std::string_view unit = c.angle ? "rad/s" : "m/s";
       const double shown = c.angle ? 30 / std::numbers::pi : 1000;
       table.row({label, quantity_within(*c.speed, c.speed_error, unit), magnitude(c.speed_error, unit),
-                 quantity(*c.speed * shown, c.angle ? "rpm" : "mm/s"),
+                 everyday(*c.speed, c.speed_error, shown, c.angle ? "rpm" : "mm/s"),
                  c.dependent ? "speed, closes a loop" : "speed, found"});
       continue;
     }
@@ -28,7 +35,7 @@ Html coordinates_table(const Solution& s) {
     const std::string_view unit = coordinate_unit_of(c.angle);
     const double shown = c.angle ? 180 / std::numbers::pi : 1000;
     table.row({label, quantity_within(c.value, c.error, unit), magnitude(c.error, unit),
-               quantity(c.value * shown, c.angle ? "°" : "mm"), c.dependent ? "closes a loop" : ""});
+               everyday(c.value, c.error, shown, c.angle ? "°" : "mm"), c.dependent ? "closes a loop" : ""});
   }
   return table.html();
 }

@@ -24,6 +24,7 @@ namespace {
 constexpr double nothing = 1e-9;    // of what a signal feels, beside the most that it feels
 constexpr double rounding = 1e-11;  // the same: what differences leave of nothing
 constexpr double same_phase = 1e-7; // the same, of two phases
+constexpr double no_effect = 1e-14; // of an input, beside what holds the mechanism
 
 template <class... Numbers>
 bool moves(const Numbers&... numbers) {
@@ -429,6 +430,14 @@ class Builder {
     out.scaled_shift = column.cwiseInverse().asDiagonal() * out.shift;
     out.stiffness_size = motion.stiffness.norm();
     out.speed_size = speed_scale(motion);
+    for (Eigen::Index j = 0; j < inputs && k > 0; ++j) {
+      if (!is_rounding(out, j, column.maxCoeff())) continue;
+      InputEffect& e = effects[static_cast<std::size_t>(j)];
+      for (Eigen::VectorXd* x : {&e.b0, &e.shift})
+        x->setZero();
+      for (Eigen::MatrixXd* x : {&fed, &out.b0, &out.shift, &out.scaled_b0, &out.scaled_shift})
+        x->col(j).setZero();
+    }
     const auto accelerated = [&](const Eigen::MatrixXd& rhs) {
       Eigen::MatrixXd x(rhs.rows(), rhs.cols());
       for (Eigen::Index i = 0; i < rhs.cols(); ++i)
@@ -513,6 +522,16 @@ class Builder {
     out.c_rate = per_unit.middleCols(k, k);
     out.d = per_unit.rightCols(inputs);
     return out;
+  }
+
+  // Whether nothing is left of what an input does but rounding: for all of a number, or one newton at the
+  // longest arm.
+  bool is_rounding(const Matrices& m, Eigen::Index j, double arm) const {
+    const double force = m.scaled_b0.col(j).lpNorm<Eigen::Infinity>(),
+                 speed = m.scaled_shift.col(j).lpNorm<Eigen::Infinity>();
+    if (numbers_[static_cast<std::size_t>(j)] < 0) return speed == 0 && force <= no_effect * arm;
+    const double all = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
+    return all > 0 && all * force <= no_effect * m.stiffness_size && all * speed <= no_effect * m.speed_size;
   }
 
   std::string output(Eigen::Index i) const { return signals_.outputs[static_cast<std::size_t>(i)].name; }

@@ -263,3 +263,16 @@ TEST_CASE("the model is exported, by the ending of its name") {
   CHECK(script.find("input_names = {'joints.spin.drive.speed'};") != std::string::npos);
   std::filesystem::remove(file.string() + ".m");
 }
+
+TEST_CASE("of what has no effect no gain and no phase are shown") {
+  TransferRobot robot("governor_watt");
+  robot.state().choice = {"force_z(collar)", "slide"};
+  robot.frames(3);
+  REQUIRE(robot.found().model.inputs[0].name == "force_z(collar)");
+  CHECK(robot.app.ui.widgets.contains("transfer/no effect"));
+  CHECK_FALSE(robot.app.ui.widgets.contains("transfer/gain"));
+  for (const Plot* plot : {&robot.view().magnitude, &robot.view().phase})
+    for (const auto& point : plot->curves.at(0).points)
+      CHECK(std::isnan(point[1]));
+  CHECK_FALSE(robot.view().roots.curves.at(0).points.empty()); // the mechanism has its poles
+}

@@ -237,7 +237,7 @@ TEST_CASE("an expression of numbers alone is in the unit of its field") {
 }
 
 TEST_CASE("numbers have the same value with and without the sign of an expression") {
-  Robot robot({1280, 900});
+  Robot robot({1280, 1500});
   App& app = robot.app;
   choose_units(app.session, app.ui, app.view, workshop); // mm, degrees, rpm
   set_mode(app.session, Mode::build);

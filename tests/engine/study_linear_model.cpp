@@ -361,3 +361,25 @@ TEST_CASE("the wheels of a differential answer torques as its steady states do",
   CHECK_THAT(refusal(m, {"joints.left.damping"}, {"rate(left)"}),
              ContainsSubstring("inputs are torques and forces"));
 }
+
+TEST_CASE("an input of which rounding alone is left acts on nothing", "[linear-model]") {
+  Mechanism m;
+  m.gravity = Vec3::Zero();
+  m.bodies = {body("block", 2, {0.3, 0, 0})};
+  m.joints = {prismatic("slide", "ground", "block", {0.3, 0, 0}, Vec3::UnitX())};
+  m.joints[0].coordinates[0].drawn = 0.3;
+  const auto block = [&](double free) { // stands where the stronger spring has its free length, but rounding
+    Mechanism sprung_so = m;
+    sprung_so.joints[0] = sprung(m.joints[0], 10, free);
+    sprung_so.forces = {
+        point_spring("strong", "ground", "block", {0, 0, 0}, {0.3, 0, 0}, 1e6, 0.30000000000000004)};
+    return linear_model(sprung_so, {"joints.slide.spring.stiffness", "torque(slide)"}, {"slide"});
+  };
+  const LinearModel none = block(0.3);
+  REQUIRE(none.descriptor.b.rows() == 2);
+  CHECK(none.descriptor.b.col(0).isZero(0));
+  CHECK(none.explicit_form->b.col(0).isZero(0));
+  check_transfer(none, 0, 1, {0, 3}, 1 / (1e6 + 10 - 2 * 9.));
+  const LinearModel some = block(0.3 + 1e-6); // a weak one is none that is left out
+  check_transfer(some, 0, 0, {0, 3}, (0.3 + 1e-6 - some.outputs[0].value) / (1e6 + 10 - 2 * 9.), 1e-6);
+}

@@ -99,8 +99,13 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
   const LinearModel& model = found.model;
   const NumberStyle& numbers = session.options.numbers;
   const std::string unit = written_unit(transfer_unit(model.outputs[0], model.inputs[0]));
+  const bool effect =
+      std::ranges::any_of(found.response, [](const BodePoint& point) { return point.magnitude != 0; });
   heading(ui, "Transfer function");
-  if (model.gain) {
+  if (!effect) {
+    paragraph("It is 0: about this state the input has no effect on the output.", colors.dim);
+    note_widget(ui.widgets, "transfer/no effect");
+  } else if (model.gain) {
     const double gain = (*model.gain)(0, 0);
     row(ui, "Static gain", value_text(gain, std::abs(gain) * 1e-6, numbers), unit.c_str(),
         "What a lasting change of the input by one unit comes to in the end, where the state is stable.");
@@ -108,9 +113,11 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
   } else {
     paragraph("Something integrates: there is no static gain.", colors.dim);
   }
-  row(ui, "0 dB stands for", "1", unit.c_str(),
-      "Of the magnitude: one SI unit of the output by one of the input.");
-  note_widget(ui.widgets, "transfer/reference");
+  if (effect) {
+    row(ui, "0 dB stands for", "1", unit.c_str(),
+        "Of the magnitude: one SI unit of the output by one of the input.");
+    note_widget(ui.widgets, "transfer/reference");
+  }
   row(ui, "States", std::to_string(model.states.size()), "", "Coordinates and their rates.");
   if (model.output_error[0] > 0)
     row(ui, "Relative error", magnitude_text(model.output_error[0], numbers), "",
