@@ -101,7 +101,8 @@ Html floquet_table(const Floquet& f) {
 
 ReportVerdict verdict(const Solution& s) {
   if (s.status != Status::converged) return {"No steady state", s.message, "bad"};
-  const std::string reason = s.stability_reason ? reason_text(*s.stability_reason) : "";
+  std::string reason = undamped_words(s);
+  if (reason.empty() && s.stability_reason) reason = reason_text(*s.stability_reason);
   if (!s.stable) return {"Stability open", reason, "open"};
   return *s.stable ? ReportVerdict{"Stable", reason, "good"} : ReportVerdict{"Unstable", reason, "bad"};
 }

@@ -19,6 +19,21 @@ bool some_damper_may_drive(const Mechanism& m) {
          std::ranges::any_of(m.forces, [&](const Force& x) { return drives(damper_law(x)); });
 }
 
+// See BodyForceElement::constant, of what is no force of the air.
+bool is_constant(const System& s, int body_link, const Force& f) {
+  int turning = 0, sliding = 0;
+  for (int l = body_link; l >= 0;) {
+    const Link& x = s.links[static_cast<std::size_t>(l)];
+    l = x.parent;
+    if (x.v < 0) continue;
+    if (x.drive >= 0 || x.type == LinkType::spherical) return false;
+    ++(x.type == LinkType::revolute ? turning : sliding);
+  }
+  // About one axis what turns with the body does the same work as what does not; where it slides before it
+  // turns, a force's direction matters.
+  return turning == 0 || (turning == 1 && (f.type == ForceType::torque || sliding == 0));
+}
+
 } // namespace
 
 void find_potential(const Mechanism& m, System& s) {
@@ -30,9 +45,11 @@ void find_potential(const Mechanism& m, System& s) {
     if (moving_frame(s, parent) >= 0 || (parent >= 0 && s.links[static_cast<std::size_t>(parent)].mobile))
       s.single_drives = false;
   }
-  for (const BodyForceElement& e : s.body_forces) {
+  for (BodyForceElement& e : s.body_forces) {
     const Force& f = m.forces[static_cast<std::size_t>(e.force)];
-    if (f.type != ForceType::force || f.frame != ForceFrame::world) s.conservative = false;
+    if (f.type == ForceType::force && f.frame == ForceFrame::world) continue;
+    e.constant = !is_of_air(f.type) && is_constant(s, e.link, f);
+    if (!e.constant) s.conservative = false;
   }
   for (const PointSpringElement& e : s.springs)
     if (const Force& f = m.forces[static_cast<std::size_t>(e.force)];

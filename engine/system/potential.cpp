@@ -1,8 +1,28 @@
 #include "engine/system/potential.hpp"
 
 #include "engine/system/bearing.hpp"
+#include "engine/system/residual.hpp"
 
 namespace flyball {
+
+namespace {
+
+// See BodyForceElement::constant.
+double constant_force_energy(const System& system, const BodyForceElement& e, const BodyForceParameters& f,
+                             const Eigen::VectorXd& q, const Kinematics<double>& k) {
+  double energy = 0;
+  const AppliedForce<double> a = applied_force(e, f, k);
+  for (int l = e.link; l >= 0;) {
+    const Link& link = system.links[static_cast<std::size_t>(l)];
+    l = link.parent;
+    if (link.v < 0) continue;
+    const Column<double>& column = k.columns[static_cast<std::size_t>(link.v)];
+    energy -= (column.at(a.point).dot(a.force) + column.turn().dot(a.torque)) * q[link.q];
+  }
+  return energy;
+}
+
+} // namespace
 
 Potential amended_potential(const System& system, const Parameters& p, const Eigen::VectorXd& q,
                             const Kinematics<double>& k) {
@@ -40,9 +60,14 @@ Potential amended_potential(const System& system, const Parameters& p, const Eig
     add(p.springs[i].energy(s.length));
   }
   if (!system.bearings.empty()) add(bearing_energy(system, p, k));
-  for (std::size_t i = 0; i < system.body_forces.size(); ++i)
-    if (p.body_forces[i].type == ForceType::force && p.body_forces[i].frame == ForceFrame::world)
-      add(-p.body_forces[i].vector.dot(k.point(system.body_forces[i].link, p.body_forces[i].at)));
+  for (std::size_t i = 0; i < system.body_forces.size(); ++i) {
+    const BodyForceElement& e = system.body_forces[i];
+    const BodyForceParameters& f = p.body_forces[i];
+    if (e.constant)
+      add(constant_force_energy(system, e, f, q, k));
+    else if (f.type == ForceType::force && f.frame == ForceFrame::world)
+      add(-f.vector.dot(k.point(e.link, f.at)));
+  }
   return u;
 }
 

@@ -1,7 +1,7 @@
 // The amended potential U = V - T_0 of a conservative system: V of springs, stops, gravity and constant
-// forces, T_0 the kinetic energy of the drives' motion alone. Its stationary points on the constraints are
-// the steady states; its strict minima are stable (Routh; Choi, Park and Yoo's reference [5] for the open
-// system).
+// forces and torques, T_0 the kinetic energy of the drives' motion alone. Its stationary points on the
+// constraints are the steady states; its strict minima are stable (Routh; Choi, Park and Yoo's reference [5]
+// for the open system).
 //
 // T_0 serves where the drives' phase is ignorable: with single drives that no free coordinate carries,
 // otherwise at a steady state.

@@ -123,6 +123,9 @@ struct BodyForceElement {
   int force = 0;
   int link = -1;
   PolarElement polar{};
+  // Each coordinate of q_R that moves the body feels the same force or torque Q of it wherever they are, so
+  // that its potential is -Q q: a torque on what turns about one axis alone, for instance.
+  bool constant = false;
 };
 
 // A force of the air on a body, in air that turns with another: the first end.

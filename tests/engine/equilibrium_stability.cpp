@@ -320,6 +320,72 @@ TEST_CASE("rotation can hold what the potential does not") {
   }
 }
 
+TEST_CASE("what a constant torque leans against a weight or a spring is a minimum") {
+  Force torque;
+  torque.name = "torque";
+  torque.type = ForceType::torque;
+  torque.vector = {0, 0, 1};
+  SECTION("a pendulum: leaning, and beyond the horizontal unstable") {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("rod", 2, {0, -0.3, 0}, {0.04, 0, 0.04})};
+    m.joints = {revolute("hinge", "ground", "rod", {0, 0, 0}, {0, 0, 1})};
+    torque.body = "rod";
+    m.forces = {torque};
+    const double lean = std::asin(1 / (2 * standard_gravity * 0.3));
+    const Solution s = solve(m);
+    CHECK(stable(s));
+    CHECK(s.stability_reason == StabilityReason::minimum);
+    CHECK_THAT(value(s, "hinge"), Catch::Matchers::WithinRel(lean, 1e-12));
+    const AllSolutions all = Analysis(m).solve_all();
+    REQUIRE(all.equilibria.size() == 2);
+    CHECK(all.equilibria[0].stability_reason == StabilityReason::minimum);
+    CHECK(all.equilibria[1].stability_reason == StabilityReason::unstable);
+    CHECK_THAT(value(all.equilibria[1], "hinge"), Catch::Matchers::WithinRel(std::numbers::pi - lean, 1e-12));
+  }
+  SECTION("a rack and its pinion") {
+    Mechanism m;
+    m.bodies = {body("wheel", 0.6, {0, 0, 0}, {4e-4, 4e-4, 8e-4}), body("block", 0.5, {0, -0.1, 0})};
+    Joint rack = gear("rack", "hinge", "slide", 1);
+    rack.kind = GearKind::rack;
+    rack.radii = {0.05, 1};
+    m.joints = {revolute("hinge", "ground", "wheel", {0, 0, 0}, {0, 0, 1}),
+                sprung(prismatic("slide", "ground", "block", {0, -0.1, 0}, {1, 0, 0}), 1000), rack};
+    torque.body = "wheel";
+    m.forces = {torque};
+    const Solution s = solve(m);
+    CHECK(stable(s));
+    CHECK(s.stability_reason == StabilityReason::minimum);
+    CHECK_THAT(value(s, "slide"), Catch::Matchers::WithinRel(0.02, 1e-12));
+  }
+  SECTION("long chains, along the tree and closed to a loop") {
+    const bool closed = GENERATE(false, true);
+    const int count = 70;
+    CAPTURE(closed);
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "rod" + std::to_string(i), on = i == 0 ? "ground" : m.bodies.back().name;
+      const Vec3 from(0, -0.1 * i, 0), to(0, -0.1 * (i + 1), 0);
+      m.bodies.push_back(rod(name, 0.1, from, to));
+      m.joints.push_back(revolute("hinge" + std::to_string(i), on, name, from, {0, 0, 1}));
+    }
+    if (closed)
+      m.joints.push_back(
+          distance("rope", "ground", m.bodies.back().name, {0, 0, 0}, {0, -0.1 * count, 0}, 4));
+    torque.body = "rod0";
+    m.forces = {torque};
+    const Solution s = Analysis(m).solve();
+    INFO(s.message);
+    CHECK(stable(s));
+    CHECK(s.stability_reason == StabilityReason::minimum);
+    if (closed) return;
+    // The torque holds up the weight of all at the end of the first rod, and half that of the rod.
+    CHECK_THAT(std::sin(value(s, "hinge0")),
+               Catch::Matchers::WithinRel(1 / (0.1 * 0.1 * standard_gravity * (count - 0.5)), 1e-9));
+  }
+}
+
 TEST_CASE("without a potential the eigenvalues judge") {
   Mechanism m = conical(0.5, 0.2, 6, 0.2);
   Force air;
