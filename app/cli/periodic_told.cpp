@@ -8,8 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace flyball::cli {
 namespace {
@@ -24,15 +27,31 @@ Json range_json(const PeriodicRange& range) {
 }
 
 Json vector_json(const PeriodicVector& vector) {
-  return {{"size", range_json(vector.size)},
-          {"x", range_json(vector.component[0])},
-          {"y", range_json(vector.component[1])},
-          {"z", range_json(vector.component[2])}};
+  Json out = {{"size", range_json(vector.size)},
+              {"x", range_json(vector.component[0])},
+              {"y", range_json(vector.component[1])},
+              {"z", range_json(vector.component[2])}};
+  if (vector.nonunique()) out["unique"] = {!vector.open[0], !vector.open[1], !vector.open[2]};
+  if (vector.unique_size) out["unique_size"] = range_json(*vector.unique_size);
+  return out;
 }
 
 Json wrench_json(const PeriodicReaction& r) {
   Json out = {{"force", vector_json(r.force)}, {"torque", vector_json(r.torque)}};
-  if (r.nonunique) out["nonunique"] = true;
+  if (r.nonunique()) out["nonunique"] = true;
+  return out;
+}
+
+using SpringPart = std::optional<PeriodicRange> PeriodicSpring::*;
+constexpr std::array<std::pair<const char*, SpringPart>, 4> spring_parts{{{"spring", &PeriodicSpring::spring},
+                                                                          {"damper", &PeriodicSpring::damper},
+                                                                          {"stop", &PeriodicSpring::stop},
+                                                                          {"sum", &PeriodicSpring::sum}}};
+
+Json spring_json(const PeriodicSpring& s) {
+  Json out = Json::object();
+  for (const auto& [key, part] : spring_parts)
+    if (s.*part) out[key] = range_json(*(s.*part));
   return out;
 }
 
@@ -65,10 +84,12 @@ bool told(const PeriodicRange& range) {
 void add_vector(std::vector<std::vector<std::string>>& rows, const std::string& name,
                 const PeriodicVector& vector, std::string_view unit) {
   if (!told(vector.size)) return;
-  rows.push_back(range_row(name, vector.size, unit));
+  rows.push_back(range_row(name + (vector.nonunique() ? " (not unique)" : ""), vector.size, unit));
+  if (vector.unique_size) rows.push_back(range_row("  unique part", *vector.unique_size, unit));
   for (std::size_t c = 0; c < 3; ++c)
     if (told(vector.component[c]))
-      rows.push_back(range_row(std::string("  ") + "xyz"[c], vector.component[c], unit));
+      rows.push_back(range_row(std::string("  ") + "xyz"[c] + (vector.open[c] ? " (not unique)" : ""),
+                               vector.component[c], unit));
 }
 
 std::vector<std::vector<std::string>> load_rows(const PeriodicState& s) {
@@ -76,8 +97,8 @@ std::vector<std::vector<std::string>> load_rows(const PeriodicState& s) {
   const auto open = [](bool nonunique) { return nonunique ? " (not unique)" : ""; };
   for (const auto list : {&PeriodicState::reactions, &PeriodicState::bearings})
     for (const PeriodicReaction& r : s.*list) {
-      add_vector(rows, printable(r.name) + ", force" + open(r.nonunique), r.force, "N");
-      add_vector(rows, printable(r.name) + ", torque" + open(r.nonunique), r.torque, "N m");
+      add_vector(rows, printable(r.name) + ", force", r.force, "N");
+      add_vector(rows, printable(r.name) + ", torque", r.torque, "N m");
     }
   for (const PeriodicGear& g : s.gears) {
     rows.push_back(range_row(printable(g.joint) + ", on its first joint" + open(g.nonunique), g.a,
@@ -85,6 +106,16 @@ std::vector<std::vector<std::string>> load_rows(const PeriodicState& s) {
     rows.push_back(range_row(printable(g.joint) + ", on its second joint" + open(g.nonunique), g.b,
                              g.angle_b ? "N m" : "N"));
   }
+  return rows;
+}
+
+std::vector<std::vector<std::string>> spring_rows(const PeriodicState& s) {
+  std::vector<std::vector<std::string>> rows;
+  for (const PeriodicSpring& spring : s.springs)
+    for (const auto& [words, part] : spring_parts)
+      if (spring.*part)
+        rows.push_back(
+            range_row(shown_label(spring) + ", " + words, *(spring.*part), spring.angle ? "N m" : "N"));
   return rows;
 }
 
@@ -99,9 +130,10 @@ std::string advance_text(const PeriodicCoordinate& c) {
 Json to_json(const PeriodicState& s) {
   const bool found = s.status == PeriodicStatus::found;
   Json out = {{"status", word(s.status)}, {"message", s.message}};
-  for (const char* key : {"period_s", "period_error", "drive_periods", "coordinates", "drive_torques",
-                          "drive_powers", "reactions", "bearings", "measures", "start", "stable",
-                          "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
+  for (const char* key :
+       {"period_s", "period_error", "drive_periods", "coordinates", "drive_torques", "drive_powers",
+        "reactions", "bearings", "joint_springs", "springs", "measures", "start", "stable",
+        "stability_reason", "floquet", "residual", "iterations", "history", "segments"})
     out[key] = nullptr;
   out["evaluations"] = s.evaluations;
   out["run_time_s"] = s.run_time_s;
@@ -134,6 +166,9 @@ Json to_json(const PeriodicState& s) {
   out["bearings"] = Json::object();
   for (const PeriodicReaction& b : s.bearings)
     out["bearings"][b.name] = wrench_json(b);
+  out["joint_springs"] = out["springs"] = Json::object();
+  for (const PeriodicSpring& spring : s.springs)
+    out[spring.between_points ? "springs" : "joint_springs"][coordinate_label(spring)] = spring_json(spring);
   out["measures"] = Json::object();
   for (const PeriodicMeasure& m : s.measures) {
     out["measures"][m.name] = range_json(m.range);
@@ -182,10 +217,14 @@ std::string to_text(const PeriodicState& s) {
     loads.insert(loads.begin(),
                  {"parent on child, and bearings on their second body", "mean", "min", "max", "", ""});
     out += "\n" + aligned(loads, true);
-    const auto open = [](const auto& load) { return load.nonunique; };
-    if (std::ranges::any_of(s.reactions, open) || std::ranges::any_of(s.gears, open))
+    if (std::ranges::any_of(s.reactions, &PeriodicReaction::nonunique) ||
+        std::ranges::any_of(s.gears, &PeriodicGear::nonunique))
       out += "  (not unique): the loops are redundant; of many possible ones these have the least "
              "multipliers.\n";
+  }
+  if (std::vector<std::vector<std::string>> springs = spring_rows(s); !springs.empty()) {
+    springs.insert(springs.begin(), {"springs, dampers and stops", "mean", "min", "max", "", ""});
+    out += "\n" + aligned(springs, true);
   }
   if (!s.floquet.multipliers.empty()) {
     out += fmt::format("\nFloquet multipliers, to an estimated {:.1g}\n", s.floquet.error);

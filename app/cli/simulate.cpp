@@ -39,7 +39,43 @@ struct RunColumn {
   std::function<double(std::size_t sample)> value;
 };
 
-// Time, coordinates (driven ones too), their rates, drive torques, energies, measures and points.
+void add_vector(std::vector<RunColumn>& columns, const std::string& name, const std::vector<Vec3>& values) {
+  for (int i = 0; i < 3; ++i)
+    columns.push_back(
+        {name + "." + "xyz"[i], [&values, i](std::size_t sample) { return values[sample][i]; }});
+}
+
+// What was recorded of the drives' powers and of what joints, bearings, gears and springs exert.
+void add_loads(std::vector<RunColumn>& columns, const Run& run) {
+  const auto add = [&](std::string name, const std::vector<double>& values) {
+    columns.push_back({std::move(name), [&values](std::size_t i) { return values[i]; }});
+  };
+  for (const DriveTrack& d : run.drives)
+    for (const CoordinateTrack& c : run.coordinates)
+      if (c.joint == d.joint && c.index == d.index)
+        columns.push_back(
+            {coordinate_label(d) + ".power", [&d, &c](std::size_t i) { return d.torque[i] * c.rate[i]; }});
+  for (const ReactionTrack& r : run.reactions) {
+    add_vector(columns, r.joint + ".reaction", r.force);
+    add_vector(columns, r.joint + ".moment", r.torque);
+  }
+  for (const GearTrack& g : run.gears) {
+    add(g.joint + ".a", g.a);
+    add(g.joint + ".b", g.b);
+  }
+  for (const BearingTrack& b : run.bearings) {
+    add_vector(columns, b.bearing + ".force", b.force);
+    add_vector(columns, b.bearing + ".couple", b.torque);
+  }
+  for (const SpringTrack& s : run.springs) {
+    add(coordinate_label(s) + ".spring", s.spring);
+    add(coordinate_label(s) + ".damper", s.damper);
+    if (!s.between_points) add(coordinate_label(s) + ".stop", s.stop);
+  }
+}
+
+// Time, coordinates (driven ones too), their rates, drive torques, energies, measures, points, and loads
+// where they were recorded.
 std::vector<RunColumn> columns_of(const Run& run) {
   std::vector<RunColumn> columns;
   const auto add = [&](std::string name, const std::vector<double>& values) {
@@ -70,6 +106,7 @@ std::vector<RunColumn> columns_of(const Run& run) {
       for (int i = 0; i < 3 && track->size() == run.time.size(); ++i)
         columns.push_back({point_label(p.point) + prefix + "xyz"[i],
                            [values = track, i](std::size_t sample) { return (*values)[sample][i]; }});
+  if (!run.reactions.empty()) add_loads(columns, run);
   return columns;
 }
 
@@ -247,7 +284,7 @@ struct SimulateCommand {
   double rate = 100, tolerance = 1e-10, step = 0;
   std::string start = "rest", method = "automatic", csv, from_state, save_state;
   std::vector<std::string> at, kick, points;
-  bool undamped = false, json = false;
+  bool undamped = false, json = false, loads = false;
   double time_limit = usual_time_limit;
   MovieOptions movie; // without a file: none
   double factor = 1;  // seconds of the motion that a second of it shows
@@ -278,6 +315,7 @@ SimulationOptions simulation_of(const SimulateCommand& options, const Mechanism&
   wanted.method = methods.at(options.method);
   wanted.time_limit = options.time_limit;
   wanted.damped = mechanism.simulation.damped && !options.undamped;
+  wanted.reactions = options.loads;
   wanted.start = starts.at(options.start);
   for (const std::string& text : options.at)
     wanted.at.push_back(parse_assignment("--at", text));
@@ -408,7 +446,13 @@ void add_simulate(CLI::App& app, Ending& ending) {
       ->check(above_zero())
       ->excludes(tolerance);
   add_time_limit(*command, options->time_limit);
-  command->add_option("--csv", options->csv, "Write all samples to a file (-: standard output)");
+  CLI::Option* csv =
+      command->add_option("--csv", options->csv, "Write all samples to a file (-: standard output)");
+  command
+      ->add_flag("--loads", options->loads,
+                 "In the table also what joints, gears, bearings, springs and dampers exert, and the drives' "
+                 "powers (W)")
+      ->needs(csv);
   command->add_flag("--json", options->json, "Print a JSON object of the outcome");
   CLI::Option* movie = command->add_option("--movie", options->movie.file,
                                            "Draw a film of it, the steady state solid and the motion in "

@@ -14,6 +14,11 @@ Json array(const Vec3& v) {
   return {number_json(v.x()), number_json(v.y()), number_json(v.z())};
 }
 
+// Of x, y, z.
+Json unique_components(const OpenDirections& open) {
+  return {!open.component(0), !open.component(1), !open.component(2)};
+}
+
 // Puts a value at its joint: the value itself where the joint has one coordinate, else into an array with
 // null where nothing was said.
 void put(Json& object, const std::string& joint, int index, int count, Json value) {
@@ -140,7 +145,13 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
   for (const Reaction& r : s.reactions) {
     Json entry = {{"force", array(r.force)}, {"torque", array(r.torque)}};
     if (r.varying) entry["varying"] = true;
-    if (r.nonunique) entry["nonunique"] = true;
+    if (r.nonunique()) {
+      entry["nonunique"] = true;
+      entry["unique"] = {{"force", unique_components(r.open.force)},
+                         {"torque", unique_components(r.open.torque)}};
+      entry["unique_part"] = {{"force", array(r.open.force.unique_part(r.force))},
+                              {"torque", array(r.open.torque.unique_part(r.torque))}};
+    }
     out["reactions"][r.joint] = std::move(entry);
   }
   for (const GearReaction& g : s.gears) {

@@ -1,6 +1,7 @@
 #include "app/cli/solution_text.hpp"
 
 #include "app/cli/output.hpp"
+#include "app/session/state_words.hpp"
 
 #include <fmt/format.h>
 
@@ -54,6 +55,11 @@ std::string stability(std::optional<bool> stable, std::optional<StabilityReason>
   return "";
 }
 
+std::string stability(const Solution& s) {
+  const std::string undamped = undamped_words(s);
+  return undamped.empty() ? stability(s.stable, s.stability_reason) : "undecided: " + undamped;
+}
+
 std::string lines_of(const std::vector<std::complex<double>>& eigenvalues) {
   std::string out;
   for (const auto& e : eigenvalues)
@@ -86,8 +92,7 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
     return out;
   }
   const std::string with_engine = s.at_constant_speed ? "with its speeds free: " : "";
-  if (const std::string words = stability(s.stable, s.stability_reason); !words.empty())
-    out += "  " + with_engine + words + "\n";
+  if (const std::string words = stability(s); !words.empty()) out += "  " + with_engine + words + "\n";
   if (s.at_constant_speed)
     out += "  at constant speed: " +
            stability(s.at_constant_speed->stable, s.at_constant_speed->stability_reason) + "\n";
@@ -166,22 +171,30 @@ std::string to_text(const Mechanism& mechanism, const Solution& s) {
                        unit_of(f.angle), f.slips ? "  slips" : "  holds");
   if (!s.reactions.empty()) heading("reactions of the parent on the child, world axes at the drawn phase");
   const auto wrench = [&](const std::string& name, const Vec3& raw_force, const Vec3& raw_torque,
-                          const std::string& told) {
-    const auto cleaned = [&](const Vec3& v, double size) -> Vec3 {
-      return v.unaryExpr([&](double x) { return clean(x, size); });
+                          const OpenWrench& open, const std::string& told) {
+    const auto components = [&](const Vec3& v, double size, const OpenDirections& directions) {
+      std::string text;
+      for (int i = 0; i < 3; ++i)
+        text +=
+            fmt::format("{}{}{:.6g}", i ? ", " : "", directions.component(i) ? "≈" : "", clean(v[i], size));
+      return text;
     };
-    const Vec3 f = cleaned(raw_force, force), t = cleaned(raw_torque, std::max(torque, force));
-    out += fmt::format("  {:{}}  force [{:.6g}, {:.6g}, {:.6g}] N  torque [{:.6g}, {:.6g}, {:.6g}] N m{}\n",
-                       printable(name), width, f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), told);
+    out += fmt::format("  {:{}}  force [{}] N  torque [{}] N m{}\n", printable(name), width,
+                       components(raw_force, force, open.force),
+                       components(raw_torque, std::max(torque, force), open.torque), told);
   };
-  for (const Reaction& r : s.reactions)
-    wrench(r.joint, r.force, r.torque, flags(r.varying, r.nonunique));
+  for (const Reaction& r : s.reactions) {
+    wrench(r.joint, r.force, r.torque, r.open, flags(r.varying, r.nonunique()));
+    if (!r.open.force.along_axes() || !r.open.torque.along_axes())
+      wrench("  unique part", r.open.force.unique_part(r.force), r.open.torque.unique_part(r.torque), {}, "");
+  }
   if (s.reactions_nonunique)
     out +=
-        "  (not unique): the loops are redundant; of many possible ones these have the least multipliers.\n";
+        "  (not unique): the loops are redundant; of many possible ones these have the least multipliers.\n"
+        "  ≈ is what is open of a reaction; its components without are unique.\n";
   if (!s.bearings.empty()) heading("bearings, on their second body, world axes at the drawn phase");
   for (const BearingForce& b : s.bearings)
-    wrench(b.bearing, b.force, b.torque, flags(b.varying, false));
+    wrench(b.bearing, b.force, b.torque, {}, flags(b.varying, false));
   if (!s.gears.empty())
     heading("gears, along the coordinates of their two joints, whose reactions include it");
   for (const GearReaction& g : s.gears)
@@ -220,7 +233,7 @@ std::string to_text(const Mechanism& mechanism, const AllSolutions& all, std::sp
                        b.angle ? (b.speed ? "rad/s" : "rad") : (b.speed ? "m/s" : "m"));
   for (std::size_t i = 0; i < all.equilibria.size(); ++i) {
     const Solution& s = all.equilibria[i];
-    out += fmt::format("\n\n{}  {}", i + 1, stability(s.stable, s.stability_reason));
+    out += fmt::format("\n\n{}  {}", i + 1, stability(s));
     if (s.potential) out += fmt::format(", potential {:.9g} J", *s.potential);
     for (const CoordinateSolution& c : s.coordinates)
       if (c.speed)

@@ -41,6 +41,12 @@ std::size_t memory_of(const Run& run) {
     add(track.torque);
   for (const ReactionTrack& track : run.reactions)
     add(track.force, track.torque);
+  for (const BearingTrack& track : run.bearings)
+    add(track.force, track.torque);
+  for (const GearTrack& track : run.gears)
+    add(track.a, track.b);
+  for (const SpringTrack& track : run.springs)
+    add(track.spring, track.damper, track.stop);
   for (const PointTrack& track : run.points)
     add(track.position, track.velocity, track.acceleration);
   for (const MeasureTrack& track : run.measures)

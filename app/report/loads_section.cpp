@@ -69,19 +69,23 @@ LargestLoads largest_loads(const Solution& s) {
 }
 
 void wrench_row(HtmlTable& table, const std::string& name, const Vec3& force, const Vec3& torque,
-                const LargestLoads& largest, const char* told) {
+                const LargestLoads& largest, const OpenWrench& open, const char* told) {
   const Vec3 f = without_rounding(force, largest.force),
              t = without_rounding(torque, std::max(largest.torque, largest.force));
-  table.row({name, vector_quantity(f, "N", 5), quantity(f.norm(), "N", 5), vector_quantity(t, "N m", 5),
-             quantity(t.norm(), "N m", 5), told});
+  table.row({name, vector_quantity(f, "N", 5, open.force), quantity(f.norm(), "N", 5),
+             vector_quantity(t, "N m", 5, open.torque), quantity(t.norm(), "N m", 5), told});
 }
 
 Html reactions(const Solution& s) {
   if (s.reactions.empty()) return {};
   HtmlTable table(
       {{"Joint", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
-  for (const Reaction& r : s.reactions)
-    wrench_row(table, r.joint, r.force, r.torque, largest_loads(s), flags(r.varying, r.nonunique));
+  for (const Reaction& r : s.reactions) {
+    wrench_row(table, r.joint, r.force, r.torque, largest_loads(s), r.open, flags(r.varying, r.nonunique()));
+    if (r.nonunique())
+      wrench_row(table, "unique part", r.open.force.unique_part(r.force), r.open.torque.unique_part(r.torque),
+                 largest_loads(s), {}, "");
+  }
   Html out = heading_of("Reactions") +
              paragraph_of(
                  "What the parent exerts on the child through the joint, its spring, stop, damper and drive "
@@ -90,7 +94,7 @@ Html reactions(const Solution& s) {
   if (s.reactions_nonunique)
     out += element("p",
                    "Not unique: the loops are redundant, and of many possible reactions these have the least "
-                   "multipliers.",
+                   "multipliers. What is open is marked by ≈; the unique part is what lies across it.",
                    {{"class", "note"}}) +
            "\n";
   return out;
@@ -101,7 +105,7 @@ Html bearings(const Solution& s) {
   HtmlTable table(
       {{"Bearing", false}, {"Force (x, y, z)"}, {"Size"}, {"Torque (x, y, z)"}, {"Size"}, {"", false}});
   for (const BearingForce& b : s.bearings)
-    wrench_row(table, b.bearing, b.force, b.torque, largest_loads(s), flags(b.varying, false));
+    wrench_row(table, b.bearing, b.force, b.torque, largest_loads(s), {}, flags(b.varying, false));
   return heading_of("Bearings") +
          paragraph_of("What each exerts on its second body, its damping included: in world axes at the drawn "
                       "phase, torques about the bearing's point.") +

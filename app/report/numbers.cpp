@@ -54,10 +54,11 @@ Html magnitude(double value, std::string_view unit) {
   return with_unit(written_number(plain ? short_text(value, 2) : magnitude_text(value, {})), unit);
 }
 
-Html vector_quantity(const Vec3& v, std::string_view unit, int digits) {
+Html vector_quantity(const Vec3& v, std::string_view unit, int digits, const OpenDirections& open) {
   Html inner = "(";
   for (int i = 0; i < 3; ++i)
-    inner += (i > 0 ? Html(",\u2002") : Html()) + written_number(short_text(v[i], digits));
+    inner += Html(i > 0 ? ",\u2002" : "") + Html(open.component(i) ? "≈" : "") +
+             written_number(short_text(v[i], digits));
   return with_unit(inner + ")", unit);
 }
 

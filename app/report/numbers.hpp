@@ -3,6 +3,7 @@
 
 #include "app/report/html.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/open_directions.hpp"
 
 namespace flyball {
 
@@ -14,7 +15,8 @@ Html quantity(double value, std::string_view unit, int digits = 6);
 Html quantity_within(double value, double error, std::string_view unit);
 // A magnitude, such as an error: two digits.
 Html magnitude(double value, std::string_view unit);
-Html vector_quantity(const Vec3& v, std::string_view unit, int digits = 6);
+// Components that are open (solve/open_directions.hpp) are marked by ≈.
+Html vector_quantity(const Vec3& v, std::string_view unit, int digits = 6, const OpenDirections& open = {});
 // In a unit, "rad", "(rad/s)", per that of the number at `address`.
 Html rate_quantity(const Mechanism& mechanism, double rate, std::string_view of, std::string_view address);
 // A run time; what a run is told by the clock stands in <time>.

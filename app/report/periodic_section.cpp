@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -47,10 +50,12 @@ void vector_rows(HtmlTable& table, const std::string& name, const PeriodicVector
            std::max(std::abs(range.least), std::abs(range.most)) > range.error;
   };
   if (!told(vector.size)) return;
-  table.row(range_cells(name, vector.size, unit));
+  table.row(range_cells(name + not_unique(vector.nonunique()), vector.size, unit));
+  if (vector.unique_size) table.row(range_cells("unique part", *vector.unique_size, unit));
   for (std::size_t c = 0; c < 3; ++c)
     if (told(vector.component[c]))
-      table.row(range_cells(std::string("along ") + "xyz"[c], vector.component[c], unit));
+      table.row(range_cells(std::string("along ") + "xyz"[c] + not_unique(vector.open[c]),
+                            vector.component[c], unit));
 }
 
 Html loads_tables(const PeriodicState& s) {
@@ -65,8 +70,8 @@ Html loads_tables(const PeriodicState& s) {
                             const std::vector<PeriodicReaction>& all) {
     HtmlTable table = head(of);
     for (const PeriodicReaction& r : all) {
-      vector_rows(table, r.name + ", force" + not_unique(r.nonunique), r.force, "N");
-      vector_rows(table, r.name + ", torque" + not_unique(r.nonunique), r.torque, "N m");
+      vector_rows(table, r.name + ", force", r.force, "N");
+      vector_rows(table, r.name + ", torque", r.torque, "N m");
     }
     add(title, words, table);
   };
@@ -85,6 +90,18 @@ Html loads_tables(const PeriodicState& s) {
                           force_unit_of(g.angle_b)));
   }
   add("Gears", "Along the coordinates of their two joints, whose reactions include it.", gears);
+  HtmlTable springs = head("Spring or damper");
+  for (const PeriodicSpring& spring : s.springs)
+    for (const auto& [words, part] :
+         std::initializer_list<std::pair<const char*, const std::optional<PeriodicRange>&>>{
+             {", spring", spring.spring},
+             {", damper", spring.damper},
+             {", stop", spring.stop},
+             {", sum", spring.sum}})
+      if (part)
+        springs.row(range_cells(coordinate_label(spring) + words, *part, force_unit_of(spring.angle)));
+  add("Springs, dampers and stops",
+      "On a joint positive along its coordinate; between bodies, tension is positive.", springs);
   return out;
 }
 

@@ -110,20 +110,22 @@ std::vector<DesignGoal> goals_now(const Session& session) {
   for (const DriveTorque& drive : solution.drive_torques)
     add_drive(session.mechanism(), drive, goals);
   for (const Reaction& r : solution.reactions) {
-    if (r.varying || r.nonunique) continue;
+    if (r.varying) continue;
     const std::string of = "(" + argument_text(r.joint) + ")";
-    goals.push_back({.key = "reaction" + of,
-                     .title = "force through " + r.joint,
-                     .quantity = "force " + r.joint,
-                     .unit = "N",
-                     .value = r.force.norm(),
-                     .expression = "reaction" + of});
-    goals.push_back({.key = "moment" + of,
-                     .title = "torque through " + r.joint,
-                     .quantity = "torque " + r.joint,
-                     .unit = "N m",
-                     .value = r.torque.norm(),
-                     .expression = "moment" + of});
+    if (!r.open.force.any())
+      goals.push_back({.key = "reaction" + of,
+                       .title = "force through " + r.joint,
+                       .quantity = "force " + r.joint,
+                       .unit = "N",
+                       .value = r.force.norm(),
+                       .expression = "reaction" + of});
+    if (!r.open.torque.any())
+      goals.push_back({.key = "moment" + of,
+                       .title = "torque through " + r.joint,
+                       .quantity = "torque " + r.joint,
+                       .unit = "N m",
+                       .value = r.torque.norm(),
+                       .expression = "moment" + of});
   }
   return goals;
 }

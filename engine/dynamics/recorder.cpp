@@ -1,7 +1,9 @@
 #include "engine/dynamics/recorder.hpp"
 
+#include "engine/mechanism/damped.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/report_forces.hpp"
+#include "engine/system/cut_damper.hpp"
 #include "engine/system/drive_rates.hpp"
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/joint_coordinates.hpp"
@@ -33,6 +35,7 @@ void Recorder::use(std::shared_ptr<const MotionModel> model, Equations& equation
   tree_joints_.clear();
   for (std::size_t i = 0; reactions_ && i < model_->system.tree_joints.size(); ++i)
     tree_joints_.emplace(model_->system.tree_joints[i].name, i);
+  if (reactions_) find_springs();
   tracked_.clear();
   for (const BodyPoint& point : points_)
     tracked_.push_back(find_point(model_->system, model_->mechanism, model_->parameters, point));
@@ -101,6 +104,33 @@ void Recorder::lay_out() {
   }
   for (const BearingElement& bearing : system.bearings)
     run_.bearings.push_back({mechanism.forces[index(bearing.force)].name, {}, {}});
+}
+
+void Recorder::find_springs() {
+  const System& system = model_->system;
+  const Mechanism& m = model_->mechanism;
+  const bool first = run_.springs.empty();
+  sprung_.clear();
+  for (std::size_t i = 0; i < system.reported.size(); ++i) {
+    const ReportedCoordinate& r = system.reported[i];
+    const int j = r.cut >= 0
+                      ? system.cuts[index(r.cut)].joint
+                      : system.tree_joints[index(system.coordinates[index(r.coordinate)].tree_joint)].joint;
+    if (j < 0 || is_rotation_vector(m.joints[index(j)].type, r.index)) continue;
+    const Coordinate& c = m.joints[index(j)].coordinates[index(r.index)];
+    if (!c.spring && !is_damped(c) && !c.stop) continue;
+    SpringPlace place{static_cast<int>(i), -1, -1};
+    for (std::size_t d = 0; r.cut >= 0 && d < system.cut_dampers.size(); ++d)
+      if (system.cut_dampers[d].joint == j && system.cut_dampers[d].coordinate == r.index)
+        place.cut_damper = static_cast<int>(d);
+    sprung_.push_back(place);
+    if (first) run_.springs.push_back({r.joint, r.index, r.count, false, r.angle, {}, {}, {}});
+  }
+  for (std::size_t s = 0; s < system.springs.size(); ++s) {
+    sprung_.push_back({-1, -1, static_cast<int>(s)});
+    if (first)
+      run_.springs.push_back({m.forces[index(system.springs[s].force)].name, 0, 1, true, false, {}, {}, {}});
+  }
 }
 
 void Recorder::name(const StopElement& stop, StopEvent& event) const {
@@ -282,6 +312,41 @@ void Recorder::record_elements(const TransmittedForces& forces) {
   }
 }
 
+void Recorder::record_springs() {
+  const System& system = model_->system;
+  const Parameters& p = model_->parameters;
+  const Kinematics<double>& k = equations_->kinematics();
+  for (std::size_t i = 0; i < sprung_.size(); ++i) {
+    const SpringPlace& place = sprung_[i];
+    double spring = 0, damper = 0, stop = 0;
+    if (place.spring >= 0) {
+      const PointSpringElement& e = system.springs[index(place.spring)];
+      const PointSpringParameters& numbers = p.springs[index(place.spring)];
+      const SpringState<double> s = spring_state(e, numbers, k);
+      spring = numbers.pull(s.length);
+      damper = s.tension - spring;
+    } else if (const ReportedCoordinate& r = system.reported[index(place.coordinate)]; r.coordinate >= 0) {
+      const CoordinateInfo& c = system.coordinates[index(r.coordinate)];
+      const CoordinateForce& force =
+          p.links[index(c.link)].force[index(c.index - system.links[index(c.link)].coordinate)];
+      const double q = run_.coordinates[index(place.coordinate)].value.back();
+      spring = -force.stiffness * (q - force.free);
+      if (force.laws) spring -= force.laws->spring.value(q - force.laws->free);
+      damper = -force.resistance(run_.coordinates[index(place.coordinate)].rate.back());
+      if (force.has_lower && q < force.lower) stop = -force.stop_stiffness * (q - force.lower);
+      if (force.has_upper && q > force.upper) stop = -force.stop_stiffness * (q - force.upper);
+    } else if (place.cut_damper >= 0) {
+      damper = -cut_damper_state<double>(system.cut_dampers[index(place.cut_damper)],
+                                         p.cut_dampers[index(place.cut_damper)], k)
+                    .resistance;
+    }
+    SpringTrack& track = run_.springs[i];
+    track.spring.push_back(spring);
+    track.damper.push_back(damper);
+    track.stop.push_back(stop);
+  }
+}
+
 void Recorder::record_measures(TransmittedForces& forces) {
   values_.clear();
   rates_.clear();
@@ -353,6 +418,7 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
   if (reactions_) {
     record_reactions(forces);
     record_elements(forces);
+    record_springs();
   }
   if (!measures_.empty()) record_measures(forces);
   if (!tracked_.empty()) record_points();

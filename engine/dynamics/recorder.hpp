@@ -44,6 +44,8 @@ class Recorder {
   void record_energies(double t, const Eigen::Vector3d& energies);
   void record_reactions(const TransmittedForces& forces);
   void record_elements(const TransmittedForces& forces);
+  void find_springs();
+  void record_springs();
   void record_measures(TransmittedForces& forces);
   void record_points();
   double jacobi(double t);
@@ -54,6 +56,11 @@ class Recorder {
   std::vector<BodyPoint> points_;
   std::vector<TrackedPoint> tracked_;
   MeasureSet measures_;
+  // Of each of Run::springs: in System::reported, and in cut_dampers where it closes a loop; or in springs.
+  struct SpringPlace {
+    int coordinate = -1, cut_damper = -1, spring = -1;
+  };
+  std::vector<SpringPlace> sprung_;
   std::vector<double> values_, rates_;                       // of the coordinates at a sample
   std::vector<double> torques_;                              // of the drives that give these, likewise
   std::unordered_map<std::string, std::size_t> tree_joints_; // for reactions, by name

@@ -60,8 +60,8 @@ struct SimulationOptions {
   std::vector<std::pair<std::string, double>> at;   // joint = value (rad, m) over the drawn pose
   std::vector<std::pair<std::string, double>> kick; // joint = rate (rad/s, m/s) over the start's
   SimulationState state;                            // for Start::state
-  bool reactions = false;          // record what all joints transmit, and what bearings and gears exert
-  bool measures = true;            // record the scene's measures
+  bool reactions = false; // record what all joints transmit, and what bearings, gears and springs exert
+  bool measures = true;   // record the scene's measures
   std::vector<BodyPoint> points{}; // record how these move
   long max_steps = 50'000'000;
   double time_limit =
@@ -108,6 +108,17 @@ struct GearTrack {
   std::string joint;
   bool angle_a = true, angle_b = true; // N m rather than N
   std::vector<double> a, b;
+};
+
+// What the spring, damper and stop of a joint's coordinate exert on the joint's child, positive along the
+// coordinate (of joints in the tree but ball joints, and dampers of those that close loops); or spring and
+// damper between two points, where tension is positive. Zeros of what there is not.
+struct SpringTrack {
+  std::string joint;        // or the spring between two points
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool between_points = false;
+  bool angle = false;                       // N m rather than N
+  std::vector<double> spring, damper, stop; // N or N m
 };
 
 // How a point moves, in the world frame.
@@ -182,9 +193,10 @@ struct Run {
   std::vector<double> time;                  // s, by sample; what follows has as many entries
   std::vector<CoordinateTrack> coordinates;  // in the scene's order, driven ones included
   std::vector<DriveTrack> drives;
-  std::vector<ReactionTrack> reactions; // where asked for, as the next two
+  std::vector<ReactionTrack> reactions; // where asked for, as the next three
   std::vector<BearingTrack> bearings;
   std::vector<GearTrack> gears;
+  std::vector<SpringTrack> springs;
   std::vector<PointTrack> points; // those asked for
   std::vector<MeasureTrack> measures;
   EnergyTracks energy;

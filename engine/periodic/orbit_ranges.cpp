@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace flyball {
 namespace {
@@ -216,12 +217,34 @@ class LoadRanges {
     }
     const bool known = std::ranges::all_of(
         out.component, [](const PeriodicRange& range) { return std::isfinite(range.mean); });
-    out.size = known ? rounded(size_over_period(components), moment)
-                     : PeriodicRange{unknown, unknown, unknown, unknown};
+    out.size = known ? size(components, moment) : PeriodicRange{unknown, unknown, unknown, unknown};
     return out;
   }
 
+  // Of what components that are not open make, where there are some of both.
+  std::optional<PeriodicRange> unique_size(const std::vector<Vec3>& values, const std::array<bool, 3>& open,
+                                           bool moment) const {
+    const auto count = std::ranges::count(open, true);
+    if (count == 0 || count == 3) return std::nullopt;
+    std::array<std::vector<double>, 3> components;
+    for (std::size_t c = 0; c < components.size(); ++c)
+      for (const Vec3& value : values)
+        components[c].push_back(open[c] ? 0 : value[static_cast<Eigen::Index>(c)]);
+    for (const std::vector<double>& component : components)
+      if (!comes_back(component, small(moment))) return PeriodicRange{unknown, unknown, unknown, unknown};
+    return size(components, moment);
+  }
+
+  // Of a force that acts at all.
+  std::optional<PeriodicRange> of_part(const std::vector<double>& values, bool moment) const {
+    if (std::ranges::all_of(values, [](double v) { return v == 0; })) return std::nullopt;
+    return of(values, moment);
+  }
+
  private:
+  PeriodicRange size(const std::array<std::vector<double>, 3>& components, bool moment) const {
+    return rounded(size_over_period(components), moment);
+  }
   double small(bool moment) const { return 1e-9 * largest_ * (moment ? reach_ : 1); }
   PeriodicRange rounded(PeriodicRange range, bool moment) const {
     range.error += rounding * largest_ * (moment ? reach_ : 1);
@@ -230,6 +253,20 @@ class LoadRanges {
 
   double largest_, reach_; // N, m
 };
+
+PeriodicSpring spring_of(const SpringTrack& track, const LoadRanges& ranges) {
+  PeriodicSpring out{track.joint, track.index, track.count, track.between_points, track.angle, {},
+                     {},          {},          {}};
+  out.spring = ranges.of_part(track.spring, track.angle);
+  out.damper = ranges.of_part(track.damper, track.angle);
+  out.stop = ranges.of_part(track.stop, track.angle);
+  if (out.spring.has_value() + out.damper.has_value() + out.stop.has_value() < 2) return out;
+  std::vector<double> sum = track.spring;
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    sum[i] += track.damper[i] + track.stop[i];
+  out.sum = ranges.of(sum, track.angle);
+  return out;
+}
 
 void fill_loads(const Run& run, PeriodicState& out) {
   const double reach = run.segments.empty() ? 1 : run.segments.front().model->parameters.length;
@@ -241,6 +278,9 @@ void fill_loads(const Run& run, PeriodicState& out) {
   for (const GearTrack& track : run.gears)
     out.gears.push_back({track.joint, track.angle_a, track.angle_b, ranges.of(track.a, track.angle_a),
                          ranges.of(track.b, track.angle_b)});
+  for (const SpringTrack& track : run.springs)
+    if (PeriodicSpring spring = spring_of(track, ranges); spring.spring || spring.damper || spring.stop)
+      out.springs.push_back(std::move(spring));
 }
 
 // Of a drive: its torque times the rate of its coordinate, W.
@@ -306,6 +346,17 @@ void fill_ranges(const Run& run, PeriodicState& out) {
                                                     : PeriodicRange{unknown, unknown, unknown, unknown}});
 }
 
+void fill_unique_sizes(const Run& run, const PeriodicState& open, PeriodicState& out) {
+  if (std::ranges::none_of(open.reactions, &PeriodicReaction::nonunique)) return;
+  const LoadRanges ranges(run, run.segments.front().model->parameters.length);
+  for (std::size_t i = 0; i < out.reactions.size(); ++i) {
+    const ReactionTrack& track = run.reactions[i];
+    const PeriodicReaction& of = open.reactions[i];
+    out.reactions[i].force.unique_size = ranges.unique_size(track.force, of.force.open, false);
+    out.reactions[i].torque.unique_size = ranges.unique_size(track.torque, of.torque.open, true);
+  }
+}
+
 void compare_ranges(const PeriodicState* other, PeriodicState& out) {
   const auto compare_all = [&](const auto& theirs, auto& ours, auto range) {
     for (std::size_t i = 0; i < ours.size(); ++i)
@@ -329,6 +380,23 @@ void compare_ranges(const PeriodicState* other, PeriodicState& out) {
   compare_all(there.gears, out.gears, &PeriodicGear::a);
   compare_all(there.gears, out.gears, &PeriodicGear::b);
   compare_all(there.measures, out.measures, &PeriodicMeasure::range);
+  // What does not act in the other one is zero there.
+  const auto compare_parts = [&](const std::optional<PeriodicRange>& theirs,
+                                 std::optional<PeriodicRange>& ours) {
+    if (ours) ours->error += other ? largest_difference(theirs.value_or(PeriodicRange{}), *ours) : unknown;
+  };
+  for (std::size_t i = 0; i < out.reactions.size(); ++i)
+    for (const auto vector : {&PeriodicReaction::force, &PeriodicReaction::torque})
+      compare_parts(other ? (there.reactions[i].*vector).unique_size : std::nullopt,
+                    (out.reactions[i].*vector).unique_size);
+  for (PeriodicSpring& spring : out.springs) {
+    const auto same = std::ranges::find_if(there.springs, [&](const PeriodicSpring& s) {
+      return s.between_points == spring.between_points && s.joint == spring.joint && s.index == spring.index;
+    });
+    for (const auto part :
+         {&PeriodicSpring::spring, &PeriodicSpring::damper, &PeriodicSpring::stop, &PeriodicSpring::sum})
+      compare_parts(same != there.springs.end() ? (*same).*part : std::nullopt, spring.*part);
+  }
 }
 
 } // namespace flyball

@@ -18,9 +18,13 @@ PeriodicRange range_over_period(std::span<const double> values);
 // a kink where it vanishes.
 PeriodicRange size_over_period(const std::array<std::vector<double>, 3>& components);
 
-// Fills coordinates, torques, what joints, bearings and gears bear, and measures, in the run's order. Loads
-// are rounded by a part of the largest of all.
+// Fills coordinates, torques, what joints, bearings, gears and springs bear, and measures, in the run's
+// order. Loads are rounded by a part of the largest of all.
 void fill_ranges(const Run& run, PeriodicState& out);
+
+// The sizes of what is unique of reactions, by the components that are marked as open in `open`
+// (open_loads.hpp); of the same mechanism.
+void fill_unique_sizes(const Run& run, const PeriodicState& open, PeriodicState& out);
 
 // Adds to the estimated errors what another approximation of the orbit differs by; null: there is none, and
 // errors are not known.

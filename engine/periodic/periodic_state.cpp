@@ -548,13 +548,18 @@ class Search {
     out.reactions = std::move(told.reactions);
     out.bearings = std::move(told.bearings);
     out.gears = std::move(told.gears);
+    out.springs = std::move(told.springs);
     out.measures = std::move(told.measures);
     mark_open_loads(*run, out);
+    fill_unique_sizes(*run, out, out);
     PeriodicState beside;
     if (other) {
       out.period_error = std::abs(other->period - c.orbit.period);
       const Run also = recorded(*other, count, coarse_steps * c.how.tolerance);
-      if (!also.time.empty()) fill_ranges(also, beside);
+      if (!also.time.empty()) {
+        fill_ranges(also, beside);
+        fill_unique_sizes(also, out, beside);
+      }
     }
     const bool known = beside.coordinates.size() == out.coordinates.size() &&
                        beside.drive_torques.size() == out.drive_torques.size();

@@ -8,6 +8,7 @@
 #include "engine/solve/solution.hpp"
 
 #include <array>
+#include <optional>
 
 namespace flyball {
 
@@ -66,13 +67,31 @@ struct PeriodicTorque {
 struct PeriodicVector {
   PeriodicRange size;
   std::array<PeriodicRange, 3> component;
+  // Components that redundant loops leave open, as of a Reaction; where they leave others unique, the size of
+  // what these make.
+  std::array<bool, 3> open{};
+  std::optional<PeriodicRange> unique_size{};
+
+  bool nonunique() const { return open[0] || open[1] || open[2]; }
 };
 
 // What a joint's parent exerts on its child, as a Reaction tells it, or a bearing on its second body.
 struct PeriodicReaction {
   std::string name;             // the joint or bearing
   PeriodicVector force, torque; // N, N m
-  bool nonunique = false;       // as of a Reaction
+
+  bool nonunique() const { return force.nonunique() || torque.nonunique(); }
+};
+
+// What the spring, damper and stop of a joint's coordinate exert on its child, positive along the coordinate;
+// or those between two points, where tension is positive. Those that act, and their sum where it is of
+// several. Of joints but ball joints, and of those that close loops the dampers alone.
+struct PeriodicSpring {
+  std::string joint;        // or the spring between two points
+  int index = 0, count = 1; // which of the joint's coordinates
+  bool between_points = false;
+  bool angle = false;                                     // N m rather than N
+  std::optional<PeriodicRange> spring, damper, stop, sum; // N or N m
 };
 
 // What a gear does along the coordinates of its two joints, as a GearReaction tells it.
@@ -94,6 +113,7 @@ struct PeriodicState {
   std::vector<PeriodicTorque> drive_torques;
   std::vector<PeriodicReaction> reactions, bearings;
   std::vector<PeriodicGear> gears;
+  std::vector<PeriodicSpring> springs;
   std::vector<PeriodicMeasure> measures;
   double residual = 0; // by how much it fails to come back: the largest scaled coordinate or rate
   std::optional<bool> stable;

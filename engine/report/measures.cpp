@@ -375,6 +375,24 @@ void MeasureSet::explain_unknown_depths(std::vector<MeasureSolution>& out) const
   }
 }
 
+namespace {
+
+// Whether what is asked of a joint's reaction is.
+bool is_open(const OpenWrench& open, Result result) {
+  switch (result) {
+  case Result::reaction_x: return open.force.component(0);
+  case Result::reaction_y: return open.force.component(1);
+  case Result::reaction_z: return open.force.component(2);
+  case Result::reaction: return open.force.any();
+  case Result::moment_x: return open.torque.component(0);
+  case Result::moment_y: return open.torque.component(1);
+  case Result::moment_z: return open.torque.component(2);
+  default: return open.torque.any();
+  }
+}
+
+} // namespace
+
 void MeasureSet::mark_nonunique(const Mechanism& m, const std::vector<Reaction>& reactions,
                                 const std::vector<DriveTorque>& torques,
                                 std::vector<MeasureSolution>& out) const {
@@ -390,7 +408,7 @@ void MeasureSet::mark_nonunique(const Mechanism& m, const std::vector<Reaction>&
                                                              t.index == quantity.of[0].coordinate;
                                                     })
                               : std::ranges::any_of(reactions, [&](const Reaction& r) {
-                                  return r.nonunique && r.joint == joint;
+                                  return r.joint == joint && is_open(r.open, quantity.result);
                                 });
     if (!shared) continue;
     const std::vector<bool> users = plan_.users_of(k);

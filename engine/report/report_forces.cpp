@@ -7,6 +7,8 @@
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -74,13 +76,14 @@ double loads_on(const Problem& problem, const Kinematics<double>& k) {
 }
 
 // Multipliers that balance among themselves, Phi_q^T lambda = 0, with part of every direction of that null
-// space: arbitrary ones less those of the same forces that are found for any. At evaluated and factored
-// constraints.
-Eigen::VectorXd self_balanced_multipliers(const Problem& problem, Workspace& w) {
+// space: arbitrary ones, the `draw`-th, less those of the same forces that are found for any. At evaluated
+// and factored constraints.
+Eigen::VectorXd self_balanced_multipliers(const Problem& problem, int draw, Workspace& w) {
   const System& system = problem.system;
   Eigen::VectorXd arbitrary(system.rows); // scaled
   for (Eigen::Index i = 0; i < system.rows; ++i)
-    arbitrary[i] = 1.5 + std::sin(2.4 * static_cast<double>(i * i) + 1);
+    arbitrary[i] =
+        1.5 + std::sin(2.4 * static_cast<double>(i * i) + 1 + draw * (1.7 + static_cast<double>(i)));
   Eigen::VectorXd force = Eigen::VectorXd::Zero(system.nv);
   for (std::size_t c = 0; c < system.cuts.size(); ++c) {
     const CutJoint& cut = system.cuts[c];
@@ -98,45 +101,81 @@ Eigen::VectorXd self_balanced_multipliers(const Problem& problem, Workspace& w) 
   return (arbitrary - found).cwiseProduct(problem.scaling.row);
 }
 
-// Which of the transmitted forces other multipliers would change.
+// What of the transmitted forces other multipliers would change.
 struct Touched {
-  std::vector<bool> tree, cuts, drives, gears;
+  std::vector<OpenWrench> tree, cuts;
+  std::vector<bool> drives, gears;
+};
+
+// `drawn` with multipliers that balance among themselves besides, as large as what is there, so that rounding
+// of neither hides the other; nothing where there are none.
+class OtherBalances {
+ public:
+  OtherBalances(const Problem& problem, const TransmittedForces& drawn, const Unknowns& z, Workspace& w)
+      : problem_(problem), z_(z), w_(w), none_(with(Eigen::VectorXd::Zero(problem.system.rows))),
+        load_(size_of(drawn, problem.parameters.length)) {}
+
+  double size() const { return load_ > 0 ? load_ : 1; } // N, of the change
+
+  std::optional<TransmittedForces> draw(int number) const {
+    const Eigen::VectorXd free = self_balanced_multipliers(problem_, number, w_);
+    if (!free.allFinite()) return std::nullopt;
+    const TransmittedForces once = with(free);
+    double alone = 0;
+    for (std::size_t i = 0; i < once.cuts.size(); ++i)
+      alone = std::max({alone, (once.cuts[i].force - none_.cuts[i].force).norm(),
+                        (once.cuts[i].torque - none_.cuts[i].torque).norm() / problem_.parameters.length});
+    for (std::size_t i = 0; i < once.gears.size(); ++i)
+      alone = std::max(alone, std::abs(once.gears[i].b.value - none_.gears[i].b.value));
+    if (!(alone > 0)) return std::nullopt;
+    return with(z_.lambda + free * (size() / alone));
+  }
+
+ private:
+  TransmittedForces with(const Eigen::VectorXd& lambda) const {
+    return transmitted_forces(problem_.system, problem_.parameters, lambda, w_.kinematics, w_.residual);
+  }
+
+  const Problem& problem_;
+  const Unknowns& z_;
+  Workspace& w_;
+  TransmittedForces none_;
+  double load_; // N
 };
 
 Touched find_touched(const Problem& problem, const TransmittedForces& drawn, const Unknowns& z,
                      Workspace& w) {
-  const Parameters& p = problem.parameters;
-  Touched out{std::vector<bool>(drawn.tree.size()), std::vector<bool>(drawn.cuts.size()),
+  Touched out{std::vector<OpenWrench>(drawn.tree.size()), std::vector<OpenWrench>(drawn.cuts.size()),
               std::vector<bool>(drawn.drives.size()), std::vector<bool>(drawn.gears.size())};
-  if (problem.system.rows == 0 || independent_rows(problem, w) == problem.system.rows) return out;
-  const Eigen::VectorXd free = self_balanced_multipliers(problem, w);
-  if (!free.allFinite()) return out;
-  const auto with = [&](const Eigen::VectorXd& lambda) {
-    return transmitted_forces(problem.system, p, lambda, w.kinematics, w.residual);
+  const int dependent = problem.system.rows > 0 ? problem.system.rows - independent_rows(problem, w) : 0;
+  if (dependent == 0) return out;
+  const double length = problem.parameters.length;
+  const OtherBalances others(problem, drawn, z, w);
+  std::vector<TransmittedForces> moved;
+  for (int i = 0; i < std::min(dependent, 3); ++i) // a vector has three directions
+    if (std::optional<TransmittedForces> other = others.draw(i)) moved.push_back(std::move(*other));
+  const double least = touched * others.size();
+  const auto wrenches = [&](std::vector<JointWrench> TransmittedForces::*list,
+                            std::vector<OpenWrench>& open) {
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      std::vector<Vec3> forces, torques;
+      for (const TransmittedForces& other : moved) {
+        forces.push_back((other.*list)[i].force - (drawn.*list)[i].force);
+        torques.push_back((other.*list)[i].torque - (drawn.*list)[i].torque);
+      }
+      open[i] = {open_directions(std::move(forces), least),
+                 open_directions(std::move(torques), least * length)};
+    }
   };
-  // As large as what is there, so that rounding of neither hides the other.
-  const TransmittedForces none = with(Eigen::VectorXd::Zero(free.size()));
-  double alone = 0;
-  const auto difference = [](const JointWrench& a, const JointWrench& b, double length) {
-    return std::max((a.force - b.force).norm(), (a.torque - b.torque).norm() / length);
-  };
-  const TransmittedForces once = with(free);
-  for (std::size_t i = 0; i < once.cuts.size(); ++i)
-    alone = std::max(alone, difference(once.cuts[i], none.cuts[i], p.length));
-  for (std::size_t i = 0; i < once.gears.size(); ++i)
-    alone = std::max(alone, std::abs(once.gears[i].b.value - none.gears[i].b.value));
-  if (!(alone > 0)) return out;
-  const double load = size_of(drawn, p.length), size = load > 0 ? load : alone;
-  const TransmittedForces moved = with(z.lambda + free * (size / alone));
-  const double least = touched * size;
-  for (std::size_t i = 0; i < out.tree.size(); ++i)
-    out.tree[i] = difference(moved.tree[i], drawn.tree[i], p.length) > least;
-  for (std::size_t i = 0; i < out.cuts.size(); ++i)
-    out.cuts[i] = difference(moved.cuts[i], drawn.cuts[i], p.length) > least;
-  for (std::size_t i = 0; i < out.drives.size(); ++i)
-    out.drives[i] = std::abs(moved.drives[i] - drawn.drives[i]) > least * std::min(1., p.length);
-  for (std::size_t i = 0; i < out.gears.size(); ++i)
-    out.gears[i] = std::abs(moved.gears[i].b.value - drawn.gears[i].b.value) > least * std::min(1., p.length);
+  wrenches(&TransmittedForces::tree, out.tree);
+  wrenches(&TransmittedForces::cuts, out.cuts);
+  for (const TransmittedForces& other : moved) {
+    const auto differs = [&](double a, double b) { return std::abs(a - b) > least * std::min(1., length); };
+    for (std::size_t i = 0; i < out.drives.size(); ++i)
+      out.drives[i] = out.drives[i] || differs(other.drives[i], drawn.drives[i]);
+    for (std::size_t i = 0; i < out.gears.size(); ++i)
+      out.gears[i] = out.gears[i] || differs(other.gears[i].b.value, drawn.gears[i].b.value);
+  }
   return out;
 }
 
@@ -170,9 +209,9 @@ class ForceReport {
       const bool varying = std::ranges::any_of(others_, [&](const Snapshot& s) {
         return varies(wrench(drawn_), frames(drawn_), wrench(s), frames(s));
       });
-      const bool nonunique = tree ? touched_.tree[i] : touched_.cuts[i];
-      out.reactions.push_back({j.name, wrench(drawn_).force, wrench(drawn_).torque, varying, nonunique});
-      out.nonunique = out.nonunique || nonunique;
+      const OpenWrench& open = tree ? touched_.tree[i] : touched_.cuts[i];
+      out.reactions.push_back({j.name, wrench(drawn_).force, wrench(drawn_).torque, varying, open});
+      out.nonunique = out.nonunique || open.any();
     }
   }
 
@@ -303,7 +342,8 @@ GearEnds ends_in_order(const Mechanism& mechanism, const System& system, const G
   return in_order ? GearEnds{gear.a, gear.b} : GearEnds{gear.b, gear.a};
 }
 
-OpenForces find_open_forces(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
+OpenForces find_open_forces(const Problem& problem, std::size_t joints, const Eigen::VectorXd& q, double t,
+                            Workspace& w) {
   const System& system = problem.system;
   OpenForces out;
   const Unknowns z = with_reported_multipliers(problem, q, t, w);
@@ -311,16 +351,16 @@ OpenForces find_open_forces(const Problem& problem, const Eigen::VectorXd& q, do
     evaluate_residual<double>(system, problem.parameters, z.q, z.lambda, w.kinematics, w.residual);
   const TransmittedForces forces =
       transmitted_forces(system, problem.parameters, z.lambda, w.kinematics, w.residual);
-  const Touched open = find_touched(problem, forces, z, w);
+  Touched open = find_touched(problem, forces, z, w);
+  out.joints.resize(joints);
+  out.gears.resize(joints);
   for (std::size_t i = 0; i < open.tree.size(); ++i)
-    if (open.tree[i] && system.tree_joints[i].joint >= 0) out.joints.push_back(system.tree_joints[i].joint);
+    if (const int j = system.tree_joints[i].joint; j >= 0) out.joints[at(j)] = open.tree[i];
   for (std::size_t i = 0; i < open.cuts.size(); ++i)
-    if (open.cuts[i]) out.joints.push_back(system.cuts[i].joint);
+    out.joints[at(system.cuts[i].joint)] = open.cuts[i];
   for (std::size_t i = 0; i < open.gears.size(); ++i)
-    if (open.gears[i] || forces.gears[i].a.link < 0) out.joints.push_back(forces.gears[i].joint);
-  std::ranges::sort(out.joints);
-  for (std::size_t i = 0; i < open.drives.size(); ++i)
-    if (open.drives[i]) out.drives.push_back(static_cast<int>(i));
+    out.gears[at(forces.gears[i].joint)] = open.gears[i] || forces.gears[i].a.link < 0;
+  out.drives = std::move(open.drives);
   return out;
 }
 

@@ -13,12 +13,16 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
 // The same at the drawn phase, evaluated with them.
 Unknowns evaluate_reported(const Problem& problem, const Eigen::VectorXd& q, Workspace& w);
 
-// Joints (entries of Mechanism::joints, gears among them) and drives (of System::drives), in order, whose
-// forces redundant loops leave open at a state with the drives `t` seconds on: many others balance as well.
+// Which forces redundant loops leave open at a state with the drives `t` seconds on: many others balance as
+// well.
 struct OpenForces {
-  std::vector<int> joints, drives;
+  std::vector<OpenWrench> joints; // by Mechanism::joints; none of gears
+  std::vector<bool> gears;        // likewise
+  std::vector<bool> drives;       // by System::drives
 };
-OpenForces find_open_forces(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w);
+// `joints`: how many the mechanism has.
+OpenForces find_open_forces(const Problem& problem, std::size_t joints, const Eigen::VectorXd& q, double t,
+                            Workspace& w);
 
 // The ends of a gear as it names its joints, not as forces reach it.
 struct GearEnds {

@@ -4,6 +4,7 @@
 
 #include "engine/mechanism/body_point.hpp"
 #include "engine/mechanism/pose.hpp"
+#include "engine/solve/open_directions.hpp"
 
 #include <complex>
 #include <optional>
@@ -140,7 +141,11 @@ struct Reaction {
   Vec3 force = Vec3::Zero();  // N, world axes at the drawn drive phase
   Vec3 torque = Vec3::Zero(); // N m, about `at` as carried by the child
   bool varying = false;       // changes with the phase of the drives
-  bool nonunique = false;     // loops are redundant: the one of the minimum-norm multipliers, of many
+  // Redundant loops leave these directions of it open: there it is the one of the minimum-norm multipliers,
+  // of many. World axes as of `force`.
+  OpenWrench open{};
+
+  bool nonunique() const { return open.any(); }
 };
 
 // What a gear does, as a torque or force along the coordinates of its two joints: there it is part of the

@@ -298,15 +298,15 @@ TEST_CASE("only reactions that redundant loops leave open are not unique") {
   const Solution s = solve(m);
   REQUIRE(s.status == Status::converged);
   CHECK(s.reactions_nonunique);
-  CHECK(reaction(s, "upper").nonunique);
-  CHECK(reaction(s, "lower").nonunique);
-  CHECK_FALSE(reaction(s, "spin").nonunique);
-  CHECK_FALSE(reaction(s, "pend").nonunique);
+  CHECK(reaction(s, "upper").nonunique());
+  CHECK(reaction(s, "lower").nonunique());
+  CHECK_FALSE(reaction(s, "spin").nonunique());
+  CHECK_FALSE(reaction(s, "pend").nonunique());
   CHECK_FALSE(torque(s, "spin").nonunique);
   // Both hinges turn alike.
   CHECK(std::abs(value(s, "upper") - value(s, "lower")) < 1e-14);
   for (const Reaction& r : solve(shipped("governor")).reactions)
-    CHECK_FALSE(r.nonunique);
+    CHECK_FALSE(r.nonunique());
 }
 
 TEST_CASE("a joint that is there twice holds nothing more", "[loops]") {

@@ -87,7 +87,7 @@ TEST_CASE("The shaft of an unbalanced rotor bears its weight and m e w^2 that tu
     check_range(s.drive_torques[0].range, exact(lift), mass * weight * e);
     check_range(s.drive_torques[0].power, exact([&](double a) { return speed * lift(a); }),
                 mass * weight * e * std::abs(speed));
-    CHECK_FALSE(pin.nonunique);
+    CHECK_FALSE(pin.nonunique());
     CHECK_FALSE(s.drive_torques[0].nonunique);
   }
 }
@@ -164,7 +164,7 @@ TEST_CASE("A slider-crank's pins and slide bear what accelerates its piston") {
   check_range(load(s.reactions, "slide").force.component[1],
               exact([&](double a) { return thrust(a) * std::tan(rod_angle(a)); }), size);
   // Its planar loop holds more than it needs, out of its plane.
-  CHECK(load(s.reactions, "crankpin").nonunique);
+  CHECK(load(s.reactions, "crankpin").nonunique());
   CHECK_THAT(s.drive_torques.at(0).range.mean, WithinAbs(0, 1e-9 * size));
   // Of what changes its direction four times a turn, and so has as many kinks, the size is known, too.
   const PeriodicRange& turning = load(s.reactions, "crankshaft").torque.size;

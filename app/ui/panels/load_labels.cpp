@@ -70,11 +70,14 @@ std::string load_components_text(const Load& load) {
   return text + (load.moment ? " N m" : " N");
 }
 
-// Whether it is a reaction that redundant loops share out in many ways.
+// Whether it is of a reaction that redundant loops share out in many ways, and not by its unique part alone.
 bool is_one_of_many(const Solution& solution, const std::string& part, const Load& load) {
-  return load.kind == LoadKind::reaction && load.part.kind == PartKind::joint &&
-         std::ranges::any_of(solution.reactions,
-                             [&](const Reaction& r) { return r.nonunique && r.joint == part; });
+  if (load.kind != LoadKind::reaction || load.part.kind != PartKind::joint) return false;
+  const auto reaction = std::ranges::find(solution.reactions, part, &Reaction::joint);
+  if (reaction == solution.reactions.end()) return false;
+  const OpenDirections& open = load.moment ? reaction->open.torque : reaction->open.force;
+  const Vec3& whole = load.moment ? reaction->torque : reaction->force;
+  return (open.projector * whole).norm() > 1e-9 * whole.norm();
 }
 
 // What else is drawn over the view.

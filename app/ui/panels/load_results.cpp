@@ -18,10 +18,21 @@ std::string force_text(double value, double largest, const NumberStyle& numbers)
 }
 
 // Five digits of each component; what is round-off beside the largest of all is zero.
-std::string vector_text(const Vec3& v, double largest) {
+std::string vector_text(const Vec3& v, double largest, const OpenDirections& open = {}) {
   std::string text;
   for (int i = 0; i < 3; ++i)
-    text += (i ? "  " : "") + (std::abs(v[i]) <= 1e-9 * largest ? "0" : short_text(v[i], 5));
+    text += std::string(i ? "  " : "") + (open.component(i) ? "≈" : "") +
+            (std::abs(v[i]) <= 1e-9 * largest ? "0" : short_text(v[i], 5));
+  return text;
+}
+
+// Help over a vector of which the loops leave something open; empty where they do not.
+std::string open_help(const Vec3& v, double largest, const OpenDirections& open) {
+  if (!open.any()) return "";
+  std::string text = "The loops hold more than they need; of many possible ones the smallest.";
+  if (open.along_axes() && !(open.component(0) && open.component(1) && open.component(2)))
+    text += "\nComponents without ≈ are unique.";
+  if (!open.along_axes()) text += "\nIts unique part: " + vector_text(open.unique_part(v), largest) + ".";
   return text;
 }
 
@@ -109,7 +120,7 @@ void reactions(const Session& session, Ui& ui, ResultSections& open) {
   if (solution.reactions.empty() && solution.bearings.empty()) return;
   if (!section(ui, "results/reactions", "Reactions", open.reactions)) return;
   paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
-                                           "they need; of those marked ≈ these are the smallest that do it."
+                                           "they need; of what is marked ≈ these are the smallest that do it."
                                          : "Parent on child: x, y, z of the world.",
             colors_of(ui).dim);
   double force = 0, torque = 0;
@@ -126,12 +137,17 @@ void reactions(const Session& session, Ui& ui, ResultSections& open) {
   const std::size_t rows = torques ? 2 : 1;
   visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
     const Reaction& r = solution.reactions[i / rows];
-    if (i % rows == 1) return row(ui, "", vector_text(r.torque, torque), "N m");
-    row(ui, std::string(r.nonunique ? "≈ " : "") + r.joint + (r.varying ? " (varies)" : ""),
-        vector_text(r.force, force), "N",
-        r.varying     ? "Changes as the drives turn; at the drawn phase."
-        : r.nonunique ? "The loops hold more than they need; of many possible ones the smallest."
-                      : nullptr);
+    std::string help;
+    if (i % rows == 1) {
+      help = open_help(r.torque, torque, r.open.torque);
+      return row(ui, "", vector_text(r.torque, torque, r.open.torque), "N m",
+                 help.empty() ? nullptr : help.c_str());
+    }
+    help = r.varying ? "Changes as the drives turn; at the drawn phase." : "";
+    if (const std::string more = open_help(r.force, force, r.open.force); !more.empty())
+      help += (help.empty() ? "" : "\n") + more;
+    row(ui, r.joint + (r.varying ? " (varies)" : ""), vector_text(r.force, force, r.open.force), "N",
+        help.empty() ? nullptr : help.c_str());
   });
   bearing_forces(session, ui, force, torque);
   gear_reactions(session, ui, force, torque);

@@ -9,7 +9,10 @@
 #include "engine/mechanism/text.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace flyball {
 
@@ -101,14 +104,20 @@ void load_rows(Session& session, Ui& ui, const PeriodicState& state, const std::
     std::string help = "Its size; along the world's axes:";
     for (std::size_t c = 0; c < 3; ++c) {
       const PeriodicRange& along = vector.component[c];
-      help += std::string("\n") + "xyz"[c] + "  " + end_text(along.least, along, shown) + " … " +
-              end_text(along.most, along, shown) + " " + shown.text + ", mean " +
-              end_text(along.mean, along, shown);
+      help += std::string("\n") + (vector.open[c] ? "≈ " : "") + "xyz"[c] + "  " +
+              end_text(along.least, along, shown) + " … " + end_text(along.most, along, shown) + " " +
+              shown.text + ", mean " + end_text(along.mean, along, shown);
     }
-    if (load.nonunique) help += "\nThe loops hold more than they need; of many possible ones the smallest.";
+    if (vector.nonunique())
+      help += "\nThe loops hold more than they need; of many possible ones the smallest.";
     const std::string title = load.name + what;
-    range_row(session, ui, {prefix, title, (load.nonunique ? "≈ " : "") + title, help, "", false},
+    range_row(session, ui, {prefix, title, (vector.nonunique() ? "≈ " : "") + title, help, "", false},
               vector.size, shown);
+    if (vector.unique_size)
+      range_row(session, ui,
+                {prefix, title + ", unique part", title + ", unique part",
+                 "Of the components that the loops do not leave open.", "", false},
+                *vector.unique_size, shown);
   };
   for (const auto list : {&PeriodicState::reactions, &PeriodicState::bearings})
     for (const PeriodicReaction& load : state.*list) {
@@ -124,6 +133,22 @@ void load_rows(Session& session, Ui& ui, const PeriodicState& state, const std::
            "The gear on the joint's child, along the joint's coordinate; part of its reaction.", "", false},
           second ? g.b : g.a, shown_unit((second ? g.angle_b : g.angle_a) ? "N m" : "N", session.units));
     }
+}
+
+// What springs, dampers and stops do.
+void spring_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
+  for (const PeriodicSpring& s : state.springs)
+    for (const auto& [words, part] :
+         std::initializer_list<std::pair<const char*, const std::optional<PeriodicRange>&>>{
+             {", spring", s.spring}, {", damper", s.damper}, {", stop", s.stop}, {", sum", s.sum}})
+      if (part)
+        range_row(session, ui,
+                  {prefix, coordinate_label(s) + words,
+                   (s.between_points ? s.joint : coordinate_words(s)) + words,
+                   s.between_points ? "Tension is positive."
+                                    : "On the joint's child, positive along the joint's coordinate.",
+                   "", false},
+                  *part, shown_unit(s.angle ? "N m" : "N", session.units));
 }
 
 // Names of widgets begin with `prefix`.
@@ -162,6 +187,8 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
     row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
   help_on_hover("The motion begins in this one, at the drawn phase, and lasts for two periods.");
+  if (!state.springs.empty() && section(ui, prefix + "/springs", "Springs over a period", open.springs))
+    spring_rows(session, ui, state, prefix);
   if (state.reactions.empty() && state.bearings.empty()) return;
   if (section(ui, prefix + "/reactions", "Reactions over a period", open.reactions))
     load_rows(session, ui, state, prefix);

@@ -10,7 +10,7 @@ struct Ui;
 
 // Which are open.
 struct ResultSections {
-  bool torques = true, reactions = false, eigenvalues = false, system = false;
+  bool torques = true, reactions = false, springs = false, eigenvalues = false, system = false;
   bool coordinates = false; // all of many
 };
 
