@@ -74,6 +74,32 @@ TEST_CASE("a drag draws the size of a body") {
   CHECK(d.steps() == 1);
 }
 
+TEST_CASE("a disc put onto a rod sits on it, one at its free end faces the eye") {
+  Drawing d;
+  edit(d.app.session, "Add rod", [](Mechanism& next, Selection& selection) {
+    add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = {-0.4, 0, 0}, .to = {0.4, 0, 0}});
+    selection.set({});
+  });
+  const auto place = [&](const Vec3& at) {
+    d.frames(60); // no double click
+    d.click("tools/disc");
+    d.drag(d.pixel(at), d.pixel(at + Vec3(0, 0.21, 0)));
+    return d.m().bodies.back().shapes.at(0);
+  };
+  const auto along = [](const Shape& shape) { return Vec3((shape.to - shape.from).normalized()); };
+  const Shape on_rod = place({0, 0, 0}), at_end = place({0.4, 0, 0});
+  REQUIRE(d.m().bodies.size() == 3);
+  CHECK(along(on_rod) == Vec3::UnitX());
+  CHECK(on_rod.radius == 0.2);
+  CHECK((on_rod.from + on_rod.to).norm() < 1e-12);
+  CHECK(along(at_end) == Vec3::UnitZ());
+  // A shaft's end has a wheel across it.
+  edit(d.app.session, "Add joint", [](Mechanism& next, Selection&) {
+    add_joint(next, JointType::revolute, {std::string(ground_name), "rod1"}, {0, 0, 0}, Vec3::UnitX());
+  });
+  CHECK(along(place({-0.4, 0, 0})) == Vec3::UnitX());
+}
+
 TEST_CASE("a rod is drawn by two clicks or by a drag") {
   Drawing d;
   d.click("tools/rod");

@@ -182,6 +182,31 @@ Vec3 guess_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& b
   return Vec3::Unit(normal);
 }
 
+std::optional<Vec3> shaft_axis(const Mechanism& mechanism, const Vec3& at) {
+  std::optional<Vec3> found;
+  for (const Body& body : mechanism.bodies) {
+    const std::optional<Vec3> axis = rod_axis(body, true);
+    if (!axis) continue;
+    const bool turns = std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
+      return (joint.type == JointType::revolute || joint.type == JointType::cylindrical) &&
+             std::ranges::find(joint.bodies, body.name) != joint.bodies.end() && parallel(joint.axis, *axis);
+    });
+    const bool on_line = std::ranges::any_of(body.shapes, [&](const Shape& shape) {
+      if (shape.type != ShapeType::cylinder && shape.type != ShapeType::capsule) return false;
+      const double length = (shape.to - shape.from).norm(), along = (at - shape.from).dot(*axis),
+                   off = (at - shape.from - along * *axis).norm(), near = 1e-6 * length,
+                   from_end = std::min((at - shape.from).norm(), (at - shape.to).norm());
+      const bool within = (at - shape.from).dot(shape.to - at) >= -near * length;
+      return parallel((shape.to - shape.from).stableNormalized(), *axis) && off <= near && within &&
+             (turns || from_end > near);
+    });
+    if (!on_line) continue;
+    if (found && !parallel(*found, *axis)) return std::nullopt;
+    found = axis;
+  }
+  return found;
+}
+
 Vec3 axis_across(const Vec3& axis) {
   Vec3::Index least = 0;
   axis.cwiseAbs().minCoeff(&least);

@@ -5,6 +5,7 @@
 #include "app/viewport/scene_list.hpp"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std
 // Of a bearing: that which one of the bodies turns about, the second rather; or along a rod, or across the
 // picture.
 Vec3 guess_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& bodies, int normal);
+// Along the rod on whose centre line a point is: what is put there as a disc sits on it. At a rod's end only
+// where it turns about that line, as a shaft does; nothing where rods cross.
+std::optional<Vec3> shaft_axis(const Mechanism& mechanism, const Vec3& at);
 // A world axis at right angles to the axis, or its part that is.
 Vec3 axis_across(const Vec3& axis);
 

@@ -3,6 +3,7 @@
 #include "app/ui/inspector/body_preview.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
+#include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/named_points.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/tools/typed_size.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace flyball {
@@ -36,23 +38,34 @@ bool is_round(BodyForm form) {
   return form == BodyForm::ball || form == BodyForm::disc;
 }
 
-// Across the plane that it is placed in, a quarter of its radius thick.
-void lay_disc(NewBody& body, int normal) {
-  const Vec3 half = nearest_step(body.radius / 4) / 2 * Vec3::Unit(normal);
+// What a disc that is begun there turns about: the rod that it sits on, or what is across the plane that it
+// is placed in.
+Vec3 disc_axis(const ViewContext& context, const Aim& from) {
+  const std::optional<Vec3> shaft =
+      from.what.empty() ? std::nullopt : shaft_axis(context.session.document.stored(), from.point);
+  return shaft.value_or(Vec3::Unit(from.plane.normal));
+}
+
+// A quarter of its radius thick.
+void lay_disc(NewBody& body, const Vec3& axis) {
+  const Vec3 half = nearest_step(body.radius / 4) / 2 * axis;
   body.from = body.at - half;
   body.to = body.at + half;
 }
 
 // At a named point both ends of its centre line go as that is moved, and its mass centre with them.
-void stand_disc_at(Mechanism& mechanism, const std::string& name, const NewBody& disc, int normal,
+void stand_disc_at(Mechanism& mechanism, const std::string& name, const NewBody& disc,
                    const std::string& point) {
   if (point.empty()) return;
   mechanism.bodies.back().density = disc.density;
-  const std::string half = number_text((disc.to - disc.from)[normal] / 2) + " m";
-  for (const auto& [end, sign] : {std::pair(".from.", " - "), std::pair(".to.", " + ")})
-    for (int i = 0; i < 3; ++i)
+  const Vec3 half = (disc.to - disc.from) / 2;
+  for (const auto& [end, sign] : {std::pair(".from.", -1.), std::pair(".to.", 1.)})
+    for (int i = 0; i < 3; ++i) {
+      const double by = sign * half[i];
+      const std::string beside = by == 0 ? "" : (by > 0 ? " + " : " - ") + number_text(std::abs(by)) + " m";
       set_expression(mechanism, "bodies." + name + ".shapes.0" + end + std::to_string(i),
-                     point + "." + "xyz"[i] + (i == normal ? sign + half : ""));
+                     point + "." + "xyz"[i] + beside);
+    }
 }
 
 NewBody of_round_size(const ViewInput& input, BodyForm form, const Aim& at) {
@@ -66,8 +79,8 @@ NewBody of_round_size(const ViewInput& input, BodyForm form, const Aim& at) {
   return body;
 }
 
-// From its centre to where the cursor is, in the plane across the view.
-NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const Aim& to) {
+// From its centre to where the cursor is, in the plane across the view; of a disc what is off its axis.
+NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const Aim& to, const Vec3& axis) {
   NewBody body = of_round_size(input, form, from);
   const double least = from.step > 0 ? from.step : 4 * input.point * input.metres_per_pixel();
   const int normal = from.plane.normal;
@@ -77,7 +90,10 @@ NewBody drawn_out(const ViewInput& input, BodyForm form, const Aim& from, const 
     corner = meet({from.point, normal}, input.ray()).value_or(to.point);
   }
   Vec3 reach = corner - from.point;
-  reach[normal] = 0;
+  if (form == BodyForm::disc)
+    reach -= reach.dot(axis) * axis;
+  else
+    reach[normal] = 0;
   const auto rounded = [&](double x) { return from.step > 0 ? round_to(x, from.step) : x; };
   if (is_round(form)) {
     body.radius = std::max(to.what.empty() ? rounded(reach.norm()) : reach.norm(), least);
@@ -120,12 +136,13 @@ void use_placing(const ViewContext& context, const ViewInput& input) {
   const Aim& aim = aim_at(context, input);
   const Aim from = tool.first.value_or(aim);
   const bool drawing = tool.first && input.moved;
-  NewBody body = drawing ? drawn_out(input, form, from, aim) : of_round_size(input, form, from);
+  const Vec3 axis = disc_axis(context, from);
+  NewBody body = drawing ? drawn_out(input, form, from, aim, axis) : of_round_size(input, form, from);
   std::string mistake;
   const bool typing = !tool.typed.empty();
   if (const auto size = typing ? typed_length(tool.typed, context.session.units, &mistake) : std::nullopt)
     take_typed_size(body, *size, from.plane.normal);
-  if (form == BodyForm::disc) lay_disc(body, from.plane.normal);
+  if (form == BodyForm::disc) lay_disc(body, axis);
   draw_body_outline(context.ui, input, body);
   if (typing)
     draw_tag(context.ui, input, input.cursor, from.what,
@@ -146,7 +163,7 @@ void use_placing(const ViewContext& context, const ViewInput& input) {
   edit(context.session, "Add " + form_name(form), [&](Mechanism& mechanism, Selection& selection) {
     const Part part{PartKind::body, add_body(mechanism, body)};
     if (form == BodyForm::disc)
-      stand_disc_at(mechanism, part.name, body, from.plane.normal, from.named);
+      stand_disc_at(mechanism, part.name, body, from.named);
     else
       stand_at(mechanism, point_address(mechanism, {part, 0}), from.named);
     selection.set(part);
