@@ -40,19 +40,32 @@ Mechanism with_parameter(const Mechanism& mechanism, const std::string& address,
 
 namespace {
 
-// Whether a coordinate is at a stop of its own, which it touches or leaves there.
-bool stands_at_stop(const Problem& problem, const Eigen::VectorXd& q) {
-  constexpr double at = 1e-6; // scaled
+// A coordinate that touches its stop or leaves it there, as it moves along a branch.
+struct AtStop {
+  int q = 0, v = 0;
+  double limit = 0; // rad or m
+  bool grows = true;
+};
+
+std::optional<AtStop> stop_ahead(const Problem& problem, const BranchState& state) {
+  constexpr double at = 1e-6; // scaled length of the branch
+  std::optional<AtStop> found;
+  double least = at;
   for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
     const Link& link = problem.system.links[l];
     if (link.v < 0 || link.type == LinkType::spherical || finds_speed(link)) continue;
     const CoordinateForce& force = problem.parameters.links[l].force[0];
-    const double near = at * problem.scaling.column[link.v];
-    if ((force.has_lower && std::abs(q[link.q] - force.lower) < near) ||
-        (force.has_upper && std::abs(q[link.q] - force.upper) < near))
-      return true;
+    const auto look = [&](double limit) {
+      const double rate = state.tangent[link.v] * problem.scaling.column[link.v],
+                   away = (limit - state.z.q[link.q]) / rate;
+      if (!(std::abs(away) < least)) return;
+      least = std::abs(away);
+      found = {link.q, link.v, limit, rate > 0};
+    };
+    if (force.has_lower) look(force.lower);
+    if (force.has_upper) look(force.upper);
   }
-  return false;
+  return found;
 }
 
 std::string infinite_rate_text(const InfiniteRate& error) {
@@ -303,6 +316,23 @@ bool BranchFollower::holds_at_every_phase(const BranchState& s) {
   return check_existence(problem, s.z.q, sample_phases(problem.system, problem.parameters, s.z.q), w_).holds;
 }
 
+std::optional<BranchState> BranchFollower::beyond_stop(const BranchState& state) {
+  const Problem problem = problem_at(state);
+  const auto stop = stop_ahead(problem, state);
+  if (!stop) return {};
+  // Beside the stop the balance has the slope of its other side, on which the coordinate goes on as it did.
+  constexpr double beside = 1e-9, first = 1e-7; // scaled
+  const double way = stop->grows ? 1 : -1;
+  BranchState corner = state, next;
+  corner.z.q[stop->q] = stop->limit + way * beside * problem.scaling.column[stop->v];
+  int iterations = 0;
+  if (!continuation_.start(corner, way * Eigen::VectorXd::Unit(state.tangent.size(), stop->v)) ||
+      !continuation_.step(corner, first, next, iterations) || next.tangent.dot(corner.tangent) < 0.97 ||
+      (next.z.q[stop->q] - stop->limit) * way <= 0 || !holds_at_every_phase(next))
+    return {};
+  return next;
+}
+
 void BranchFollower::land_on_border(const BranchState& state, double border, FollowedBranch& out) {
   if (std::abs(state.parameter - border) < 1e-12 * family_.scale()) return;
   constexpr int most_tries = 200;
@@ -368,11 +398,20 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     if (!straight && !corner) {
       length /= 2;
       if (length > tolerance::least_branch_step) continue;
+      if (std::optional<BranchState> beyond; impossible.empty() && (beyond = beyond_stop(state))) {
+        if (state.turning * beyond->turning < 0) out.special.emplace_back(SpecialPointType::fold, now.point);
+        state = std::move(*beyond);
+        now = describe(state);
+        out.points.push_back(now.point);
+        out.states.push_back(state);
+        length = options_.largest_step / 4;
+        continue;
+      }
       const bool ends = position(state.parameter) > 0.5;
       const double border = ends ? to_ : from_;
       if (impossible.empty()) {
-        out.end = stands_at_stop(family_.problem(), state.z.q)
-                      ? "the corrector fails at a stop, where the curve may turn back"
+        out.end = stop_ahead(family_.problem(), state)
+                      ? "the corrector fails at a stop"
                       : "the corrector fails: the loops lock or a part of the mechanism becomes singular";
       } else if (std::abs(state.parameter - border) < at_border * family_.scale()) {
         land_on_border(state, border, out);

@@ -117,6 +117,9 @@ class BranchFollower {
   // Of a step along which the linearised motion turns with the drives.
   void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
                                 FollowedBranch& out);
+  // The other side of a stop that a state is just before, where the curve has turned round. Nothing where no
+  // coordinate comes to its stop.
+  std::optional<BranchState> beyond_stop(const BranchState& state);
   void land_on_border(const BranchState& state, double border, FollowedBranch& out);
   bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }

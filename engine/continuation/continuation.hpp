@@ -34,6 +34,8 @@ class Continuation {
   // Completes a state whose z solves the balance at its parameter: tangent with the parameter growing, or
   // falling for direction < 0. False at a singular state that has no single tangent.
   bool start(BranchState& state, double direction);
+  // The same with a tangent along this step.
+  bool start(BranchState& state, const Eigen::VectorXd& along) { return find_tangent(state, along); }
 
   // The point `length` further along (scaled arclength). False where the corrector fails. `iterations` tells
   // how hard it was.

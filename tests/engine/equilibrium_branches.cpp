@@ -442,8 +442,53 @@ TEST_CASE("where loops are singular all along a branch no points are special", "
     CHECK(std::abs(point.at.parameter - std::sqrt(standard_gravity / 0.16)) > 1e-3);
 }
 
-TEST_CASE("a curve that ends at a stop says so", "[branches]") {
-  const ResponseDiagram d = follow_branches(shipped("governor_hartnell"), "parameters.k", 2000, 40000);
-  REQUIRE(!d.branches.empty());
-  CHECK_THAT(d.branches[0].end, ContainsSubstring("fails at a stop"));
+TEST_CASE("a curve that turns back at a stop goes on along it", "[branches]") {
+  SECTION("a pendulum in a spring's pull") {
+    // Upright the rod is unstable; F pulls its top to the side: sin(q) m g h = F h cos(q) on the branch that
+    // leans against the pull, until it comes to rest on its stop.
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("rod", 2, {0, 0.5, 0}, {0, 0, 0})};
+    Joint hinge = revolute("hinge", "ground", "rod", {0, 0, 0}, {0, 0, 1});
+    const double limit = 0.3, stiffness = 1e5;
+    hinge.coordinates[0].stop = Stop{{}, limit, stiffness};
+    m.joints = {hinge};
+    Force pull;
+    pull.name = "pull";
+    pull.type = ForceType::force;
+    pull.body = "rod";
+    pull.vector = {1, 0, 0};
+    m.forces = {pull};
+    const ResponseDiagram d = follow_branches(m, "forces.pull.vector.0", 0, 20);
+    REQUIRE(!d.branches.empty());
+    const auto& points = d.branches[0].points;
+    const double weight = 2 * standard_gravity, fold = weight * std::tan(limit);
+    int leaning = 0, resting = 0;
+    for (const ResponsePoint& p : points) {
+      const double q = p.coordinates[0].value;
+      if (q < limit) {
+        CHECK(std::abs(weight * std::tan(q) - p.parameter) < 1e-8 * weight);
+        if (std::abs(q - limit) > 1e-6) CHECK(p.stable == false);
+        ++leaning;
+      } else {
+        const double moment = 0.5 * (weight * std::sin(q) - p.parameter * std::cos(q));
+        CHECK(std::abs(moment - stiffness * (q - limit)) < 1e-8 * weight);
+        CHECK(p.parameter < fold + 1e-9);
+        CHECK(p.stable == true);
+        ++resting;
+      }
+    }
+    CHECK(leaning > 3);
+    CHECK(resting > 3);
+    CHECK(d.branches[0].end == "the beginning of the range");
+    REQUIRE(!d.special.empty());
+    CHECK(d.special[0].type == SpecialPointType::fold);
+    CHECK_THAT(d.special[0].at.parameter, Catch::Matchers::WithinAbs(fold, 1e-5));
+  }
+  SECTION("a governor") {
+    const ResponseDiagram d = follow_branches(shipped("governor_hartnell"), "parameters.k", 2000, 40000);
+    REQUIRE(!d.branches.empty());
+    CHECK_THAT(d.branches[0].end, ContainsSubstring("of the range"));
+    CHECK(d.special.size() == 1);
+  }
 }
