@@ -296,6 +296,21 @@ def resonance(folder):
     check(f"not all motions: {error}", code == 2)
 
 
+def loads(folder):
+    """`simulate --loads` has what joints and drives exert beside the columns that are there without."""
+    tables = [list(csv.DictReader(run("simulate", SCENE, "--duration", "0.1", "--csv", "-", *more)[1].decode()
+                                  .splitlines())) for more in ([], ["--loads"])]
+    plain, loaded = (list(table[0]) for table in tables)
+    check("the columns without loads come first", loaded[:len(plain)] == plain and len(loaded) > len(plain))
+    for row in tables[1]:
+        power = float(row["spin.torque"]) * float(row["spin.rate"])
+        check("a power is torque times rate", abs(float(row["spin.power"]) - power) <= 1e-12 * abs(power))
+        check("the drive's torque is in its joint's moment",
+              abs(float(row["spin.moment.y"]) - float(row["spin.torque"])) < 1e-9)
+    code, _, error = run("simulate", SCENE, "--loads")
+    check(f"loads are for a table: {error}", code == 2 and "--csv" in error)
+
+
 def hunting(folder):
     """Where a branch begins to hunt, its Hopf points have the loss that `hunting` finds on its boundary."""
     engine = pathlib.Path(SCENE).parent / "governor_engine.json"
@@ -375,7 +390,7 @@ def parts(folder):
 
 with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
-                 units_of_ranges, hunting, parts):
+                 units_of_ranges, hunting, loads, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

@@ -164,11 +164,51 @@ TEST_CASE("A slider-crank's pins and slide bear what accelerates its piston") {
   check_range(load(s.reactions, "slide").force.component[1],
               exact([&](double a) { return thrust(a) * std::tan(rod_angle(a)); }), size);
   // Its planar loop holds more than it needs, out of its plane.
-  CHECK(load(s.reactions, "crankpin").nonunique());
+  for (const std::string pin_of : {"crankpin", "wristpin"}) {
+    const PeriodicReaction& reaction = load(s.reactions, pin_of);
+    CHECK(reaction.force.open == std::array{false, false, true});
+    CHECK(reaction.torque.open == std::array{true, true, false});
+    REQUIRE(reaction.force.unique_size);
+    CHECK_THAT(reaction.force.unique_size->most, WithinAbs(along_rod.most, 1e-8 * size));
+    CHECK(reaction.force.unique_size->error < 1e-5 * size);
+  }
+  CHECK_FALSE(s.drive_torques.at(0).nonunique);
   CHECK_THAT(s.drive_torques.at(0).range.mean, WithinAbs(0, 1e-9 * size));
   // Of what changes its direction four times a turn, and so has as many kinks, the size is known, too.
   const PeriodicRange& turning = load(s.reactions, "crankshaft").torque.size;
   CHECK(turning.error < 1e-5 * turning.most);
+}
+
+TEST_CASE("Springs and dampers over a period are those of a forced oscillator") {
+  // On a slide, by its own spring and damper and by those between two points: half of each.
+  const double mass = 2, e = 0.01, speed = 9, stiffness = 150, damping = 8;
+  Mechanism m;
+  m.bodies = {body("block", 1), body("disc", mass - 1, {e, 0, 0}, {0.01, 0.01, 0.02})};
+  m.joints = {dampened(sprung(prismatic("slide", "ground", "block", {0, 0, 0}, {1, 0, 0}), stiffness / 2),
+                       damping / 2),
+              driven(revolute("spin", "block", "disc", {0, 0, 0}), speed)};
+  m.forces = {point_spring("coil", "block", "ground", {0, 0, 0}, {1, 0, 0}, stiffness / 2, 0.9)};
+  m.forces[0].damping = damping / 2;
+  m.joints[0].coordinates[0].spring->free = -0.1; // against the coil's tension
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  REQUIRE(s.springs.size() == 2);
+  const std::complex<double> force(stiffness - mass * speed * speed, damping * speed);
+  const double amplitude = (mass - 1) * e * speed * speed / std::abs(force), preload = stiffness / 2 * 0.1;
+  for (const PeriodicSpring& spring : s.springs) {
+    CAPTURE(spring.joint);
+    const double sign = spring.between_points ? 1 : -1, size = preload;
+    const auto swings = [&](double mean, double by) { return Exact{mean, mean - by, mean + by}; };
+    REQUIRE((spring.spring && spring.damper && spring.sum));
+    CHECK_FALSE(spring.stop);
+    check_range(*spring.spring, swings(sign * preload, amplitude * stiffness / 2), size);
+    check_range(*spring.damper, swings(0, amplitude * speed * damping / 2), size);
+    check_range(*spring.sum, swings(sign * preload, amplitude * std::hypot(stiffness, speed * damping) / 2),
+                size);
+  }
+  CHECK(s.springs[0].joint == "slide");
+  CHECK(s.springs[1].joint == "coil");
 }
 
 TEST_CASE("What a gear bears over a period turns the wheel behind it") {
