@@ -112,6 +112,7 @@ std::string what_of(const std::vector<std::string>& parts) {
   constexpr std::array vectors{"position", "at",    "axis", "axes", "x_axis", "points", "vector",
                                "normal",   "chord", "size", "from", "to",     "turn"};
   const bool vector = parts.size() > 3 && std::ranges::find(vectors, parts[2]) != vectors.end();
+  if (vector && parts[2] == "vector") return "component " + axis(parts.back()); // of a force or torque
   if (vector) return parts[2] + (parts.size() > 4 ? " " + parts[3] : "") + " " + axis(parts.back());
   const bool matrix = parts.size() == 5 && is_index(parts[3]) && is_index(parts[4]);
   if (matrix) return parts[2] + " " + shift_or_turn(parts[3]) + " by " + shift_or_turn(parts[4]);

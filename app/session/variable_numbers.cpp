@@ -7,6 +7,17 @@
 
 namespace flyball {
 
+namespace {
+
+// A torque turns its body wherever it acts.
+bool is_place_of_torque(const Mechanism& mechanism, const std::string& address) {
+  return std::ranges::any_of(mechanism.forces, [&](const Force& force) {
+    return force.type == ForceType::torque && address.starts_with("forces." + force.name + ".at.");
+  });
+}
+
+} // namespace
+
 std::vector<std::string> variable_numbers(const Session& session, Dampers dampers) {
   constexpr std::size_t many = 60; // bodies
   std::vector<std::string> all;
@@ -16,7 +27,7 @@ std::vector<std::string> variable_numbers(const Session& session, Dampers damper
   if (session.mechanism().bodies.size() > many) return all;
   for (const std::string& address : parameter_addresses(session.mechanism()))
     if (!address.starts_with("simulation.") && (with || address.find(".damping") == std::string::npos) &&
-        std::ranges::find(all, address) == all.end())
+        !is_place_of_torque(session.mechanism(), address) && std::ranges::find(all, address) == all.end())
       all.push_back(address);
   return all;
 }

@@ -62,7 +62,8 @@ bool draw_belt(Sketch& sketch, const Mechanism& mechanism, const Joint& belt, co
   return true;
 }
 
-// The rack runs where the pinion's rim moves along the slide.
+// The rack runs where the pinion's rim moves along the slide, and goes with what slides; it reaches as far as
+// it takes to stay in mesh.
 void draw_rack(Sketch& sketch, double radius, const GearEnd& a, const GearEnd& b, double u,
                const Palette& colors) {
   const Vec3 center = a.at + 1.7 * u * a.axis;
@@ -72,8 +73,11 @@ void draw_rack(Sketch& sketch, double radius, const GearEnd& a, const GearEnd& b
   const Vec3 out = b.axis.cross(a.axis);
   if (!(out.stableNorm() > 0.9)) return draw_dots(sketch, center, b.there, u);
   const Vec3 contact = center + std::copysign(size + 0.45 * u, radius) * out.stableNormalized();
+  const double gone = b.axis.dot(b.there - b.at); // m, since the drawn pose
+  const double low = std::min(gone - 1.8 * size, -0.3 * size), high = std::max(gone + 1.8 * size, 0.3 * size);
   sketch.pen.color = colors.metal;
-  sketch.box(contact, frame_along(b.axis, out), {0.45 * u, 0.28 * u, 1.8 * size}, 0.08 * u);
+  sketch.box(contact + (low + high) / 2 * b.axis, frame_along(b.axis, out),
+             {0.45 * u, 0.28 * u, (high - low) / 2}, 0.08 * u);
 }
 
 // A rim that leaves what turns with it to be seen, and its teeth.

@@ -1,7 +1,9 @@
 // A session without a window: this program is linked without Dear ImGui and without OpenGL.
 #include "app/session/session.hpp"
+#include "app/document/create.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/state_words.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
@@ -100,6 +102,20 @@ TEST_CASE("Session: a slider's move hands one mechanism on, from the document to
   CHECK(session.answer.mechanism.get() == session.document.shared().get());
 }
 
+TEST_CASE("Session: where a torque acts is no number to vary") {
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_scene(session, governor);
+  edit(session, "Add", [](Mechanism& mechanism, Selection&) {
+    for (const ForceType type : {ForceType::torque, ForceType::force})
+      add_force(mechanism, type, "collar", {0, 0.1, 0}, Vec3::UnitY());
+  });
+  const std::vector<std::string> all = variable_numbers(session, Dampers::with);
+  const auto has = [&](const char* address) { return std::ranges::find(all, address) != all.end(); };
+  CHECK(has("forces.torque1.vector.2"));
+  CHECK(has("forces.force1.at.0"));
+  CHECK_FALSE(has("forces.torque1.at.0"));
+}
+
 TEST_CASE("Session: every number is called by what it is and what it is of") {
   CHECK(parameter_phrase("joints.spin.drive.speed") == "speed of spin");
   CHECK(parameter_phrase("gravity.1") == "y of gravity");
@@ -108,6 +124,7 @@ TEST_CASE("Session: every number is called by what it is and what it is of") {
   CHECK(parameter_phrase("simulation.duration") == "duration of simulation");
   CHECK(parameter_phrase("forces.sail.normal.2") == "normal z of sail");
   CHECK(parameter_phrase("forces.sail.chord.1") == "chord y of sail");
+  CHECK(parameter_phrase("forces.twist.vector.2") == "component z of twist");
   CHECK(parameter_phrase("forces.film.stiffness.0.1") == "stiffness x by y of film");
   CHECK(parameter_phrase("forces.film.damping.5.2") == "damping turn z by z of film");
   CHECK(parameter_phrase("joints.ball.damping.2") == "damping 2 of ball");

@@ -475,3 +475,28 @@ TEST_CASE("a mass centre a little beside the only joint makes no glyph vanish") 
     body.position.y() = 1e-4; // unbalance
   CHECK(build_scene(m, {}).scale.unit > 0.5 * balanced);
 }
+
+TEST_CASE("a rack goes with what slides, and stays in mesh") {
+  Mechanism m;
+  m.bodies = {body("wheel"), body("block", 1, {0, -0.1, 0})};
+  Joint rack = gear("rack", "turn", "slide", 0.05);
+  rack.kind = GearKind::rack;
+  rack.radii[0] = 0.05;
+  m.joints = {revolute("turn", "ground", "wheel", {0, 0, 0}, {0, 0, 1}),
+              prismatic("slide", "ground", "block", {0, -0.1, 0}, {1, 0, 0}), rack};
+  const auto bar = [&](double gone) {
+    std::vector<Pose> poses = drawn_poses(m);
+    poses[1].position.x() += gone;
+    const SceneList scene = build_scene(m, poses);
+    const auto found = std::ranges::find_if(scene.instances, [](const Instance& i) {
+      return i.part == PartId{PartKind::joint, 2} && i.primitive == Primitive::box;
+    });
+    REQUIRE(found != scene.instances.end());
+    return instance_bounds(*found);
+  };
+  const Bounds drawn = bar(0), gone = bar(0.02), far = bar(-0.5);
+  CHECK(gone.lower.x() - drawn.lower.x() == Approx(0.02));
+  CHECK(gone.upper.x() - drawn.upper.x() == Approx(0.02));
+  CHECK(far.lower.x() - drawn.lower.x() == Approx(-0.5));
+  CHECK(far.upper.x() > 0); // below the wheel
+}
