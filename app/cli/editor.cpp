@@ -39,7 +39,8 @@ namespace {
 
 // Frames after the last thing that happened: what ImGui learns from one shows in the next.
 constexpr int settling_frames = 6;
-constexpr double idle = 3600; // s, to wait for something to happen
+constexpr double idle = 3600;     // s, to wait for something to happen
+constexpr double still = 1. / 60; // s, after a frame that showed nothing new: no display holds up the next
 
 // What GLFW's callbacks find at the window.
 struct Desk {
@@ -48,6 +49,7 @@ struct Desk {
   std::atomic<bool>* stirred; // something has happened that may show: set from any thread
   SystemColors* colors = nullptr;
   std::optional<std::filesystem::path> dropped{}; // to be opened once the keys before it were seen
+  bool uncovered = true;                          // what was drawn may be gone
 };
 
 Desk& desk_of(GLFWwindow* window) {
@@ -58,6 +60,12 @@ Desk& desk_of(GLFWwindow* window) {
 template <class... Arguments>
 void stir(GLFWwindow* window, Arguments...) {
   *desk_of(window).stirred = true;
+}
+
+template <class... Arguments>
+void uncover(GLFWwindow* window, Arguments...) {
+  stir(window);
+  desk_of(window).uncovered = true;
 }
 
 void press_key(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
@@ -119,11 +127,11 @@ void set_callbacks(GLFWwindow* window, Desk& desk) {
   glfwSetScrollCallback(window, turn_wheel);
   glfwSetWindowFocusCallback(window, focus_window);
   glfwSetWindowCloseCallback(window, stir);
-  glfwSetWindowSizeCallback(window, stir);
-  glfwSetWindowRefreshCallback(window, stir);
-  glfwSetWindowIconifyCallback(window, stir);
-  glfwSetWindowContentScaleCallback(window, stir);
-  glfwSetFramebufferSizeCallback(window, stir);
+  glfwSetWindowSizeCallback(window, uncover);
+  glfwSetWindowRefreshCallback(window, uncover);
+  glfwSetWindowIconifyCallback(window, uncover);
+  glfwSetWindowContentScaleCallback(window, uncover);
+  glfwSetFramebufferSizeCallback(window, uncover);
 }
 
 Theme theme_of(DesktopColors colors) {
@@ -199,6 +207,7 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& 
   using Clock = std::chrono::steady_clock;
   auto last = Clock::now();
   int settling = settling_frames;
+  bool drew = true; // the last frame
   std::string title;
   while (!app.quit && !ends()) {
     // A film is drawn all the same.
@@ -208,7 +217,8 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& 
         waits
             ? std::min({idle, next_file_update(app.session), next_notice_change(app.session, app.notice_age),
                         app.ui.tooltip.due, next_progress(app)})
-            : 0;
+        : drew ? 0
+               : still;
     window.wait_events(longest);
     const auto now = Clock::now();
     const double elapsed = std::chrono::duration<double>(now - last).count();
@@ -247,8 +257,12 @@ void run_loop(Window& window, App& app, Stage& stage, WindowInput& input, Desk& 
     if (const auto dropped = std::exchange(desk.dropped, std::nullopt)) open_file(app, *dropped);
     if (closes) quit(app);
     if (!app.quit) note_unsaved_work(app.session);
-    stage.render(app.ui, size);
-    window.swap();
+    const bool uncovered = std::exchange(desk.uncovered, false);
+    drew = stage.has_news() || uncovered;
+    if (drew) {
+      stage.render(app.ui, size);
+      window.swap();
+    }
     if (app.export_request) {
       export_picture(app, size);
       settling = settling_frames;

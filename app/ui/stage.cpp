@@ -124,6 +124,12 @@ bool Stage::behind(const App& app, PixelSize size) const {
   return app.session.opened != opened_ || layout.view != view_rect_ || layout.beside != beside_rect_;
 }
 
+bool Stage::has_news() {
+  ImGui::SetCurrentContext(context_.get());
+  const bool changed = drawn_.take(*ImGui::GetDrawData());
+  return changed || view_.due || beside_.due;
+}
+
 void Stage::render(const Ui& ui, const Framebuffer& target) {
   draw_due(view_);
   draw_due(beside_);

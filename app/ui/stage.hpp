@@ -2,6 +2,7 @@
 // panels. The same in a window and off-screen. Needs a current OpenGL context for its whole life.
 #pragma once
 
+#include "app/render/draw_record.hpp"
 #include "app/render/fonts.hpp"
 #include "app/render/imgui_renderer.hpp"
 #include "app/ui/layout.hpp"
@@ -52,6 +53,8 @@ class Stage {
   // Whether the frame has come to another document or other panels than its views were made for, as by a
   // command: another frame puts that right.
   bool behind(const App& app, PixelSize size) const;
+  // Whether the frame is another picture than the last that was asked about: asked once a frame.
+  bool has_news();
   // Draws the frame into `target`: the views that have changed since they were drawn, then the interface.
   void render(const Ui& ui, const Framebuffer& target);
   // The same into the window's own picture.
@@ -94,6 +97,7 @@ class Stage {
   KeptFonts* kept_;      // or none
   std::unique_ptr<ImGuiContext, void (*)(ImGuiContext*)> context_;
   ImGuiRenderer renderer_;
+  DrawRecord drawn_;
   ViewRenderer view_renderer_;
   ScenePictures scene_pictures_;
   MovieExport movie_;

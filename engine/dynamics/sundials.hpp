@@ -30,6 +30,7 @@ class Vector {
  public:
   Vector(int size, SUNContext context) : vector_(N_VNew_Serial(size, context)) {
     if (!vector_) throw std::bad_alloc();
+    N_VEnableLinearCombination_Serial(vector_, 1); // in one pass, of those made like it, too
     N_VConst(0, vector_);
   }
   ~Vector() { N_VDestroy(vector_); }

@@ -88,6 +88,32 @@ TEST_CASE("the view is steered with the mouse") {
   }
 }
 
+TEST_CASE("a frame that shows nothing new is told from one that does, in the view and in the panels") {
+  Robot robot;
+  const auto has_news = [&] {
+    robot.frames(1);
+    return robot.stage.has_news();
+  };
+  const auto settles = [&] {
+    for (int i = 0; i < 10; ++i) {
+      if (!has_news()) return true;
+      robot.picture();
+    }
+    return false;
+  };
+  REQUIRE(settles());
+  robot.point(robot.widget("toolbar/top").center()); // which lights up
+  CHECK(robot.stage.has_news());
+  REQUIRE(settles());
+  robot.app.view.camera.elevation += 0.1;
+  CHECK(has_news());
+  CHECK(robot.stage.has_news()); // not drawn yet
+  robot.picture();
+  CHECK_FALSE(robot.stage.has_news());
+  robot.app.session.notice = "News";
+  CHECK(has_news());
+}
+
 TEST_CASE("play turns the mechanism at the drives' speed, and nothing is drawn while nothing changes") {
   Robot robot;
   robot.frames(2);
