@@ -235,6 +235,12 @@ TEST_CASE("a joint that has to turn at a constant rate is cut, and a note says s
   const Solution s = solve(shipped("governor_bearing"));
   CHECK(s.status == Status::converged);
   CHECK(stable(s));
+  // A damper would keep it in the tree.
+  Mechanism rubbing = shipped("governor_bearing");
+  for (Joint& j : rubbing.joints)
+    if (j.name == "bearing") j.coordinates[0].damping = 1e-3;
+  const SystemSummary other = Analysis(rubbing).summary();
+  CHECK(std::ranges::find(other.cut_joints, "bearing") != other.cut_joints.end());
   // Cut elsewhere by order: then the loops tell the bearing's rate.
   Mechanism m = shipped("governor_bearing");
   for (Joint& j : m.joints)
