@@ -24,8 +24,12 @@ void sort_by_frequency(std::vector<std::complex<double>>& s) {
 }
 
 // Rows and columns of A + rate E brought to a like size, by turns (Ruiz, A scaling algorithm to equilibrate
-// both rows and columns norms in matrices, 2001). Eigenvalues stay.
-void equilibrate(Eigen::MatrixXd& a, Eigen::MatrixXd& e) {
+// both rows and columns norms in matrices, 2001). Eigenvalues stay. By what rows and columns were multiplied.
+struct Scales {
+  Eigen::VectorXd row, column;
+};
+Scales equilibrate(Eigen::MatrixXd& a, Eigen::MatrixXd& e) {
+  Scales scales{Eigen::VectorXd::Ones(a.rows()), Eigen::VectorXd::Ones(a.rows())};
   for (int turn = 0; turn < 8; ++turn)
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
       const double row = std::max(a.row(i).cwiseAbs().maxCoeff(), e.row(i).cwiseAbs().maxCoeff());
@@ -33,14 +37,49 @@ void equilibrate(Eigen::MatrixXd& a, Eigen::MatrixXd& e) {
         const double factor = power_of_two_near(1 / std::sqrt(row));
         a.row(i) *= factor;
         e.row(i) *= factor;
+        scales.row[i] *= factor;
       }
       const double column = std::max(a.col(i).cwiseAbs().maxCoeff(), e.col(i).cwiseAbs().maxCoeff());
       if (column > 0) {
         const double factor = power_of_two_near(1 / std::sqrt(column));
         a.col(i) *= factor;
         e.col(i) *= factor;
+        scales.column[i] *= factor;
       }
     }
+  return scales;
+}
+
+constexpr double least_singular = 1e-13; // of the largest singular value of A in like sizes
+constexpr double hardly_felt = 1e-9;     // of what an output feels of all states
+
+// Without the states that integrate and that no output feels, A n = 0 and C n = 0: of x = n a + q b the part
+// b goes its own way. Nothing where an output feels one.
+std::optional<StateSpace> without_unseen(const StateSpace& system) {
+  const Eigen::Index n = system.a.rows();
+  Eigen::MatrixXd a = system.a,
+                  e = system.e.size() > 0 ? system.e : Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)),
+                  none = Eigen::MatrixXd::Zero(n, n);
+  const Scales scales = equilibrate(a, none);
+  e = scales.row.asDiagonal() * e * scales.column.asDiagonal();
+  const Eigen::MatrixXd c = system.c * scales.column.asDiagonal();
+  PivotedQr qr;
+  if (!qr.compute(a.transpose())) return {};
+  const Eigen::Index rank = qr.rank(least_singular);
+  const Eigen::MatrixXd q = qr.q(), left_out = q.rightCols(n - rank);
+  if (((c * left_out).rowwise().norm().array() > hardly_felt * c.rowwise().norm().array()).any()) return {};
+  PivotedQr moved;
+  if (!moved.compute(e * left_out) || moved.rank(least_singular) < n - rank) return {};
+  const Eigen::MatrixXd beside = moved.q().rightCols(rank).transpose();
+  return StateSpace{beside * e * q.leftCols(rank), beside * a * q.leftCols(rank),
+                    beside * scales.row.asDiagonal() * system.b, c * q.leftCols(rank), system.d};
+}
+
+bool is_singular(Eigen::MatrixXd a) {
+  Eigen::MatrixXd none = Eigen::MatrixXd::Zero(a.rows(), a.cols());
+  equilibrate(a, none);
+  const auto sizes = singular_values(a);
+  return !sizes || !((*sizes)[sizes->size() - 1] > least_singular * (*sizes)[0]);
 }
 
 } // namespace
@@ -141,12 +180,14 @@ std::optional<Eigen::MatrixXcd> transfer(const StateSpace& system, std::complex<
   return out;
 }
 
-std::optional<Eigen::MatrixXd> static_gain(const StateSpace& system) {
+std::optional<Eigen::MatrixXd> static_gain(const StateSpace& of) {
+  StateSpace system = of;
+  if (system.a.rows() > 0 && is_singular(system.a)) {
+    auto seen = without_unseen(system);
+    if (!seen || (seen->a.rows() > 0 && is_singular(seen->a))) return {};
+    system = std::move(*seen);
+  }
   if (system.a.rows() == 0) return system.d;
-  Eigen::MatrixXd a = system.a, none = Eigen::MatrixXd::Zero(a.rows(), a.cols());
-  equilibrate(a, none);
-  const auto sizes = singular_values(a);
-  if (!sizes || !((*sizes)[sizes->size() - 1] > 1e-13 * (*sizes)[0])) return {};
   Lu lu;
   if (!lu.compute(system.a)) return {};
   Eigen::MatrixXd out = system.d;

@@ -40,7 +40,8 @@ std::optional<std::vector<std::complex<double>>> zeros(const StateSpace& system,
 std::optional<Eigen::MatrixXcd> transfer(const StateSpace& system, std::complex<double> s);
 
 // H(0), (p, m): what a constant input comes to in the end, where all poles lie to the left. Nothing where A
-// is singular to rounding: something integrates.
+// is singular to rounding, as something integrates that an output feels; what none feels, as the common angle
+// of shafts that turn on, does not matter.
 std::optional<Eigen::MatrixXd> static_gain(const StateSpace& system);
 
 } // namespace flyball

@@ -131,6 +131,20 @@ TEST_CASE("complex zeros, and systems that transfer nothing", "[state-space]") {
   CHECK_FALSE(static_gain(integrator));
   CHECK_FALSE(transfer(integrator, 0));
   CHECK(zeros(integrator, 0, 0)->empty());
+  // What integrates and is not felt does not matter: 1 / (s + 2), of a rate whose angle goes on.
+  const bool massless = GENERATE(false, true);
+  StateSpace turning{Eigen::MatrixXd::Identity(3, 3), Eigen::MatrixXd(3, 3), Eigen::MatrixXd(3, 1),
+                     Eigen::MatrixXd(1, 3), Eigen::MatrixXd::Zero(1, 1)};
+  turning.a << 0, 3, 1e3, 0, -2, 0, 0, 5e-4, -1e-4; // the third as many units, and the first feels both
+  turning.b << 7, 1, 0;
+  turning.c << 0, 1, 0;
+  if (massless) turning.e(2, 2) = 0;
+  REQUIRE(static_gain(turning));
+  CHECK(std::abs((*static_gain(turning))(0, 0) - 0.5) < 1e-13);
+  turning.c << 0, 0, 1;
+  CHECK(std::abs((*static_gain(turning))(0, 0) - 2.5) < 1e-12);
+  turning.c << 1e-3, 1, 0;
+  CHECK_FALSE(static_gain(turning));
   // Without states there is the feed-through alone.
   StateSpace direct{{}, {}, Eigen::MatrixXd(0, 1), Eigen::MatrixXd(1, 0), Eigen::MatrixXd::Constant(1, 1, 3)};
   CHECK((*static_gain(direct))(0, 0) == 3);

@@ -2,6 +2,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
+#include "tests/engine/coupled_shafts.hpp"
 #include "tests/engine/linear_models.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
@@ -360,6 +361,20 @@ TEST_CASE("the wheels of a differential answer torques as its steady states do",
   }
   CHECK_THAT(refusal(m, {"joints.left.damping"}, {"rate(left)"}),
              ContainsSubstring("inputs are torques and forces"));
+}
+
+TEST_CASE("the common angle of shafts that a spring ties integrates unseen", "[linear-model]") {
+  // Both turn faster by what both resist with, and half of the torque goes through the spring.
+  for (const bool opposite : {false, true}) {
+    const Mechanism m = shafts(opposite);
+    const LinearModel model =
+        linear_model(m, {"torque(p)"}, {"rate(p)", "rate(q)", "torque(q)", "tension(k)"});
+    CHECK(model.states.size() == 4);
+    REQUIRE(model.gain);
+    CHECK((*model.gain)(0, 0) == Approx(2.5).epsilon(1e-11));
+    CHECK((*model.gain)(1, 0) == Approx(2.5).epsilon(1e-11));
+    CHECK((*model.gain)(2, 0) == Approx(-0.5).epsilon(1e-9));
+  }
 }
 
 TEST_CASE("an input of which rounding alone is left acts on nothing", "[linear-model]") {

@@ -136,7 +136,7 @@ void load_rows(Session& session, Ui& ui, const PeriodicState& state, const std::
 }
 
 // What springs, dampers and stops do.
-void spring_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
+void period_spring_rows(Session& session, Ui& ui, const PeriodicState& state, const std::string& prefix) {
   for (const PeriodicSpring& s : state.springs)
     for (const auto& [words, part] :
          std::initializer_list<std::pair<const char*, const std::optional<PeriodicRange>&>>{
@@ -188,7 +188,7 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
   help_on_hover("The motion begins in this one, at the drawn phase, and lasts for two periods.");
   if (!state.springs.empty() && section(ui, prefix + "/springs", "Springs over a period", open.springs))
-    spring_rows(session, ui, state, prefix);
+    period_spring_rows(session, ui, state, prefix);
   if (state.reactions.empty() && state.bearings.empty()) return;
   if (section(ui, prefix + "/reactions", "Reactions over a period", open.reactions))
     load_rows(session, ui, state, prefix);
