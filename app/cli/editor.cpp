@@ -101,6 +101,7 @@ void move_cursor(GLFWwindow* window, double x, double y) {
 void enter_window(GLFWwindow* window, int entered) {
   stir(window);
   ImGui_ImplGlfw_CursorEnterCallback(window, entered);
+  if (!entered) desk_of(window).input->leave();
 }
 
 // It may have been night, or the settings, that came meanwhile.

@@ -120,7 +120,7 @@ void WindowInput::rest() {
 // last frame: Dear ImGui 1.86 would not see one that is up again by now.
 void WindowInput::take_over(const std::vector<KeyPress>& keys) {
   const auto [x, y] = button_.value_or(cursor_);
-  place_mouse(window_.handle(), x, y);
+  if (inside_ || button_) place_mouse(window_.handle(), x, y);
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
   if constexpr (!imgui_compat::queues_events) { // else they come in their order by themselves

@@ -31,7 +31,12 @@ class WindowInput {
 
   void note(WindowEvent event);
   // The mouse has come to a place, in the window's coordinates.
-  void move_to(double x, double y) { cursor_ = {x, y}; }
+  void move_to(double x, double y) {
+    cursor_ = {x, y};
+    inside_ = true;
+  }
+  // It is elsewhere on the screen.
+  void leave() { inside_ = false; }
   // Whether there is more than one frame could take.
   bool pending() const { return !events_.empty(); }
   // Frames that what one read() gave needs until the next may be read: a field that Tab goes to takes the
@@ -59,6 +64,7 @@ class WindowInput {
   std::array<bool, 5> buttons_{}; // down, of what was given
   bool placed_ = false;           // the mouse is where the next event presses it
   std::array<double, 2> cursor_{};
+  bool inside_ = true;                          // the mouse is over the window
   std::optional<std::array<double, 2>> button_; // where one was pressed or let go in the last read()
   std::array<float, 5> mouse_{};
   bool changed_ = false;

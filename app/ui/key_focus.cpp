@@ -60,6 +60,16 @@ bool row_clicked(const KeyboardState& keyboard) {
   return stop && stop->use == KeyUse::row;
 }
 
+// A button is done with by the click, too; `keyboard.at` says nothing of it.
+bool button_clicked(const KeyboardState& keyboard) {
+  const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  return std::ranges::any_of(keyboard.stops, [&](const KeyStop& stop) {
+    return (stop.use == KeyUse::press || stop.use == KeyUse::aside) && stop.window == window &&
+           at.x >= stop.from.x && at.x < stop.to.x && at.y >= stop.from.y && at.y < stop.to.y;
+  });
+}
+
 } // namespace
 
 void notice_key_focus(Ui& ui) {
@@ -71,7 +81,9 @@ void notice_key_focus(Ui& ui) {
   // A list or menu belongs to whatever opened it.
   if (!clicked || is_popup_under_pointer()) return;
   const std::string_view window = window_under_pointer();
-  if (holds_fields(window))
+  if (button_clicked(ui.keyboard))
+    focus = {};
+  else if (holds_fields(window))
     focus = {.in_panel = true, .among_fields = true};
   else if (holds_plots(window))
     focus = {.in_panel = true, .among_fields = true, .letters = true};

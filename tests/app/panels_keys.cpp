@@ -102,6 +102,17 @@ TEST_CASE("what is typed after a click that missed a field changes nothing") {
   }
 }
 
+TEST_CASE("after a click on a button of a panel keys are commands") {
+  Hand hand;
+  hand.miss_in_inspector();
+  hand.key('K', false, true);
+  REQUIRE(hand.app.tool.tool == Tool::select);
+  hand.click("inspector/drive");
+  hand.point(ImVec2{hand.widget("inspector/name").to.x + 3, hand.widget("inspector/name").to.y + 1});
+  hand.key('K', false, true);
+  CHECK(hand.app.tool.tool == Tool::block);
+}
+
 TEST_CASE("after Enter in a field keys are commands at once") {
   Hand hand;
   hand.double_click("inspector/drive/speed");
