@@ -49,8 +49,7 @@ struct LinearModel {
   // Without E: nothing where bodies without mass follow the others at once.
   std::optional<StateSpace> explicit_form;
   std::vector<std::complex<double>> poles; // 1/s, finite ones
-  std::optional<Eigen::MatrixXd>
-      gain; // (outputs, inputs), static; nothing where an output feels what integrates
+  std::optional<Eigen::MatrixXd> gain; // (outputs, inputs), static; nothing where one feels what integrates
   // (outputs): estimated error of the entries of C and D in a row, relative to its largest by what they are
   // measured by. A and B are exact to rounding.
   Eigen::VectorXd output_error;
