@@ -307,6 +307,16 @@ def loads(folder):
         check("a power is torque times rate", abs(float(row["spin.power"]) - power) <= 1e-12 * abs(power))
         check("the drive's torque is in its joint's moment",
               abs(float(row["spin.moment.y"]) - float(row["spin.torque"])) < 1e-9)
+    linkage = pathlib.Path(SCENE).parent / "fourbar_turntable.json"
+    reactions = json.loads(run("solve", linkage, "--json")[1])["reactions"]
+    plane = [r for r in reactions.values() if r.get("nonunique")]
+    check("forces in the plane of a linkage and moments across it are unique", len(plane) == 4 and all(
+        r["unique"] == {"force": [True, True, False], "torque": [False, False, True]} and
+        r["unique_part"]["force"] == [*r["force"][:2], 0] and r["unique_part"]["torque"] == [0, 0, r["torque"][2]]
+        for r in plane))
+    check("others are so altogether", all("unique" not in r for r in reactions.values() if r not in plane))
+    told = [line for line in run("solve", linkage)[1].decode().splitlines() if "(not unique)" in line and "≈" in line]
+    check("and text marks what is open", len(told) == 4 and all(line.count("≈") == 3 for line in told))
     code, _, error = run("simulate", SCENE, "--loads")
     check(f"loads are for a table: {error}", code == 2 and "--csv" in error)
 

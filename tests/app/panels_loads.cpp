@@ -196,6 +196,23 @@ TEST_CASE("a reaction that is one of many says so when it is pointed at") {
   CHECK(told < static_cast<int>(scene.arrows.arrows.size())); // the other joint's is the only one
 }
 
+TEST_CASE("forces in the plane of a linkage are the only ones possible, and their arrows say nothing else") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("fourbar_turntable"));
+  robot.frames(3);
+  REQUIRE(app.session.answer.solution.reactions_nonunique);
+  robot.key('A');
+  int pointed = 0;
+  for (const LoadArrow& arrow : shown_scene(app.context())->arrows.arrows) {
+    robot.point_at(0.2 * arrow.from + 0.8 * arrow.to);
+    robot.frames(2);
+    pointed += static_cast<int>(app.ui.widgets.count("load/pointed"));
+    CHECK(app.ui.widgets.count("load/nonunique") == 0);
+  }
+  CHECK(pointed > 4);
+}
+
 TEST_CASE("arrows turn along where that is exact, and the legend says where they cannot") {
   Robot robot;
   App& app = robot.app;
