@@ -414,12 +414,15 @@ Solution Analysis::solve_through(const SolveOptions& options) {
                  : stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);
-  if (!is_finite(out)) {
+  const std::optional<std::string> unknown = unknown_coordinate(out);
+  if (unknown || !is_finite(out)) {
     s.settled = false;
     Solution refused;
     refused.run_time_s = out.run_time_s;
     refused.iterations = out.iterations;
-    refused.message = "The forces are too large for the computer's numbers.";
+    refused.message = unknown ? "An equilibrium was found, but rounding leaves no digit of " + *unknown +
+                                    ": the scene's numbers differ too much in size."
+                              : "The forces are too large for the computer's numbers.";
     return refused;
   }
   return out;
@@ -527,7 +530,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
       entry.solution.at_constant_speed =
           stability_at_constant_speed(*s.mechanism, s.system, found.z.q, entry.solution.coordinates);
     if (s.system.conservative) entry.solution.potential = potential.value;
-    if (!is_finite(entry.solution)) continue;
+    if (!is_finite(entry.solution) || unknown_coordinate(entry.solution)) continue;
     entries.push_back(std::move(entry));
   }
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });

@@ -225,6 +225,17 @@ bool is_finite(const Solution& s) {
          numbers(s.poses, [](const Pose& p) { return p.position.sum() + p.rotation.coeffs().sum(); });
 }
 
+std::optional<std::string> unknown_coordinate(const Solution& s) {
+  const auto lost = [](double value, double error, double scale) {
+    return error > 3 * std::max(std::abs(value), scale);
+  };
+  for (const CoordinateSolution& c : s.coordinates)
+    if ((!c.driven && lost(c.value, c.error, c.scale)) ||
+        (c.speed && lost(*c.speed, c.speed_error, c.speed_scale)))
+      return coordinate_label(c);
+  return {};
+}
+
 void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, Workspace& w, Solution& out) {
   const System& system = in.problem.system;
   const Parameters& p = in.problem.parameters;

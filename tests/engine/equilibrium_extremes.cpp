@@ -1,6 +1,7 @@
 // Numbers many powers of ten apart: the answer is right to its error estimate, or there is a refusal in
 // words. Judged by Newton-Raphson in extended precision from the answer, with a Jacobian of differences.
 #include "tests/engine/equilibrium_mechanisms.hpp"
+#include "tests/engine/torque_parts.hpp"
 
 #include "engine/kkt/problem.hpp"
 #include "engine/system/extended.hpp"
@@ -185,4 +186,26 @@ TEST_CASE("a place so far away that stiffnesses overflow ends in words") {
   const Solution s = Analysis(m).solve(); // which validation would not let through
   CHECK(s.status != Status::converged);
   CHECK_FALSE(s.message.empty());
+}
+
+TEST_CASE("a state of which rounding leaves no digit is refused") {
+  // A slider-crank on a shaft; its connecting rod's far end has the mass centre 10^12 m away.
+  const Vec3 pin(-0.2385, 0.4284, -0.137), knee(-0.3916, 0.0174, -0.137), pivot(-0.195, 0.094, -0.137);
+  const Vec3 inertia(0.01, 0.01, 0.01);
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("slider", 0.0006, {-0.2385, 1e12, -0.137}, inertia),
+              body("rod", 0.828, {-0.3333, 0.2249, -0.1302}, inertia),
+              body("shaft", 1, {0.018, 0.036, 0.05}, inertia),
+              body("crank", 0.4445, {-0.3109, 0.047, -0.1482}, inertia)};
+  m.joints = {revolute("gudgeon", "rod", "slider", pin),
+              torque_driven(revolute("spin", "ground", "shaft", {0, 0, 0}, {0, 1, 0}), 8.9,
+                            "2.9 N m - 0.33 N m s*rate(spin)"),
+              revolute("knee", "crank", "rod", knee),
+              sprung(prismatic("slide", "shaft", "slider", pin, {0, 1, 0}), 264.6, 0.0065),
+              sprung(revolute("arm", "shaft", "crank", pivot, {0, 0, -1}), 5.48, -0.0872)};
+  const Solution s = solve(m);
+  CHECK(s.status == Status::not_converged);
+  CHECK(s.coordinates.empty());
+  CHECK_THAT(s.message, Catch::Matchers::Contains("no digit of"));
 }
