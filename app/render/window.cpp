@@ -3,6 +3,7 @@
 #include "app/platform/runtime_library.hpp"
 #include "app/render/gl.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -46,6 +47,17 @@ int display_is_lost(void*) {
   std::_Exit(EXIT_FAILURE);
 }
 
+// No larger than what the desktop leaves of the screen.
+void fit_to_screen(GLFWwindow* window) {
+  GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+  if (!monitor) return;
+  int x = 0, y = 0, width = 0, height = 0, most_wide = 0, most_high = 0;
+  glfwGetMonitorWorkarea(monitor, &x, &y, &most_wide, &most_high);
+  glfwGetWindowSize(window, &width, &height);
+  if (most_wide <= 0 || most_high <= 0 || (width <= most_wide && height <= most_high)) return;
+  glfwSetWindowSize(window, std::min(width, most_wide), std::min(height, most_high));
+}
+
 struct DestroyWindow {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
 };
@@ -76,6 +88,7 @@ Window::Window(const std::string& title, int width, int height) : state_(std::ma
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   state_->window.reset(glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr));
   if (!state_->window) throw GlError("no window: " + glfw_error());
+  fit_to_screen(state_->window.get());
   glfwMakeContextCurrent(state_->window.get());
   if (!gladLoadGL(reinterpret_cast<GLADloadfunc>(glfwGetProcAddress)))
     throw GlError("no window: the functions of OpenGL 3.3 could not be loaded");

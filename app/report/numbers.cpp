@@ -4,8 +4,6 @@
 #include "app/session/units.hpp"
 #include "engine/mechanism/address.hpp"
 
-#include <cmath>
-
 namespace flyball {
 namespace {
 
@@ -49,9 +47,7 @@ Html quantity_within(double value, double error, std::string_view unit) {
 }
 
 Html magnitude(double value, std::string_view unit) {
-  const double size = std::abs(value);
-  const bool plain = size >= 1e-3 && size < 1e4;
-  return with_unit(written_number(plain ? short_text(value, 2) : magnitude_text(value, {})), unit);
+  return with_unit(written_number(size_text(value, {})), unit);
 }
 
 Html vector_quantity(const Vec3& v, std::string_view unit, int digits, const OpenDirections& open) {

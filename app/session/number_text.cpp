@@ -51,6 +51,11 @@ std::string magnitude_text(double value, const NumberStyle& style) {
   return fmt::format("{:.1e}", value);
 }
 
+std::string size_text(double value, const NumberStyle& style) {
+  const double size = std::abs(value);
+  return size >= 1e-3 && size < 1e4 ? short_text(value, 2) : magnitude_text(value, style);
+}
+
 std::string short_text(double value, int digits) {
   if (!std::isfinite(value)) return "not finite";
   return without_negative_zero(without_trailing_zeros(fmt::format("{:.{}g}", value, digits)));

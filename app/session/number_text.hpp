@@ -21,6 +21,8 @@ struct NumberStyle {
 std::string value_text(double value, double error, const NumberStyle& style);
 // A magnitude: two digits, "3.1e-14"; below the noise "< 1e-16".
 std::string magnitude_text(double value, const NumberStyle& style);
+// The same, but written out from a thousandth to ten thousand: "0.036".
+std::string size_text(double value, const NumberStyle& style);
 // At most `digits` significant digits, without trailing zeros.
 std::string short_text(double value, int digits = 6);
 // Three significant digits, written out up to a million: "1290", "0.0123".

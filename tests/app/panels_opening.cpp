@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -97,10 +98,14 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
     shipped += entry.path().extension() == ".json" ? 1 : 0;
   CHECK(cards.size() == shipped);
   std::set<unsigned> pictures;
+  std::set<std::string> names;
   for (const SceneCard& card : cards) {
+    INFO(card.about);
     pictures.insert(card.picture);
-    CHECK_FALSE(card.about.empty());
+    names.insert(card.mechanism.name);
+    CHECK(card.about.size() > 20); // no initial
   }
+  CHECK(names.size() == shipped);
   CHECK(pictures.size() == shipped);
   CHECK_FALSE(pictures.contains(0));
   CHECK_FALSE(app.panels->gallery.drawing);

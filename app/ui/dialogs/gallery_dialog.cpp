@@ -22,8 +22,12 @@ constexpr float card_pad = 8, card_gap = 12; // points
 constexpr int about_lines = 3;               // below a name
 constexpr float about_size = 0.88f;          // of the text's
 
+// An initial, as in "E. J. Haug", ends none.
 std::string first_sentence(const std::string& text) {
-  return text.substr(0, std::min(text.find(". "), text.size()) + 1);
+  std::size_t end = text.find(". ");
+  while (end != std::string::npos && (end == 1 || (end > 1 && text[end - 2] == ' ')))
+    end = text.find(". ", end + 1);
+  return text.substr(0, std::min(end, text.size()) + 1);
 }
 
 std::vector<SceneCard> read_cards(const fs::path& folder) {

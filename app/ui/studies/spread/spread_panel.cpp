@@ -179,7 +179,7 @@ void estimated_row(const Session& session, const Ui& ui, const char* label, doub
   const NumberStyle& numbers = session.options.numbers;
   row(ui, label,
       value_text(value * unit.factor, error * unit.factor, numbers) + " ± " +
-          magnitude_text(error * unit.factor, numbers),
+          size_text(error * unit.factor, numbers),
       unit.text.c_str(), help);
 }
 
