@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Includes go one way: a folder sees itself and what this table names, and nothing else. Views do not name the App.
+A type is defined once (the one-definition rule).
 
     architecture_test.py SOURCE_DIR
 """
@@ -36,6 +37,8 @@ OF_THE_FRAME = re.compile(r"^app/ui/(app|build_gui|commands|file_commands|palett
                           r"\.[ch]pp$")
 THE_APP = re.compile(r"\bApp\b")
 COMMENT = re.compile(r"//.*")
+NAMESPACE = re.compile(r"namespace(?: ([\w:]+))? \{$")
+TYPE = re.compile(r"(?:struct|class|union|enum class|enum) (\w+)(?: final)?(?: : [^;]*)? \{")
 DRAWING = re.compile(r"^(imgui|GL/|glad/|GLFW/|EGL/)")
 
 
@@ -75,6 +78,22 @@ def violations(source):
     return found
 
 
+def defined_twice(source):
+    """Types of one name in one namespace: each is right in its own file, and the linker keeps one destructor for both."""
+    places = {}
+    for top in ("engine", "app"):
+        for file in sorted((source / top).rglob("*.[ch]pp")):
+            namespaces = []
+            for line in file.read_text().splitlines():
+                if opened := NAMESPACE.match(line):
+                    namespaces.append(opened[1] or "")
+                elif line.startswith("} // namespace"):
+                    namespaces.pop()
+                elif (named := TYPE.match(line)) and "" not in namespaces:
+                    places.setdefault("::".join([*namespaces, named[1]]), []).append(file.relative_to(source).as_posix())
+    return [f"{name}: in {' and in '.join(files)}" for name, files in places.items() if len(files) > 1]
+
+
 def self_test():
     """The rules refuse what they are there to refuse."""
     import tempfile
@@ -82,18 +101,20 @@ def self_test():
         source = pathlib.Path(folder)
         for path, text in {"app/session/a.cpp": '#include "app/ui/app.hpp"\n#include <imgui.h>\n',
                            "engine/linear/b.cpp": '#include "engine/study/sweep.hpp"\n',
-                           "app/ui/app.hpp": "struct App;\n",
+                           "engine/linear/d.cpp": "namespace a {\nnamespace {\n\nstruct C {\n};\n\n} // namespace\n\nstruct B {\n};\n",
+                           "app/ui/app.hpp": "namespace a {\n\nstruct App;\nstruct B {\n};\nstruct C {\n};\n",
                            "app/ui/studies/c.cpp": '#include "app/session/session.hpp"\nvoid c(App& app);\n'}.items():
             (source / path).parent.mkdir(parents=True, exist_ok=True)
             (source / path).write_text(text)
-        return len(violations(source)) == 4
+        return len(violations(source)) == 4 and len(defined_twice(source)) == 1
 
 
 def main():
     if not self_test():
         sys.exit("the rules do not refuse what they should")
-    found = violations(pathlib.Path(sys.argv[1]))
-    print("\n".join(found) or "includes go one way")
+    source = pathlib.Path(sys.argv[1])
+    found = violations(source) + defined_twice(source)
+    print("\n".join(found) or "includes go one way, and each type is defined once")
     sys.exit(1 if found else 0)
 
 

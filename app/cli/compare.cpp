@@ -56,7 +56,7 @@ Json comparison_json(const Comparison& c) {
   out["motion"] = Json::array();
   for (const MotionCurve& curve : c.motion) {
     Json points = Json::array();
-    for (const MotionPoint& p : curve.points) {
+    for (const MotionMark& p : curve.points) {
       points.push_back({{"tolerance", p.tolerance},
                         {"error", number_json(p.error)},
                         {"run_time_s", p.run_time_s},
@@ -106,7 +106,7 @@ std::string table(const Comparison& c, Integrator method) {
         out += fmt::format("  {:>19}", "-");
         continue;
       }
-      const MotionPoint& point = curve->points[p];
+      const MotionMark& point = curve->points[p];
       const std::string error =
           std::isfinite(point.error) ? fmt::format("{:.1e}", point.error) : short_word(point.status);
       out += fmt::format("  {:>8} {:>10}", error, time_text(point.run_time_s));

@@ -71,7 +71,7 @@ Plot comparison_plot(const std::string& title, const Comparison& comparison,
     curve.shape = shape_of(motion.method);
     curve.shape_size = 4;
     curve.width = 1;
-    for (const MotionPoint& p : motion.points)
+    for (const MotionMark& p : motion.points)
       if (const double error = error_of(p); std::isfinite(error) && p.run_time_s > 0)
         curve.points.push_back({p.run_time_s, std::max(error, least_error)});
     if (curve.points.empty()) continue;
@@ -118,7 +118,7 @@ std::string comparison_csv(const Comparison& c) {
                      csv_number(c.answer.run_time_s), word(c.status)) +
          measures(c.answer.measure_errors);
   for (const MotionCurve& curve : c.motion)
-    for (const MotionPoint& p : curve.points)
+    for (const MotionMark& p : curve.points)
       out += fmt::format("{},{},{},,{},{},{},{},{}", word(curve.method), csv_number(curve.duration),
                          csv_number(p.tolerance), csv_number(p.error), csv_number(p.run_time_s), p.steps,
                          p.evaluations, word(p.status)) +

@@ -76,7 +76,7 @@ class Equations {
 
   // The forces that joints transmit at the evaluated state, with least-norm multipliers.
   TransmittedForces reactions();
-  // With the accelerations of the evaluated state, those of what has mass (see MotionState).
+  // With the accelerations of the evaluated state, those of what has mass (see CoordinateMotion).
   const Kinematics<double>& accelerated_kinematics();
 
   bool has_massless() const { return !idle_.empty(); }

@@ -63,7 +63,7 @@ Eigen::Index entry_of(const System& system, int link) {
 
 // Of the drives by torque, with what loops and gears move along, and of what these leave to itself, as the
 // other wheel of a differential.
-Eigen::MatrixXd turning_directions(const Flow& flow, const MotionState& state) {
+Eigen::MatrixXd turning_directions(const Flow& flow, const FlowState& state) {
   const System& system = flow.model().system;
   Eigen::MatrixXd basis = Eigen::MatrixXd::Identity(system.nv, system.nv);
   if (system.rows > 0) {
@@ -186,7 +186,7 @@ double greatest_of_drives(const Flow& flow, const AlikeAngles& alike, const Told
 }
 
 // s, of a turn of the fastest of them.
-std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike, const MotionState& state) {
+std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike, const FlowState& state) {
   const double fastest = greatest_of_drives(flow, alike, [&](const Link& link) { return state.u[link.v]; });
   if (!(fastest > 0)) return {};
   return turn / fastest;
@@ -209,7 +209,7 @@ std::optional<double> turn_of_drives(const Flow& flow, const AlikeAngles& alike,
 struct SettledDrives {
   std::vector<std::string> resting, turning;
 };
-SettledDrives settled_drives(const Flow& flow, const MotionState& state, double rate) {
+SettledDrives settled_drives(const Flow& flow, const FlowState& state, double rate) {
   const MotionModel& model = flow.model();
   SettledDrives out;
   for (const DriveTorqueElement& drive : model.system.torques) {
@@ -236,7 +236,7 @@ struct Return {
   double farthest = 0, nearest = std::numeric_limits<double>::infinity(); // scaled
   std::size_t sample = 0;                                                 // 0: it does not
 };
-Return first_return(const StateChart& begin, const std::vector<MotionState>& trace) {
+Return first_return(const StateChart& begin, const std::vector<FlowState>& trace) {
   Return out;
   for (std::size_t i = 1; i < trace.size(); ++i) {
     const double away = begin.distance(trace[i]);
@@ -254,7 +254,7 @@ Return first_return(const StateChart& begin, const std::vector<MotionState>& tra
 // The mean of the rates with the weights exp(-1 / (t (1 - t))) over the time from 0 to 1: of a motion of
 // several incommensurable periods it converges faster than any power of the time (Das, Sander, Saiki and
 // Yorke, Nonlinearity 30, 2017). Empty where there are no states.
-Eigen::VectorXd mean_speeds(const std::vector<MotionState>& trace) {
+Eigen::VectorXd mean_speeds(const std::vector<FlowState>& trace) {
   Eigen::VectorXd sum;
   double weights = 0;
   for (std::size_t i = 1; i + 1 < trace.size(); ++i) {
@@ -292,11 +292,10 @@ std::string quasi_periodic_message(const Flow& flow, const AlikeAngles& alike,
 
 // Whether motions from beside a state go alike when they begin then (s) as at first; `rate` (1/s) is the
 // fastest drive's.
-bool goes_alike_at(Flow& flow, const MotionState& state, double rate, const std::array<double, 3>& times) {
+bool goes_alike_at(Flow& flow, const FlowState& state, double rate, const std::array<double, 3>& times) {
   const double span = 0.1 / rate;
   const StateChart chart(flow.problem(), state, rate, {});
-  MotionState beside =
-      chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
+  FlowState beside = chart.displaced(Eigen::VectorXd::LinSpaced(chart.size(), beside_steady, -beside_steady));
   beside.time = 0;
   const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
   if (!here) return false;
@@ -310,14 +309,14 @@ bool goes_alike_at(Flow& flow, const MotionState& state, double rate, const std:
 
 } // namespace
 
-bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate) {
+bool is_steady(const Flow& flow, const std::vector<FlowState>& states, double rate) {
   const Eigen::VectorXd& unit = flow.model().scaling.column;
-  return std::ranges::all_of(states, [&](const MotionState& state) {
+  return std::ranges::all_of(states, [&](const FlowState& state) {
     return (state.u - states.front().u).cwiseQuotient(unit).lpNorm<Eigen::Infinity>() <= at_rest * rate;
   });
 }
 
-std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate) {
+std::string settled_message(const Flow& flow, CycleStart start, const FlowState& state, double rate) {
   const std::string motion = start == CycleStart::steady ? "The motion that leaves the steady state"
                                                          : "The motion from the drawn pose";
   const auto list = [](const std::vector<std::string>& all) {
@@ -332,7 +331,7 @@ std::string settled_message(const Flow& flow, CycleStart start, const MotionStat
          (turning.empty() ? "." : ", " + list(turning) + ".");
 }
 
-AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {
+AlikeAngles angles_alike(Flow& flow, const FlowState& state, double rate) {
   const System& system = flow.model().system;
   const Eigen::VectorXd& unit = flow.model().scaling.column;
   AlikeAngles out;
@@ -342,7 +341,7 @@ AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {
   const auto here = flow.pass(state, span, step_tolerance * 1e-3);
   if (!here) return out;
   const auto goes_alike = [&](const Eigen::VectorXd& way, const Eigen::VectorXd& on) {
-    MotionState turned = state;
+    FlowState turned = state;
     retract<double>(system, unit.cwiseProduct(on), turned.q);
     const auto there = flow.pass(turned, span, step_tolerance * 1e-3);
     if (!there) return false;
@@ -378,11 +377,11 @@ AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate) {
   return out;
 }
 
-bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period) {
+bool goes_alike_at_phases(Flow& flow, const FlowState& state, double period) {
   return goes_alike_at(flow, state, turn / period, {0.21 * period, 0.56 * period, 0.83 * period});
 }
 
-bool goes_alike_without(Flow& flow, const MotionState& state, double period, double speed) {
+bool goes_alike_without(Flow& flow, const FlowState& state, double period, double speed) {
   // After whole periods of the others, where this one stands as nearly as it comes to these parts of a turn.
   std::array<double, 3> times{};
   std::ranges::transform(std::array{0.21, 0.56, 0.83}, times.begin(), [&](double part) {
@@ -408,9 +407,9 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
   };
   const Swing swing = least_damped_swing(mechanism, cancel);
   const bool leaves = start == CycleStart::steady;
-  const std::optional<MotionState> steady = leaves && swing.period ? flow.steady() : std::nullopt;
+  const std::optional<FlowState> steady = leaves && swing.period ? flow.steady() : std::nullopt;
   if (leaves && !steady) return refused("Nothing swings about a steady state.");
-  std::optional<MotionState> state = leaves ? steady : flow.drawn();
+  std::optional<FlowState> state = leaves ? steady : flow.drawn();
   if (!state) return refused(flow.trouble());
   std::optional<double> period = swing.period;
   if (!period) period = turn_of_drives(flow, {}, *state);
@@ -437,12 +436,12 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
   for (int look = 0; look < looks; ++look) {
     const auto passage = flow.pass(*state, followed * *period, step_tolerance);
     if (!passage) return refused("The motion does not last: " + flow.trouble());
-    const MotionState from = *state;
+    const FlowState from = *state;
     state = passage->to;
     state->time = 0;
     // What turns may have become faster or slower.
     if (!swing.period) period = turn_of_drives(flow, alike_along, *passage).value_or(*period);
-    const std::vector<MotionState> trace = flow.trace(*state, 3 * *period, 3 * samples, step_tolerance);
+    const std::vector<FlowState> trace = flow.trace(*state, 3 * *period, 3 * samples, step_tolerance);
     if (trace.empty()) return refused("The motion does not last: " + flow.trouble());
     const StateChart chart(flow.problem(), *state, turn / *period, alike_along);
     const Return back = first_return(chart, trace);

@@ -7,7 +7,7 @@
 namespace flyball {
 
 // Whether all rates stay as they are, scaled by `rate` (1/s): everything rests or turns evenly.
-bool is_steady(const Flow& flow, const std::vector<MotionState>& states, double rate);
+bool is_steady(const Flow& flow, const std::vector<FlowState>& states, double rate);
 
 enum class CycleStart {
   steady, // the motion that leaves the steady state where that is unstable; where it is stable its swing
@@ -17,25 +17,25 @@ enum class CycleStart {
 
 // What is told of a motion that has become steady where a cycle was looked for: a sentence or two. `rate` as
 // above; a drive by a torque that has come to rest is told with where it stands.
-std::string settled_message(const Flow& flow, CycleStart start, const MotionState& state, double rate);
+std::string settled_message(const Flow& flow, CycleStart start, const FlowState& state, double rate);
 
 // Angles of what torques drive that need not return after a period.
-AlikeAngles angles_alike(Flow& flow, const MotionState& state, double rate);
+AlikeAngles angles_alike(Flow& flow, const FlowState& state, double rate);
 
 // Whether motions from `state` and beside it go alike wherever the drives, whose period this is (s), stand:
 // then there may be limit cycles though drives turn at prescribed speeds, as of a pendulum on a turning
 // shaft.
-bool goes_alike_at_phases(Flow& flow, const MotionState& state, double period);
+bool goes_alike_at_phases(Flow& flow, const FlowState& state, double period);
 
 // The same of one of several drives, at `speed` (rad/s), where the others have this period (s): then theirs
 // is the motion's, as with a balanced rotor beside an unbalanced one.
-bool goes_alike_without(Flow& flow, const MotionState& state, double period, double speed);
+bool goes_alike_without(Flow& flow, const FlowState& state, double period, double speed);
 
 struct CycleGuess {
   double period = 0; // s
   AlikeAngles alike;
-  std::optional<MotionState> steady;
-  std::optional<MotionState> state; // of a motion that nearly repeats itself
+  std::optional<FlowState> steady;
+  std::optional<FlowState> state; // of a motion that nearly repeats itself
   // Without it: the shape of the least damped swing about the steady state, in StateChart's coordinates
   // there, its largest entry 1. Around a stable steady state an unstable cycle may lie, beyond which it
   // hunts.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr long evaluations_a_step = 14; // of the explicit method
 
-MotionState sampled(const MotionModel& model, const Run& run, std::size_t sample, double time) {
+FlowState sampled(const MotionModel& model, const Run& run, std::size_t sample, double time) {
   const Eigen::Index nq = model.system.nq, nv = model.system.nv;
   const double* begin = run.states.data() + static_cast<Eigen::Index>(sample) * (nq + nv);
   return {time, Eigen::Map<const Eigen::VectorXd>(begin, nq),
@@ -29,7 +29,7 @@ Flow::Flow(const Mechanism& mechanism, double patience, const std::atomic<bool>*
     : mechanism_(mechanism), model_(make_motion_model(mechanism, true)),
       most_(static_cast<long>(patience * usual_evaluations(model_.system.nv))), cancel_(cancel) {}
 
-SimulationOptions Flow::from_state(const MotionState& state, double tolerance) const {
+SimulationOptions Flow::from_state(const FlowState& state, double tolerance) const {
   SimulationOptions options;
   options.start = Start::state;
   options.state = name_state(model_, state.time, state.q, state.u);
@@ -43,7 +43,7 @@ SimulationOptions Flow::from_state(const MotionState& state, double tolerance) c
 }
 
 // Where a motion with these options begins.
-std::optional<MotionState> Flow::begin(const SimulationOptions& options, double time) {
+std::optional<FlowState> Flow::begin(const SimulationOptions& options, double time) {
   try {
     const Simulator simulator(mechanism_, options);
     if (!simulator.run().time.empty()) return sampled(model_, simulator.run(), 0, time);
@@ -53,7 +53,7 @@ std::optional<MotionState> Flow::begin(const SimulationOptions& options, double 
   return {};
 }
 
-std::optional<MotionState> Flow::drawn() {
+std::optional<FlowState> Flow::drawn() {
   SimulationOptions options;
   options.rate = 0;
   options.measures = false;
@@ -61,7 +61,7 @@ std::optional<MotionState> Flow::drawn() {
   return begin(options, 0);
 }
 
-std::optional<MotionState> Flow::steady() {
+std::optional<FlowState> Flow::steady() {
   SimulationOptions options;
   options.start = Start::equilibrium;
   options.rate = 0;
@@ -70,12 +70,12 @@ std::optional<MotionState> Flow::steady() {
   return begin(options, 0);
 }
 
-std::optional<MotionState> Flow::carried(const MotionState& state, double time) {
-  const MotionState still{time, state.q, Eigen::VectorXd::Zero(model_.system.nv)};
+std::optional<FlowState> Flow::carried(const FlowState& state, double time) {
+  const FlowState still{time, state.q, Eigen::VectorXd::Zero(model_.system.nv)};
   return begin(from_state(still, 1e-8), time);
 }
 
-std::optional<Passage> Flow::pass(const MotionState& from, double duration, double tolerance) {
+std::optional<Passage> Flow::pass(const FlowState& from, double duration, double tolerance) {
   if (spent() || cancelled()) return {};
   try {
     SimulationOptions options = from_state(from, tolerance);
@@ -99,17 +99,16 @@ std::optional<Passage> Flow::pass(const MotionState& from, double duration, doub
   }
 }
 
-std::vector<MotionState> Flow::trace(const MotionState& from, double duration, int samples,
-                                     double tolerance) {
+std::vector<FlowState> Flow::trace(const FlowState& from, double duration, int samples, double tolerance) {
   if (spent() || cancelled()) return {};
   const Run run = sampled_run(from_state(from, tolerance), duration, samples);
-  std::vector<MotionState> out;
+  std::vector<FlowState> out;
   for (std::size_t i = 0; i < run.time.size(); ++i)
     out.push_back(sampled(model_, run, i, run.time[i]));
   return out;
 }
 
-Run Flow::record(const MotionState& from, double duration, int samples, double tolerance) {
+Run Flow::record(const FlowState& from, double duration, int samples, double tolerance) {
   SimulationOptions options = from_state(from, tolerance);
   options.measures = options.reactions = true;
   options.max_steps = SimulationOptions{}.max_steps;

@@ -7,14 +7,14 @@
 namespace flyball {
 
 // The free coordinates, and their rates as a tangent vector (rad/s, m/s).
-struct MotionState {
+struct FlowState {
   double time = 0; // s; it says where the drives stand
   Eigen::VectorXd q, u;
 };
 
 // From where a motion began, its loops closed, to where it came.
 struct Passage {
-  MotionState from, to;
+  FlowState from, to;
 };
 
 class Flow {
@@ -27,20 +27,20 @@ class Flow {
   Problem problem() const { return model_.problem(); }
 
   // The drawn pose carried along by the drives.
-  std::optional<MotionState> drawn();
+  std::optional<FlowState> drawn();
   // The steady state.
-  std::optional<MotionState> steady();
+  std::optional<FlowState> steady();
   // The same coordinates at another time, the loops closed there; carried along by the drives.
-  std::optional<MotionState> carried(const MotionState& state, double time);
+  std::optional<FlowState> carried(const FlowState& state, double time);
   // Where a state is after `duration` (s). `tolerance` as SimulationOptions has it; nothing where there is no
   // way there.
-  std::optional<Passage> pass(const MotionState& from, double duration, double tolerance);
+  std::optional<Passage> pass(const FlowState& from, double duration, double tolerance);
   // The motion with all its outputs, sampled `samples` times and at its start, whatever patience is left.
   // Without samples where it fails.
-  Run record(const MotionState& from, double duration, int samples, double tolerance);
+  Run record(const FlowState& from, double duration, int samples, double tolerance);
 
   // Its states alone; none where it takes more than what is left.
-  std::vector<MotionState> trace(const MotionState& from, double duration, int samples, double tolerance);
+  std::vector<FlowState> trace(const FlowState& from, double duration, int samples, double tolerance);
 
   // Explicit steps keep to smaller tolerances than implicit ones do.
   bool is_stiff() const { return method_ == Integrator::bdf; }
@@ -52,8 +52,8 @@ class Flow {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  std::optional<MotionState> begin(const SimulationOptions& options, double time);
-  SimulationOptions from_state(const MotionState& state, double tolerance) const;
+  std::optional<FlowState> begin(const SimulationOptions& options, double time);
+  SimulationOptions from_state(const FlowState& state, double tolerance) const;
   Run sampled_run(SimulationOptions options, double duration, int samples);
 
   Mechanism mechanism_;

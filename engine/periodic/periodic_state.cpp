@@ -213,7 +213,7 @@ class Search {
   }
 
   // The guess `part` times as far from the steady state.
-  MotionState at_distance(const CycleGuess& guess, double part, const ShootingOptions& how) const {
+  FlowState at_distance(const CycleGuess& guess, double part, const ShootingOptions& how) const {
     if (!guess.steady) return *guess.state;
     const StateChart chart(flow_.problem(), *guess.steady, how.rate, how.alike);
     return chart.displaced(guess.state ? Eigen::VectorXd(part * chart.coordinates(*guess.state))
@@ -222,12 +222,12 @@ class Search {
 
   // The steady state, which comes back after any time.
   bool stands(const Candidate& c) {
-    const std::vector<MotionState> trace =
+    const std::vector<FlowState> trace =
         flow_.trace(c.orbit.nodes.front().base(), c.orbit.period, 8, settling);
     return trace.empty() || is_steady(flow_, trace, 2 * std::numbers::pi / c.orbit.period);
   }
 
-  std::optional<Candidate> attempt(const std::vector<MotionState>& guess, int periods) {
+  std::optional<Candidate> attempt(const std::vector<FlowState>& guess, int periods) {
     ShootingOptions how;
     how.period = drives_.period * periods;
     how.rate = rate();
@@ -235,7 +235,7 @@ class Search {
     return complete(guess, how, periods);
   }
 
-  std::optional<Candidate> complete(const std::vector<MotionState>& guess, const ShootingOptions& how,
+  std::optional<Candidate> complete(const std::vector<FlowState>& guess, const ShootingOptions& how,
                                     int periods) {
     Candidate c;
     c.periods = periods;
@@ -299,7 +299,7 @@ class Search {
   // The same orbit in more segments.
   void divide(Candidate& c, int segments, std::optional<Monodromy>& beside) {
     c.how.period = c.orbit.period;
-    std::vector<MotionState> states{c.orbit.nodes.front().base()};
+    std::vector<FlowState> states{c.orbit.nodes.front().base()};
     for (int i = 1; i < segments; ++i) {
       const auto passage = flow_.pass(states.back(), c.how.period / segments, c.how.tolerance);
       if (!passage) return;
@@ -314,8 +314,8 @@ class Search {
   }
 
   // As drawn at every phase.
-  std::vector<MotionState> frozen(const MotionState& start) {
-    std::vector<MotionState> out{start};
+  std::vector<FlowState> frozen(const FlowState& start) {
+    std::vector<FlowState> out{start};
     for (int i = 1; i < frozen_segments; ++i) {
       const auto next = flow_.carried(out.back(), drives_.period * i / frozen_segments);
       if (!next) return {};
@@ -325,7 +325,7 @@ class Search {
   }
 
   // Off an unstable one, the way it is left.
-  MotionState pushed_off(const Candidate& c) {
+  FlowState pushed_off(const Candidate& c) {
     const auto modes = eigenvectors(c.beside.matrix);
     const StateChart& node = c.orbit.nodes.front();
     if (!modes) return node.base();
@@ -337,17 +337,17 @@ class Search {
   }
 
   struct Settling {
-    std::optional<MotionState> state;
+    std::optional<FlowState> state;
     int periods = 1; // after so many of the drives it is nearly where it was
   };
   // Where a motion comes to, period by period.
-  Settling settle(MotionState state) {
-    std::vector<MotionState> past{state};
+  Settling settle(FlowState state) {
+    std::vector<FlowState> past{state};
     int best = 1; // of the last periods, after so many it was nearest to where it had been
     for (int k = 1; k <= settling_periods; ++k) {
       const auto passage = flow_.pass(past.back(), drives_.period, settling);
       if (!passage) return {};
-      MotionState now = passage->to;
+      FlowState now = passage->to;
       now.time = state.time;
       const StateChart here(flow_.problem(), now, rate(), alike_);
       double nearest = std::numeric_limits<double>::infinity();
@@ -366,9 +366,9 @@ class Search {
 
   // Whether a motion gets faster and faster, as linear theory says of what is pushed in step and nothing
   // damps; what turns by a torque beside the drives leaves gaps, too, and settles.
-  bool grows_on(const MotionState& start) {
+  bool grows_on(const FlowState& start) {
     double before = 0;
-    MotionState state = start;
+    FlowState state = start;
     for (const int periods : {pulling_periods / 4, pulling_periods / 4, pulling_periods / 2}) {
       const auto passage = flow_.pass(state, periods * drives_.period, settling);
       if (!passage) return false;
@@ -383,7 +383,7 @@ class Search {
 
   // The coordinate on which something pulls on and on, so that the motion gains speed alike at every phase of
   // the drives; empty where what grows swings, and gains the opposite half a swing later.
-  std::string pulled_along(const MotionState& start) {
+  std::string pulled_along(const FlowState& start) {
     const auto gain = [&](double phase) -> std::optional<Eigen::VectorXd> {
       const auto from = flow_.pass(start, phase * drives_.period, settling),
                  to = from ? flow_.pass(from->to, pulling_periods * drives_.period, settling) : std::nullopt;
@@ -469,7 +469,7 @@ class Search {
     for (const auto& mu : out.floquet.multipliers)
       if (std::abs(mu) > 1e-9 * std::abs(out.floquet.multipliers.front()))
         out.floquet.growth.push_back(std::log(std::abs(mu)) / c.orbit.period);
-    const MotionState& start = c.orbit.nodes.front().base();
+    const FlowState& start = c.orbit.nodes.front().base();
     out.start = name_state(flow_.model(), 0, start.q, start.u);
     if (!measure(c, out)) {
       out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();

@@ -63,7 +63,7 @@ class Shooter {
     orbit_.period = options.period;
   }
 
-  Orbit run(const std::vector<MotionState>& guess) {
+  Orbit run(const std::vector<FlowState>& guess) {
     if (!place(guess, options_.tolerance)) return ended(end_of(flow_));
     for (;;) {
       const double gap = largest_gap();
@@ -89,7 +89,7 @@ class Shooter {
   }
 
   std::optional<Orbit> beside(const Orbit& orbit, double coarser) {
-    std::vector<MotionState> states;
+    std::vector<FlowState> states;
     for (const StateChart& node : orbit.nodes)
       states.push_back(node.base());
     Vector step;
@@ -109,10 +109,10 @@ class Shooter {
   const StateChart& after(std::size_t i) const { return orbit_.nodes[(i + 1) % segments()]; }
 
   // Takes states as the nodes, their loops closed, and looks where each segment ends.
-  bool place(const std::vector<MotionState>& states, double tolerance) {
+  bool place(const std::vector<FlowState>& states, double tolerance) {
     std::vector<StateChart> nodes;
-    std::vector<MotionState> ends;
-    for (const MotionState& state : states) {
+    std::vector<FlowState> ends;
+    for (const FlowState& state : states) {
       const auto passage = flow_.pass(state, orbit_.period / static_cast<double>(states.size()), tolerance);
       if (!passage) return false;
       nodes.emplace_back(flow_.problem(), passage->from, options_.rate, options_.alike);
@@ -170,7 +170,7 @@ class Shooter {
   }
 
   // The rate at which a chart's coordinates change there, in the motion.
-  std::optional<Vector> velocity(const MotionState& state, const StateChart& chart) {
+  std::optional<Vector> velocity(const FlowState& state, const StateChart& chart) {
     const double dt = 1e-4 / options_.rate;
     const auto once = flow_.pass(state, dt, options_.tolerance),
                twice = once ? flow_.pass(state, 2 * dt, options_.tolerance) : std::nullopt;
@@ -226,11 +226,10 @@ class Shooter {
   }
 
   // The nodes moved by a step, and the period with it.
-  std::vector<MotionState> displaced(const Vector& step, const std::vector<StateChart>& nodes,
-                                     double period) {
+  std::vector<FlowState> displaced(const Vector& step, const std::vector<StateChart>& nodes, double period) {
     const Eigen::Index n = nodes.front().size();
     if (options_.find_period) orbit_.period = period + step[step.size() - 1];
-    std::vector<MotionState> states;
+    std::vector<FlowState> states;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       states.push_back(nodes[i].displaced(step.segment(n * static_cast<Eigen::Index>(i), n)));
       if (options_.find_period)
@@ -269,7 +268,7 @@ class Shooter {
     const Extent far = extent(step);
     const double longest = std::max(far.turned, far.slid), period = orbit_.period;
     const std::vector<StateChart> nodes = orbit_.nodes;
-    const std::vector<MotionState> ends = ends_;
+    const std::vector<FlowState> ends = ends_;
     double part = longest > largest_step ? largest_step / longest : 1;
     if (options_.find_period)
       part = std::min(part, 0.2 * period / std::max(std::abs(step[step.size() - 1]), 1e-300));
@@ -295,7 +294,7 @@ class Shooter {
   Flow& flow_;
   const ShootingOptions& options_;
   Orbit orbit_;
-  std::vector<MotionState> ends_; // of the segments
+  std::vector<FlowState> ends_; // of the segments
   Matrix matrix_;
   Vector gaps_;
   std::vector<Matrix> begin_; // by segment: how its states move as their coordinates do
@@ -340,7 +339,7 @@ ShootingEnd end_of(const Flow& flow) {
                           : ShootingEnd::no_motion;
 }
 
-Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options) {
+Orbit shoot(Flow& flow, const std::vector<FlowState>& guess, const ShootingOptions& options) {
   return Shooter(flow, options).run(guess);
 }
 

@@ -42,7 +42,7 @@ struct Orbit {
 };
 
 // From states at evenly spaced times, the first at the period's beginning; as many segments as states.
-Orbit shoot(Flow& flow, const std::vector<MotionState>& guess, const ShootingOptions& options);
+Orbit shoot(Flow& flow, const std::vector<FlowState>& guess, const ShootingOptions& options);
 
 // How far an orbit may be off: where Newton's method takes it in one step if motions are followed with
 // `coarser` times the tolerance. Nearly neutral directions make much of little gaps there, as they do of the

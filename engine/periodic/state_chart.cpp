@@ -5,7 +5,7 @@
 
 namespace flyball {
 
-StateChart::StateChart(const Problem& problem, MotionState base, double rate, const AlikeAngles& alike)
+StateChart::StateChart(const Problem& problem, FlowState base, double rate, const AlikeAngles& alike)
     : system_(&problem.system), parameters_(&problem.parameters), scaling_(&problem.scaling),
       base_(std::move(base)), rate_(rate), turns_(alike.turns), turning_(alike.drives) {
   const Eigen::Index n = system_->nv;
@@ -33,8 +33,8 @@ StateChart::StateChart(const Problem& problem, MotionState base, double rate, co
   left_out_ = rates_ * qr.q().leftCols(rest.rank());
 }
 
-MotionState StateChart::displaced(const Eigen::VectorXd& x) const {
-  MotionState out = base_;
+FlowState StateChart::displaced(const Eigen::VectorXd& x) const {
+  FlowState out = base_;
   if (size() == 0) return out;
   retract<double>(*system_, place_change(x), out.q);
   out.u += rate_ * scaling_->column.cwiseProduct(rates_ * x.tail(rates_.cols()));
@@ -45,7 +45,7 @@ Eigen::VectorXd StateChart::place_change(const Eigen::VectorXd& x) const {
   return scaling_->column.cwiseProduct(places_ * x.head(places_.cols()));
 }
 
-Eigen::VectorXd StateChart::coordinates(const MotionState& state) const {
+Eigen::VectorXd StateChart::coordinates(const FlowState& state) const {
   Eigen::VectorXd x(size());
   if (size() == 0) return x;
   x << places_.transpose() * away(state),
@@ -53,7 +53,7 @@ Eigen::VectorXd StateChart::coordinates(const MotionState& state) const {
   return x;
 }
 
-Eigen::VectorXd StateChart::away(const MotionState& state) const {
+Eigen::VectorXd StateChart::away(const FlowState& state) const {
   if (left_out_.cols() == 0 && turning_.empty()) return scaled_difference(problem(), base_.q, state.q);
   // Along what is left out it goes on and on: by whole turns, which differ between wheels that turn together.
   Eigen::VectorXd gone = Eigen::VectorXd::Zero(system_->nv);
@@ -71,7 +71,7 @@ Eigen::VectorXd StateChart::away(const MotionState& state) const {
   return scaled_difference(problem(), beside, state.q);
 }
 
-double StateChart::distance(const MotionState& state) const {
+double StateChart::distance(const FlowState& state) const {
   if (size() == 0) return 0;
   Eigen::VectorXd places = away(state);
   places -= left_out_ * (left_out_.transpose() * places);

@@ -19,31 +19,31 @@ class StateChart {
  public:
   // About a state whose loops are closed. `rate` (1/s) is the unit of rates, as Scaling has those of the
   // coordinates. Directions along which motions go alike are left out: their rates stay.
-  StateChart(const Problem& problem, MotionState base, double rate, const AlikeAngles& alike);
+  StateChart(const Problem& problem, FlowState base, double rate, const AlikeAngles& alike);
 
-  const MotionState& base() const { return base_; }
+  const FlowState& base() const { return base_; }
   // Of the coordinates, and of those and their rates together.
   Eigen::Index positions() const { return places_.cols(); }
   Eigen::Index size() const { return places_.cols() + rates_.cols(); }
 
   // The base moved by a vector of this size; loops are then open by its square.
-  MotionState displaced(const Eigen::VectorXd& x) const;
+  FlowState displaced(const Eigen::VectorXd& x) const;
   // The coordinates of a state, angles that nothing springs back by the short way round.
-  Eigen::VectorXd coordinates(const MotionState& state) const;
+  Eigen::VectorXd coordinates(const FlowState& state) const;
   // How far a state is away, by the coordinate or rate that is furthest: scaled.
-  double distance(const MotionState& state) const;
+  double distance(const FlowState& state) const;
   // A vector of this size as changes of the coordinates (rad, m) and rates.
   Eigen::VectorXd place_change(const Eigen::VectorXd& x) const;
 
  private:
   // Of the coordinates, scaled, from the base moved along what is left out as far as the state went.
-  Eigen::VectorXd away(const MotionState& state) const;
+  Eigen::VectorXd away(const FlowState& state) const;
   Problem problem() const { return {*system_, *parameters_, *scaling_}; }
 
   const System* system_;
   const Parameters* parameters_;
   const Scaling* scaling_;
-  MotionState base_;
+  FlowState base_;
   double rate_;
   Eigen::MatrixXd places_, rates_; // (nv, any), orthonormal, scaled
   Eigen::MatrixXd left_out_;       // (nv, any), orthonormal

@@ -297,7 +297,7 @@ constexpr double comes_near = 1e-2;
 // Leaves the message with what there is to say where no motion is one to compare with.
 void find_best(Comparison& c) {
   for (const MotionCurve& curve : c.motion)
-    for (const MotionPoint& p : curve.points) {
+    for (const MotionMark& p : curve.points) {
       if (p.status != RunStatus::completed || (c.best && p.error >= c.best->error)) continue;
       c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
     }
@@ -345,10 +345,10 @@ RunEnd end_of(const Run& run, const Direct& direct) {
 }
 
 // One run and its repeats. Nothing where nobody waits for it any more.
-std::optional<MotionPoint> measure(const Mechanism& mechanism, const SimulationOptions& simulation,
-                                   int repeats, const Time& time, Direct& direct,
-                                   const std::vector<std::string>& neutral) {
-  MotionPoint point;
+std::optional<MotionMark> measure(const Mechanism& mechanism, const SimulationOptions& simulation,
+                                  int repeats, const Time& time, Direct& direct,
+                                  const std::vector<std::string>& neutral) {
+  MotionMark point;
   point.tolerance = simulation.tolerance;
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
@@ -393,7 +393,7 @@ bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
           simulation.max_steps = options.max_steps;
           simulation.cancel = options.cancel;
           simulation.time_limit = longest_run * time.limit;
-          const std::optional<MotionPoint> point =
+          const std::optional<MotionMark> point =
               measure(mechanism, simulation, options.repeats, time, direct, neutral);
           if (!point) return false;
           curve.points.push_back(*point);
@@ -455,7 +455,7 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   find_best(out);
   const bool any_end = std::ranges::any_of(out.motion, [](const MotionCurve& curve) {
     return std::ranges::any_of(curve.points,
-                               [](const MotionPoint& p) { return p.status == RunStatus::completed; });
+                               [](const MotionMark& p) { return p.status == RunStatus::completed; });
   });
   if (out.complete && !any_end) {
     out.complete = false;

@@ -33,7 +33,7 @@ struct DirectMark {
   std::vector<double> measure_errors{};
 };
 
-struct MotionPoint {
+struct MotionMark {
   double tolerance = 0;
   double error = 0; // NaN where the run did not come to its end
   double run_time_s = 0;
@@ -44,8 +44,8 @@ struct MotionPoint {
 
 struct MotionCurve {
   Integrator method = Integrator::bdf;
-  double duration = 0;             // s, simulated
-  std::vector<MotionPoint> points; // fewer than tolerances where it was given up
+  double duration = 0;            // s, simulated
+  std::vector<MotionMark> points; // fewer than tolerances where it was given up
 };
 
 // The motion that comes nearest, against the direct solution that comes as near.

@@ -35,7 +35,7 @@ void add_joint(const Link& link, const Mat3& parent, const Vec3& axis, const Vec
 
 } // namespace
 
-void move(const System& system, const Parameters& p, const MotionState& state, Kinematics<double>& out,
+void move(const System& system, const Parameters& p, const CoordinateMotion& state, Kinematics<double>& out,
           std::vector<LinkRates>& carried) {
   const std::size_t n = system.links.size();
   const bool split = state.s && state.s != &state.u;

@@ -19,7 +19,7 @@ struct LinkRates {
 // that moves everything that has mass as u does (the integrated velocity of massless bodies means nothing,
 // and may be held at zero). The links' accelerations are such that m dv and I dw + w x I w are the rates of
 // the momenta of s, for s' = a; with s = u they are simply the accelerations.
-struct MotionState {
+struct CoordinateMotion {
   const Eigen::VectorXd& q; // quaternions of any length
   const Eigen::VectorXd& u;
   const Eigen::VectorXd* s = nullptr; // null: u
@@ -27,7 +27,7 @@ struct MotionState {
 };
 
 // Fills `out`; `carried` gets the field of s where that is not u, else it is emptied.
-void move(const System& system, const Parameters& parameters, const MotionState& state,
+void move(const System& system, const Parameters& parameters, const CoordinateMotion& state,
           Kinematics<double>& out, std::vector<LinkRates>& carried);
 
 // d/dt Phi along s, by row.

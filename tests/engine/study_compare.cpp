@@ -70,7 +70,7 @@ TEST_CASE(
     for (const MotionCurve& curve : c.motion) {
       CAPTURE(word(curve.method), curve.duration);
       REQUIRE(curve.points.size() == 4);
-      for (const MotionPoint& p : curve.points) {
+      for (const MotionMark& p : curve.points) {
         CHECK(std::isfinite(p.error));
         CHECK(p.error > 0);
         CHECK(p.run_time_s > 0);
@@ -81,8 +81,8 @@ TEST_CASE(
     }
     // A longer motion with a tight tolerance comes nearer, down to what was asked for.
     for (std::size_t method = 0; method < 3; ++method) {
-      const MotionPoint &shorter = c.motion[5 * method].points.back(),
-                        &longer = c.motion[5 * method + 4].points.back();
+      const MotionMark &shorter = c.motion[5 * method].points.back(),
+                       &longer = c.motion[5 * method + 4].points.back();
       CHECK(longer.error < 1e-3 * shorter.error);
       CHECK(longer.error < 1e-7);
     }
@@ -91,7 +91,7 @@ TEST_CASE(
     CHECK(c.best->direct_s > 0);
     CHECK(c.best->ratio() == c.best->motion_s / c.best->direct_s);
     for (const MotionCurve& curve : c.motion)
-      for (const MotionPoint& p : curve.points)
+      for (const MotionMark& p : curve.points)
         CHECK(p.error >= c.best->error);
   }
 }
@@ -123,7 +123,7 @@ TEST_CASE("errors of measures are those that the coordinates' errors make") {
   CHECK(c.answer.measure_errors[0] < 1e-16);
   CHECK(c.answer.measure_errors[2] < 1e-11);
   REQUIRE(c.motion.size() == 1);
-  const MotionPoint &rough = c.motion[0].points.front(), &fine = c.motion[0].points.back();
+  const MotionMark &rough = c.motion[0].points.front(), &fine = c.motion[0].points.back();
   CHECK(fine.measure_errors[0] < rough.measure_errors[0]);
   CHECK(fine.measure_errors[1] == Approx(1000 * fine.measure_errors[0]).epsilon(1e-6));
 }
