@@ -8,8 +8,9 @@
 namespace flyball {
 
 struct FrictionReport {
-  FrictionBand band;              // connected with the solution; not found where there is none
-  Holding drawn;                  // at the drawn pose
+  FrictionBand band; // connected with the solution; where there is none and one joint has friction,
+                     // with a state in which that gives all it can
+  Holding drawn;     // at the drawn pose
   std::vector<HeldSpeeds> speeds; // where the solution stands
   double run_time_s = 0;
 };

@@ -154,6 +154,31 @@ TEST_CASE("a share of the limit moves the steady state within the band") {
   CHECK_THAT(hinge.high, WithinRel(std::asin(0.15), 1e-12));
 }
 
+TEST_CASE("friction that holds where nothing is steady without it has a band") {
+  // The weight turns the hinge by 10 N m at most: less than the torque without friction, and more than what
+  // friction leaves of it.
+  Mechanism m = rubbing_pendulum(1.5);
+  const double torque = GENERATE(10.5, -10.5);
+  CAPTURE(torque);
+  Force push;
+  push.name = "push";
+  push.type = ForceType::torque;
+  push.body = "bob";
+  push.vector = {0, 0, torque};
+  m.forces = {push};
+  const Solution s = Analysis(m).solve();
+  CHECK(s.status == Status::not_converged);
+  const FrictionReport report = report_friction(m, s);
+  INFO(report.band.message);
+  const BandExtent& hinge = extent(report.band, "hinge");
+  const double low = std::asin(0.9), high = std::numbers::pi - low;
+  CHECK_THAT(hinge.low, WithinRel(torque > 0 ? low : -high, 1e-9));
+  CHECK_THAT(hinge.high, WithinRel(torque > 0 ? high : -low, 1e-9));
+  push.vector.z() = 1.2 * torque; // too much for both
+  m.forces = {push};
+  CHECK_FALSE(report_friction(m, Analysis(m).solve()).band.found);
+}
+
 TEST_CASE("insensitivity of a bead on a turning rod") {
   const double n = 12, m = 0.5, k = 400, r0 = 0.2, limit = 1.25, r = k * r0 / (k - m * n * n);
   const Mechanism bead = bead_on_rod(n, limit);
