@@ -1,5 +1,7 @@
 #include "engine/study/input_effect.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -7,7 +9,39 @@ constexpr double massless = 1e-13;    // beside the largest inertia
 constexpr double consistent = 1e-9;   // what an equation may leave of what it is made of
 constexpr double same_balance = 1e-8; // a balance at another angle of a drive, likewise
 
+template <class... Numbers>
+bool moves(const Numbers&... numbers) {
+  const auto any = [](const auto& x) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(x)>, Dual>)
+      return x.rate != 0;
+    else
+      return std::ranges::any_of(x, [](const Dual& each) { return each.rate != 0; });
+  };
+  return (any(numbers) || ...);
+}
+
 } // namespace
+
+bool places_parts(const BasicParameters<Dual>& p) {
+  const auto link = [](const BasicLinkParameters<Dual>& l) {
+    return moves(l.offset, l.axis, l.drawn, l.com, l.start, l.drawn_rotation.coeffs());
+  };
+  const auto spring = [](const BasicPointSpringParameters<Dual>& s) { return s.damped() && moves(s.a, s.b); };
+  const auto bearing = [](const BasicBearingParameters<Dual>& b) {
+    return std::ranges::any_of(b.damping.reshaped(), [](const Dual& c) { return c.value != 0; }) &&
+           moves(b.a, b.b, b.axes.reshaped());
+  };
+  const auto air = [](const BasicBodyForceParameters<Dual>& f) { return is_of_air(f.type) && moves(f.at); };
+  const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.b, d.axis); };
+  const auto cut = [](const BasicCutParameters<Dual>& c) {
+    return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
+           std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });
+  };
+  return std::ranges::any_of(p.links, link) || std::ranges::any_of(p.springs, spring) ||
+         std::ranges::any_of(p.bearings, bearing) || std::ranges::any_of(p.body_forces, air) ||
+         std::ranges::any_of(p.turning_air, air) || std::ranges::any_of(p.cut_dampers, damper) ||
+         std::ranges::any_of(p.cuts, cut);
+}
 
 MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
     : at(state), model_(model), n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())) {

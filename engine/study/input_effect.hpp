@@ -23,6 +23,9 @@ struct InputEffect {
   Eigen::VectorXd shift;       // (k) M^-1 b1
 };
 
+// Whether a number that has a rate places parts, so that its own rates move mass or work dampers.
+bool places_parts(const BasicParameters<Dual>& parameters);
+
 // In scaled coordinates: radians and parts of the reach.
 class MotionAt {
  public:

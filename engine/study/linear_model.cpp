@@ -5,12 +5,12 @@
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/input_effect.hpp"
+#include "engine/study/model_coordinates.hpp"
 #include "engine/study/motion_outputs.hpp"
 #include "engine/system/balance_rate.hpp"
 #include "engine/system/drive_rates.hpp"
@@ -26,53 +26,6 @@ constexpr double rounding = 1e-11;  // the same: what differences leave of nothi
 constexpr double same_phase = 1e-7; // the same, of two phases
 constexpr double no_effect = 1e-14; // of an input, beside what holds the mechanism
 
-template <class... Numbers>
-bool moves(const Numbers&... numbers) {
-  const auto any = [](const auto& x) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(x)>, Dual>)
-      return x.rate != 0;
-    else
-      return std::ranges::any_of(x, [](const Dual& each) { return each.rate != 0; });
-  };
-  return (any(numbers) || ...);
-}
-
-// Whether a number that moves places parts, so that its own rates move mass or work dampers.
-bool places_parts(const BasicParameters<Dual>& p) {
-  const auto link = [](const BasicLinkParameters<Dual>& l) {
-    return moves(l.offset, l.axis, l.drawn, l.com, l.start, l.drawn_rotation.coeffs());
-  };
-  const auto spring = [](const BasicPointSpringParameters<Dual>& s) { return s.damped() && moves(s.a, s.b); };
-  const auto bearing = [](const BasicBearingParameters<Dual>& b) {
-    return std::ranges::any_of(b.damping.reshaped(), [](const Dual& c) { return c.value != 0; }) &&
-           moves(b.a, b.b, b.axes.reshaped());
-  };
-  const auto air = [](const BasicBodyForceParameters<Dual>& f) { return is_of_air(f.type) && moves(f.at); };
-  const auto damper = [](const BasicCutDamperParameters<Dual>& d) { return moves(d.b, d.axis); };
-  const auto cut = [](const BasicCutParameters<Dual>& c) {
-    return moves(c.a, c.b, c.drawn, c.constant, c.ratio) ||
-           std::ranges::any_of(c.frame, [](const Vec3T<Dual>& x) { return moves(x); });
-  };
-  return std::ranges::any_of(p.links, link) || std::ranges::any_of(p.springs, spring) ||
-         std::ranges::any_of(p.bearings, bearing) || std::ranges::any_of(p.body_forces, air) ||
-         std::ranges::any_of(p.turning_air, air) || std::ranges::any_of(p.cut_dampers, damper) ||
-         std::ranges::any_of(p.cuts, cut);
-}
-
-// What is the same at every phase: which coordinates are the model's, and names.
-struct Chosen {
-  std::vector<int> coordinates; // entries of q_R, ascending
-  std::vector<bool> phase;      // of these: it turns at a speed that is found, and is no state
-};
-
-// The entries of q_R that turn in the steady state, at speeds that are found.
-std::vector<bool> turning(const System& steady) {
-  std::vector<bool> out(static_cast<std::size_t>(steady.nv), false);
-  for (const DriveTorqueElement& torque : steady.torques)
-    out[static_cast<std::size_t>(steady.links[static_cast<std::size_t>(torque.link)].v)] = true;
-  return out;
-}
-
 // Nothing acts along what is left to itself: as it moves it is what a torque of nothing drives.
 Mechanism with_momenta_free(Mechanism mechanism) {
   for (Joint& joint : mechanism.joints)
@@ -82,65 +35,6 @@ Mechanism with_momenta_free(Mechanism mechanism) {
         coordinate.drive->torque = 0;
       }
   return mechanism;
-}
-
-// Independent coordinates: those that turn at speeds that are found first, or last where their angles matter,
-// so that what others hold against them is told by these; the others by pivots (Golub and Van Loan, Matrix
-// Computations, section 5.4). Which of them are phases is left open.
-Chosen choose_coordinates(const System& steady, const Eigen::MatrixXd& basis, bool turning_last) {
-  Chosen out;
-  const std::vector<bool> driven = turning(steady);
-  const Eigen::Index k = basis.cols();
-  Eigen::MatrixXd rest = basis.transpose();
-  const auto take_turning = [&] {
-    for (int v = 0; v < steady.nv; ++v) {
-      if (!driven[static_cast<std::size_t>(v)]) continue;
-      Eigen::VectorXd along = rest.col(v);
-      const double size = along.norm();
-      if (!(size > 1e-9 * basis.row(v).norm())) continue; // geared to those before
-      along /= size;
-      out.coordinates.push_back(v);
-      rest -= along * (along.transpose() * rest);
-    }
-  };
-  const auto take_others = [&] {
-    Eigen::MatrixXd others = rest;
-    for (int v = 0; v < steady.nv && turning_last; ++v)
-      if (driven[static_cast<std::size_t>(v)]) others.col(v).setZero();
-    PivotedQr qr;
-    if (!qr.compute(others)) throw Refusal{"The loops' equations overflow."};
-    const Eigen::Index left =
-        turning_last ? qr.rank(1e-6) : k - static_cast<Eigen::Index>(out.coordinates.size());
-    for (Eigen::Index i = 0; i < left; ++i)
-      out.coordinates.push_back(static_cast<int>(qr.permutation()[i]));
-    const Eigen::MatrixXd taken = qr.q().leftCols(left);
-    rest -= taken * (taken.transpose() * rest);
-  };
-  if (turning_last) take_others();
-  take_turning();
-  if (!turning_last && k > static_cast<Eigen::Index>(out.coordinates.size())) take_others();
-  std::ranges::sort(out.coordinates);
-  out.phase.assign(out.coordinates.size(), false);
-  return out;
-}
-
-LinearModel::State name_state(const MotionModel& model, int v, bool rate) {
-  for (const CoordinateInfo& c : model.system.coordinates) {
-    const Link& link = model.system.links[static_cast<std::size_t>(c.link)];
-    const bool ball = link.type == LinkType::spherical;
-    if (link.v < 0 || (ball ? link.v + c.index - link.coordinate : link.v) != v) continue;
-    LinearModel::State out;
-    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    out.name = ball ? joint.name + ".turn." + "xyz"[c.index - link.coordinate]
-                    : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
-    out.unit = c.angle ? "rad" : "m";
-    if (rate) {
-      out.name += ".rate";
-      out.unit += "/s";
-    }
-    return out;
-  }
-  return {};
 }
 
 class Builder {
@@ -254,27 +148,27 @@ class Builder {
 
   // Which of the chosen coordinates are phases: with the others as they are nothing changes along them.
   void find_phases(const MotionAt& drawn) {
-    const std::vector<bool> driven = turning(steady_system_);
+    const std::vector<bool> driven = turning_entries(steady_system_);
     const Eigen::MatrixXd from = from_chosen(drawn);
     Scaling scaling;
     set_scaling(steady_system_, steady_parameters_, scaling);
     const Problem problem{steady_system_, steady_parameters_, scaling};
     Workspace w;
     const Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
-    for (std::size_t i = 0; i < chosen_.coordinates.size() && !options_.phases; ++i) {
-      if (!driven[static_cast<std::size_t>(chosen_.coordinates[i])]) continue;
+    for (std::size_t i = 0; i < chosen_.entries.size() && !options_.phases; ++i) {
+      if (!driven[static_cast<std::size_t>(chosen_.entries[i])]) continue;
       Eigen::VectorXd turned =
           (drawn.basis() * from.col(static_cast<Eigen::Index>(i))).cwiseProduct(drawn.column());
       turned /= turned.lpNorm<Eigen::Infinity>();
       chosen_.phase[i] = !angles_ || (stands_alike(turned) && balanced_along(problem, z, turned, w));
     }
-    for (std::size_t i = 0; i < chosen_.coordinates.size(); ++i)
-      if (driven[static_cast<std::size_t>(chosen_.coordinates[i])] && !chosen_.phase[i]) phases_ = true;
+    for (std::size_t i = 0; i < chosen_.entries.size(); ++i)
+      if (driven[static_cast<std::size_t>(chosen_.entries[i])] && !chosen_.phase[i]) phases_ = true;
   }
 
   // Whether nothing moves along it but what turns at speeds that are found.
   bool stands_alike(const Eigen::VectorXd& turned) const {
-    const std::vector<bool> driven = turning(steady_system_);
+    const std::vector<bool> driven = turning_entries(steady_system_);
     for (Eigen::Index v = 0; v < turned.size(); ++v)
       if (!driven[static_cast<std::size_t>(v)] && std::abs(turned[v]) > nothing) return false;
     return true;
@@ -282,7 +176,7 @@ class Builder {
 
   // Coordinates on the basis from those of the model.
   Eigen::MatrixXd from_chosen(const MotionAt& motion) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
     if (motion.basis().cols() != k)
       throw Refusal{
           "The loops hold other directions at another phase of the drives: no constant matrices tell of it."};
@@ -295,10 +189,10 @@ class Builder {
     return from;
   }
   Eigen::MatrixXd to_chosen(const MotionAt& motion) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
     Eigen::MatrixXd to(k, k);
     for (Eigen::Index i = 0; i < k; ++i) {
-      const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
+      const int v = chosen_.entries[static_cast<std::size_t>(i)];
       to.row(i) = motion.column()[v] * motion.basis().row(v);
     }
     return to;
@@ -403,12 +297,9 @@ class Builder {
   Matrices matrices(const MotionAt& motion, double t) {
     interruption_point();
     const Eigen::MatrixXd& basis = motion.basis();
-    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
-    const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size()),
-               outputs = static_cast<Eigen::Index>(signals_.outputs.size());
+    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
+    const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size());
     const Eigen::MatrixXd from = from_chosen(motion), to = to_chosen(motion);
-    const int n = model_.system.nv;
-    const auto all = static_cast<Eigen::Index>(model_.released.nv);
     Matrices out;
     out.mass = from.transpose() * motion.mass * from;
     out.velocity = from.transpose() * motion.velocity * from;
@@ -425,7 +316,7 @@ class Builder {
     }
     Eigen::VectorXd column(k);
     for (Eigen::Index i = 0; i < k; ++i)
-      column[i] = motion.column()[chosen_.coordinates[static_cast<std::size_t>(i)]];
+      column[i] = motion.column()[chosen_.entries[static_cast<std::size_t>(i)]];
     out.scaled_b0 = column.asDiagonal() * out.b0;
     out.scaled_shift = column.cwiseInverse().asDiagonal() * out.shift;
     out.stiffness_size = motion.stiffness.norm();
@@ -450,6 +341,22 @@ class Builder {
     out.explicit_velocity = to * by_rate;
     out.explicit_b = to * by_input;
 
+    add_outputs(motion, effects, {basis * from, basis * by_position, basis * by_rate, basis * by_input}, out);
+    return out;
+  }
+
+  // What coordinates do and what goes with them, scaled, of all entries of q_R.
+  struct Directions {
+    Eigen::MatrixXd positions, by_position, by_rate, by_input; // by_: accelerations
+  };
+
+  // What outputs feel of positions, rates and inputs.
+  void add_outputs(const MotionAt& motion, const std::vector<InputEffect>& effects,
+                   const Directions& directions, Matrices& out) {
+    const Eigen::Index k = directions.positions.cols(), inputs = directions.by_input.cols(),
+                       outputs = static_cast<Eigen::Index>(signals_.outputs.size());
+    const int n = model_.system.nv;
+    const auto all = static_cast<Eigen::Index>(model_.released.nv);
     MotionOutputs h(model_, addresses_, static_cast<std::size_t>(outputs), motion.without_mass == 0);
     out.values = h.values(motion.at);
     for (Eigen::Index i = 0; i < outputs; ++i)
@@ -485,16 +392,20 @@ class Builder {
       return y;
     };
     for (Eigen::Index i = 0; i < k; ++i) {
-      take(i, motion.direction(free(basis * from.col(i)), zero(), free(basis * by_position.col(i)), nullptr),
+      take(i,
+           motion.direction(free(directions.positions.col(i)), zero(), free(directions.by_position.col(i)),
+                            nullptr),
            0);
-      take(k + i, motion.direction(zero(), free(basis * from.col(i)), free(basis * by_rate.col(i)), nullptr),
+      take(k + i,
+           motion.direction(zero(), free(directions.positions.col(i)), free(directions.by_rate.col(i)),
+                            nullptr),
            0);
     }
     for (Eigen::Index j = 0; j < inputs; ++j) {
       const InputEffect& e = effects[static_cast<std::size_t>(j)];
-      Eigen::VectorXd u = free(basis * e.shift);
+      Eigen::VectorXd u = free(motion.basis() * e.shift);
       u.tail(e.drive_rates.size()) = e.drive_rates;
-      MotionDirection d = motion.direction(free(e.closing), u, free(basis * by_input.col(j)), &e.force);
+      MotionDirection d = motion.direction(free(e.closing), u, free(directions.by_input.col(j)), &e.force);
       d.number = numbers_[static_cast<std::size_t>(j)];
       d.change = 1;
       const double value = d.number < 0 ? 0 : std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
@@ -521,7 +432,6 @@ class Builder {
     out.c_position = per_unit.leftCols(k);
     out.c_rate = per_unit.middleCols(k, k);
     out.d = per_unit.rightCols(inputs);
-    return out;
   }
 
   // Whether nothing is left of what an input does but rounding: for all of a number, or one newton at the
@@ -576,14 +486,13 @@ class Builder {
                " adds up to.";
       });
     }
-    for (std::size_t i = 0; i < chosen_.coordinates.size(); ++i) {
+    for (std::size_t i = 0; i < chosen_.entries.size(); ++i) {
       if (!chosen_.phase[i]) continue;
       Eigen::VectorXd q = zero();
-      q[chosen_.coordinates[i]] = 1;
+      q[chosen_.entries[i]] = 1;
       refuse(q, zero(), zero(), [&](const std::string& name) {
         return "The output " + name + " depends on the angle of " +
-               name_state(model_, chosen_.coordinates[i], false).name +
-               ", which turns: it grows without end.";
+               name_state(model_, chosen_.entries[i], false).name + ", which turns: it grows without end.";
       });
     }
   }
@@ -618,7 +527,7 @@ class Builder {
   }
 
   void fill(const MotionAt& motion, const Matrices& m, LinearModel& out) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.coordinates.size());
+    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
     std::vector<Eigen::Index> positions;
     for (Eigen::Index i = 0; i < k; ++i)
       if (!chosen_.phase[static_cast<std::size_t>(i)]) positions.push_back(i);
@@ -637,10 +546,10 @@ class Builder {
     StateSpace direct{{}, x.a, x.b, x.c, x.d};
     direct.a.bottomRightCorner(k, k) = m.explicit_velocity;
     direct.b.bottomRows(k) = m.explicit_b;
-    const std::vector<bool> turned = turning(steady_system_);
+    const std::vector<bool> turned = turning_entries(steady_system_);
     for (Eigen::Index i = 0; i < np; ++i) {
       const Eigen::Index p = positions[static_cast<std::size_t>(i)];
-      const auto v = static_cast<std::size_t>(chosen_.coordinates[static_cast<std::size_t>(p)]);
+      const auto v = static_cast<std::size_t>(chosen_.entries[static_cast<std::size_t>(p)]);
       x.a(i, np + p) = direct.a(i, np + p) = 1;
       if (!turned[v] || angles_) { // else nothing depends on the angle of a shaft, but rounding
         x.a.col(i).tail(k) = -m.stiffness.col(p);
@@ -654,7 +563,7 @@ class Builder {
     if (motion.without_mass == 0) out.explicit_form = std::move(direct);
     for (const bool rate : {false, true})
       for (Eigen::Index i = 0; i < k; ++i) {
-        const int v = chosen_.coordinates[static_cast<std::size_t>(i)];
+        const int v = chosen_.entries[static_cast<std::size_t>(i)];
         if (!rate && chosen_.phase[static_cast<std::size_t>(i)]) continue;
         LinearModel::State state = name_state(model_, v, rate);
         // Of a ball small turns count, from where it is.
@@ -692,7 +601,7 @@ class Builder {
   System steady_system_; // what turns at speeds that are found does so steadily
   Parameters steady_parameters_;
   Eigen::VectorXd q_, u_, balance_q_;
-  Chosen chosen_;
+  ModelCoordinates chosen_;
   bool angles_ = false; // some of what turns at found speeds matter
   bool phases_ = false; // these angles are states
 };
