@@ -17,6 +17,14 @@ std::optional<Quat> turn_of_loads(const Session& session) {
   return common_turn(*session.answer.mechanism, solution, session.poses);
 }
 
+// The moment of a periodic motion that is shown; null where a steady state is, or nothing.
+const PeriodicStudy::Posed* shown_moment(const Session& session) {
+  const PeriodicStudy::Posed& posed = session.study.periodic.posed;
+  const bool there = !converged(session) && periodic_motion(session) && posed.motion &&
+                     session.answer.mechanism->bodies.size() == session.poses.size();
+  return there ? &posed : nullptr;
+}
+
 bool may_show_loads(const Session& session, const ToolState& tool, const ViewState& view) {
   return view.loads && !tool.pull && session.mode == Mode::explore && converged(session) &&
          session.answer.mechanism->bodies.size() == session.poses.size();
@@ -24,7 +32,17 @@ bool may_show_loads(const Session& session, const ToolState& tool, const ViewSta
 
 } // namespace
 
+bool shows_moment(const Session& session) {
+  return shown_moment(session) != nullptr;
+}
+
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
+  const PeriodicStudy::Posed* moment = shown_moment(session);
+  if (moment && view.loads && !tool.pull && session.mode == Mode::explore) {
+    frame.loads_motion = moment->motion.get();
+    frame.loads_time = moment->time < 0 ? moment->time + moment->motion->time.back() : moment->time;
+    return;
+  }
   if (!may_show_loads(session, tool, view)) return;
   const std::optional<Quat> turn = turn_of_loads(session);
   if (!turn) return;
@@ -40,6 +58,7 @@ std::string loads_missing(const Session& session, const ToolState& tool, const V
   if (!view.loads || session.mechanism().bodies.empty()) return {};
   if (session.mode == Mode::build) return "Forces: while exploring (Tab)";
   if (tool.pull) return "Forces: when nothing is pulled";
+  if (shows_moment(session)) return {};
   if (!converged(session)) return "Forces: no steady state";
   if (may_show_loads(session, tool, view) && !turn_of_loads(session))
     return "Forces change as it turns: at the drawn phase only";

@@ -12,8 +12,11 @@ struct ToolState;
 struct ViewState;
 
 // Asks for the arrows in a frame of the steady state, where they are wanted and known: of the one body that
-// is selected its free-body diagram, else those of the whole mechanism.
+// is selected its free-body diagram, else those of the whole mechanism. Of a periodic motion those of the
+// whole mechanism at the moment that is shown.
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame);
+// Whether they would be those of a moment of a periodic motion.
+bool shows_moment(const Session& session);
 // Why there are none though they are wanted, in words; empty where there are.
 std::string loads_missing(const Session& session, const ToolState& tool, const ViewState& view);
 

@@ -181,6 +181,7 @@ unsigned Stage::prepare(const ViewState& state, View& view, const ViewFrame& sho
   frame.mechanism = scene.mechanism.get();
   frame.poses = frame.ghost = frame.motion = {};
   frame.loads = nullptr;
+  frame.loads_motion = nullptr;
   frame.loads_turning = {};
   frame.cut_joints = {};
   frame.options.draft = draft;

@@ -60,6 +60,7 @@ ViewFrame motion_frame(const Session& session, ViewFrame frame) {
   frame.ghost = {};
   frame.motion = {};
   frame.loads = nullptr;
+  frame.loads_motion = nullptr;
   frame.hovered = {};
   return frame;
 }

@@ -84,10 +84,10 @@ LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads,
   return {loads, in_proportion, std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit)};
 }
 
-LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion,
+LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
                        const Palette& colors) {
   LoadArrows out;
-  out.scales = load_scales(assembly, loads, in_proportion);
+  out.scales = scales;
   Sketch sketch(out.solids);
   const double u = assembly.scale.unit, radius = 0.2 * u, head = 6 * radius;
   for (std::size_t i = 0; i < loads.size(); ++i) {
@@ -100,7 +100,7 @@ LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads,
     if (load.moment) { // a free vector: anywhere will do
       const Vec3 side = along.cross(assembly.scale.up);
       from += 1.6 * u * (side.norm() > 1e-3 ? Vec3(side.normalized()) : along.unitOrthogonal());
-    } else if (!in_proportion) { // others fade beside a body's diagram
+    } else if (!scales.in_proportion()) { // others fade beside a body's diagram
       from += beside_part(assembly, load, along, length);
     }
     const Vec3 to = from + length * along;

@@ -51,7 +51,7 @@ struct LoadArrows {
 };
 // An arrow shorter than its head is drawn as the head. Moments stand beside their point, clear of forces; of
 // a mechanism (not in proportion) so do forces along links and slides, clear of these.
-LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion,
+LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
                        const Palette& colors);
 
 Color load_color(LoadKind kind, const Palette& colors);

@@ -39,9 +39,9 @@ class Collector {
       const bool on_parent = body_ >= 0 && body_ == parent;
       const double sign = on_parent ? -1 : 1;
       // A link pulls along its line: there each body feels it at its own end.
-      const Vec3 at = joint.type == JointType::distance
-                          ? assembly_.point(on_parent ? parent : child, joint.points[on_parent ? 0 : 1])
-                          : assembly_.point(child, joint.at);
+      const Vec3 at = on_parent && joint.type == JointType::distance
+                          ? assembly_.point(parent, joint.points[0])
+                          : reaction_place(assembly_, j);
       Vec3 force = turn_ * (sign * r.force), torque = turn_ * (sign * r.torque);
       split(j, at, sign, force, torque);
       add(LoadKind::reaction, false, at, force, part_at(PartKind::joint, j));
@@ -58,7 +58,7 @@ class Collector {
       const auto [first, second] = assembly_.force_bodies[f];
       if (!of_body(first) && !of_body(second)) continue;
       const double sign = body_ >= 0 && body_ == first ? -1 : 1;
-      const Vec3 at = assembly_.point(second, mechanism_.forces[f].at.value_or(Vec3::Zero()));
+      const Vec3 at = bearing_place(assembly_, f);
       add(LoadKind::reaction, false, at, turn_ * (sign * b.force), part_at(PartKind::force, f));
       add(LoadKind::reaction, true, at, turn_ * (sign * b.torque), part_at(PartKind::force, f));
     }
@@ -66,14 +66,14 @@ class Collector {
 
   void drives() {
     for (const DriveTorque& t : solution_.drive_torques)
-      along_coordinate(LoadKind::drive, t.joint, t.index, t.angle, t.value);
+      along_coordinate(LoadKind::drive, t.joint, t.index, t.value);
   }
 
   // What springs and stops of joints exert along their coordinates.
   void joint_springs() {
     for (const CoordinateSolution& c : solution_.coordinates)
       if (const double force = spring_force(c); force != 0)
-        along_coordinate(LoadKind::spring, c.joint, c.index, c.angle, force);
+        along_coordinate(LoadKind::spring, c.joint, c.index, force);
   }
 
   void springs() {
@@ -263,15 +263,11 @@ class Collector {
   }
 
   // On the joint's child.
-  void along_coordinate(LoadKind kind, const std::string& name, int index, bool angle, double value) {
+  void along_coordinate(LoadKind kind, const std::string& name, int index, double value) {
     const auto found = joints_.find(name);
     if (found == joints_.end()) return;
-    const std::size_t j = found->second;
-    const Joint& joint = mechanism_.joints[j];
-    const CoordinateAxis along = coordinate_axis(joint, static_cast<std::size_t>(index));
-    const auto [parent, child] = assembly_.joint_bodies[j];
-    add(kind, angle, assembly_.point(child, joint.at),
-        value * assembly_.vector(along.end == 0 ? parent : child, along.axis), part_at(PartKind::joint, j));
+    const Load load = load_along(assembly_, kind, found->second, static_cast<std::size_t>(index), value);
+    add(kind, load.moment, load.at, load.vector, load.part);
   }
 
   void add(LoadKind kind, bool moment, const Vec3& at, const Vec3& vector, PartId part) {
@@ -289,6 +285,26 @@ class Collector {
 };
 
 } // namespace
+
+Load load_along(const Assembly& assembly, LoadKind kind, std::size_t joint, std::size_t index, double value) {
+  const Joint& of = assembly.mechanism.joints[joint];
+  const CoordinateAxis along = coordinate_axis(of, index);
+  const auto [parent, child] = assembly.joint_bodies[joint];
+  return {kind, along.angle, assembly.point(child, of.at),
+          value * assembly.vector(along.end == 0 ? parent : child, along.axis),
+          part_at(PartKind::joint, joint)};
+}
+
+Vec3 reaction_place(const Assembly& assembly, std::size_t joint) {
+  const Joint& of = assembly.mechanism.joints[joint];
+  return assembly.point(assembly.joint_bodies[joint][1],
+                        of.type == JointType::distance ? of.points[1] : of.at);
+}
+
+Vec3 bearing_place(const Assembly& assembly, std::size_t force) {
+  return assembly.point(assembly.force_bodies[force][1],
+                        assembly.mechanism.forces[force].at.value_or(Vec3::Zero()));
+}
 
 std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solution,
                                 std::span<const Pose> poses) {

@@ -23,6 +23,13 @@ struct Load {
   PartId part;                // the joint, gear, spring, bearing, force or body that it comes from
 };
 
+// A force or moment of this size along a joint's coordinate, on its child.
+Load load_along(const Assembly& assembly, LoadKind kind, std::size_t joint, std::size_t index, double value);
+// Where what acts through a joint acts on its child (m): of a link at its end there; and through a bearing on
+// its second body.
+Vec3 reaction_place(const Assembly& assembly, std::size_t joint);
+Vec3 bearing_place(const Assembly& assembly, std::size_t force);
+
 // The rotation that carries the loads at the drawn phase of the drives to the phase with these poses, where
 // there is one: all bodies have turned alike, no reaction changes with the phase, and gravity looks the same.
 std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solution,

@@ -27,8 +27,12 @@ void add_loads(const ViewFrame& frame, const Palette& colors, ViewScene& scene) 
   constexpr float faded = 0.16f; // alpha
   const Assembly assembly(*frame.mechanism, frame.poses);
   const bool diagram = frame.loads_body >= 0;
-  scene.loads = loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body, frame.loads_turn);
-  scene.arrows = load_arrows(assembly, scene.loads, diagram, colors);
+  scene.loads = frame.loads_motion ? loads_at(assembly, *frame.loads_motion, frame.loads_time)
+                                   : loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body,
+                                              frame.loads_turn);
+  const LoadScales scales = frame.loads_motion ? motion_load_scales(assembly, *frame.loads_motion)
+                                               : load_scales(assembly, scene.loads, diagram);
+  scene.arrows = load_arrows(assembly, scene.loads, scales, colors);
   for (const Instance& instance : scene.arrows.solids)
     scene.solid.bounds.add(instance_bounds(instance));
   if (!diagram) return;
@@ -68,7 +72,8 @@ ViewScene whole_scene(const ViewFrame& frame) {
   if (!frame.mechanism) return scene;
   const Mechanism& mechanism = *frame.mechanism;
   const Palette& colors = palette(frame.theme);
-  if (frame.loads && frame.poses.size() == mechanism.bodies.size()) add_loads(frame, colors, scene);
+  if ((frame.loads || frame.loads_motion) && frame.poses.size() == mechanism.bodies.size())
+    add_loads(frame, colors, scene);
   const std::size_t bodies = mechanism.bodies.size();
   for (std::size_t b = 0; bodies > 0 && b + bodies <= frame.motion.size(); b += bodies)
     for (Instance& instance : build_ghost(mechanism, frame.motion.subspan(b, bodies), colors.motion))

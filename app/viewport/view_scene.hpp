@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/viewport/camera.hpp"
-#include "app/viewport/load_arrows.hpp"
+#include "app/viewport/motion_loads.hpp"
 #include "app/viewport/scene_list.hpp"
 
 #include <span>
@@ -36,6 +36,8 @@ struct ViewFrame {
   const Solution* loads = nullptr;              // of the solid poses, to draw what acts; null: nothing of it
   std::span<const AngularMotion> loads_turning; // of the bodies, at the drawn phase
   Quat loads_turn = Quat::Identity();           // since the drawn phase, which the solution is of
+  const Run* loads_motion = nullptr;            // instead: of this motion, at
+  double loads_time = 0;                        // this moment (s)
   int loads_body = -1;                          // its free-body diagram; -1: all loads
   BodyColouring colouring;                      // without: as the mechanism alone says
   ViewCamera camera;

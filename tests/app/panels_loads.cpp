@@ -1,4 +1,6 @@
 // Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
+#include "app/document/document.hpp"
+#include "app/session/periodic.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/load_view.hpp"
 #include "app/ui/panel_list.hpp"
@@ -6,6 +8,7 @@
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/snapshot.hpp"
 #include "robot.hpp"
+#include "slider_crank.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -265,4 +268,42 @@ TEST_CASE("an exported picture has the arrows where that is ticked") {
   CHECK_FALSE(app.panels->picture.loads());
   robot.click("export/loads");
   CHECK(app.panels->picture.loads());
+}
+
+TEST_CASE(
+    "arrows of a periodic motion are those of the moment that is shown, to one scale through all of it") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  Mechanism crank = Document::empty_mechanism();
+  add_driven_slider_crank(crank, 10);
+  open_document(app.session, Document(crank));
+  robot.frames(3);
+  const PeriodicState* motion = periodic_motion(app.session);
+  REQUIRE(motion);
+  robot.key('A');
+  CHECK(loads_missing(app.session, app.tool, app.view).empty());
+  CHECK(has_row(app, "Of this moment"));
+  const Run& run = *motion->motion;
+  const auto check = [&](std::size_t sample) {
+    app.session.playback.time = run.time[sample];
+    robot.frames(2);
+    const ViewScene& scene = *shown_scene(app.context());
+    std::size_t found = 0;
+    for (const ReactionTrack& track : run.reactions)
+      for (const Load& load : scene.loads) {
+        if (load.kind != LoadKind::reaction || load.moment ||
+            part_of(app.session.mechanism(), load.part).name != track.joint)
+          continue;
+        ++found;
+        CHECK((load.vector - track.force[sample]).norm() < 1e-6 * track.force[sample].norm());
+        double largest = 0;
+        for (const Vec3& force : track.force)
+          largest = std::max(largest, force.norm());
+        CHECK(scene.arrows.scales.largest(LoadKind::reaction, false) >= largest);
+      }
+    CHECK(found >= 3);
+    return scene.arrows.scales.length(LoadKind::reaction, false, 1);
+  };
+  const double at_first = check(0);
+  CHECK(check(run.time.size() / 3) == at_first);
 }

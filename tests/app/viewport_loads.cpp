@@ -246,7 +246,8 @@ TEST_CASE("arrows of springs and links of a mechanism stand beside what would hi
   const std::vector<Load> loads = loads_of(assembly, steady.solution, steady.turning, -1);
   const double u = assembly.scale.unit;
   int springs = 0, links = 0;
-  for (const LoadArrow& arrow : load_arrows(assembly, loads, false, palette(Theme::light)).arrows) {
+  for (const LoadArrow& arrow :
+       load_arrows(assembly, loads, load_scales(assembly, loads, false), palette(Theme::light)).arrows) {
     const Load& load = loads[arrow.load];
     if (load.moment || load.part.kind != PartKind::joint) continue;
     const Joint& joint = assembly.joint(load.part.index);
@@ -272,7 +273,7 @@ TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body")
   const Assembly assembly(mechanism, steady.solution.poses);
   const Palette& colors = palette(Theme::light);
   const std::vector<Load> all = loads_of(assembly, steady.solution, steady.turning, -1);
-  const LoadArrows arrows = load_arrows(assembly, all, false, colors);
+  const LoadArrows arrows = load_arrows(assembly, all, load_scales(assembly, all, false), colors);
   const LoadScales& scales = arrows.scales;
   const double reaction = scales.largest(LoadKind::reaction, false),
                inertia = scales.largest(LoadKind::inertia, false);
@@ -288,7 +289,7 @@ TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body")
 
   const int ball = body_index(mechanism, "ball1");
   const std::vector<Load> of_ball = loads_of(assembly, steady.solution, steady.turning, ball);
-  const LoadArrows diagram = load_arrows(assembly, of_ball, true, colors);
+  const LoadArrows diagram = load_arrows(assembly, of_ball, load_scales(assembly, of_ball, true), colors);
   double longest = 0;
   Vec3 tip = Vec3::Zero(); // of all forces one after the other
   for (const LoadArrow& arrow : diagram.arrows) {

@@ -122,6 +122,7 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     note("No forces act");
   else if (!diagram)
     note("Twice as long: eight times as much");
+  if (rows.size() > before && shows_moment(context.session)) note("Of this moment; without inertial loads");
 }
 
 void draw_load_mark(const Ui& ui, const LegendRow& row, ImVec2 from, float height) {

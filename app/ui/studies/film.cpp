@@ -41,6 +41,7 @@ Film::Film(std::unique_ptr<FilmedScene> scene, std::vector<double> moments, cons
   look_.hovered = {};
   look_.loads = nullptr; // of the one moment that is seen, and the window's
   look_.loads_turning = {};
+  look_.loads_motion = nullptr;
   look_.cut_joints = {};
 }
 

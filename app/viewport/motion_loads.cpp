@@ -1,0 +1,153 @@
+#include "app/viewport/motion_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <unordered_map>
+
+namespace flyball {
+
+namespace {
+
+// Of one moment: sample `first` and the next, which has this share.
+struct Moment {
+  std::size_t first = 0;
+  double share = 0;
+
+  Moment(const std::vector<double>& times, double time) {
+    if (times.size() < 2) return;
+    const auto after = std::ranges::upper_bound(times, time);
+    const auto next =
+        std::clamp<std::ptrdiff_t>(after - times.begin(), 1, static_cast<std::ptrdiff_t>(times.size()) - 1);
+    first = static_cast<std::size_t>(next) - 1;
+    const double from = times[first], step = times[first + 1] - from;
+    share = step > 0 ? std::clamp((time - from) / step, 0., 1.) : 1; // two at one time: of a jump the later
+  }
+
+  template <class T>
+  T of(const std::vector<T>& samples) const {
+    if (first + 1 >= samples.size()) return samples.at(first);
+    return T((1 - share) * samples[first] + share * samples[first + 1]);
+  }
+};
+
+class MotionCollector {
+ public:
+  MotionCollector(const Assembly& assembly, const Run& motion) : assembly_(assembly), motion_(motion) {
+    const std::vector<Joint>& joints = assembly.mechanism.joints;
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      joints_.emplace(joints[i].name, i);
+  }
+
+  std::vector<Load> at(const Moment& moment) const {
+    std::vector<Load> loads;
+    const auto add = [&](Load load) {
+      if (load.vector.allFinite() && load.vector.stableNorm() > 0) loads.push_back(std::move(load));
+    };
+    const auto add_along = [&](LoadKind kind, const std::string& name, int index, double value) {
+      if (const auto joint = joints_.find(name); joint != joints_.end())
+        add(load_along(assembly_, kind, joint->second, static_cast<std::size_t>(index), value));
+    };
+    const auto add_both = [&](const auto& track, const Vec3& place, const PartId& part) {
+      add({LoadKind::reaction, false, place, moment.of(track.force), part});
+      add({LoadKind::reaction, true, place, moment.of(track.torque), part});
+    };
+    for (const ReactionTrack& track : motion_.reactions)
+      if (const auto joint = joints_.find(track.joint); joint != joints_.end())
+        add_both(track, reaction_place(assembly_, joint->second),
+                 {PartKind::joint, static_cast<int>(joint->second)});
+    for (const BearingTrack& track : motion_.bearings)
+      if (const int force = force_index(assembly_.mechanism, track.bearing); force >= 0)
+        add_both(track, bearing_place(assembly_, static_cast<std::size_t>(force)), {PartKind::force, force});
+    for (const DriveTrack& track : motion_.drives)
+      add_along(LoadKind::drive, track.joint, track.index, moment.of(track.torque));
+    for (const SpringTrack& track : motion_.springs) {
+      const double spring = moment.of(track.spring) + moment.of(track.stop), damper = moment.of(track.damper);
+      if (track.between_points) {
+        for (const Load& load : tension(track.joint, spring + damper))
+          add(load);
+        continue;
+      }
+      add_along(LoadKind::spring, track.joint, track.index, spring);
+      add_along(LoadKind::damper, track.joint, track.index, damper);
+    }
+    for (const GearTrack& track : motion_.gears)
+      if (const auto gear = joints_.find(track.joint); gear != joints_.end()) {
+        const Joint& of = assembly_.mechanism.joints[gear->second];
+        for (const auto& [name, values] : {std::pair(&of.joints[0], &track.a), {&of.joints[1], &track.b}})
+          if (const CoordinateReference c = find_coordinate(assembly_.mechanism, *name); c.joint >= 0) {
+            Load load = load_along(assembly_, LoadKind::gear, static_cast<std::size_t>(c.joint),
+                                   static_cast<std::size_t>(c.coordinate), moment.of(*values));
+            load.part = {PartKind::joint, static_cast<int>(gear->second)};
+            add(std::move(load));
+          }
+      }
+    return loads;
+  }
+
+ private:
+  // Of a spring between two points, on each body.
+  std::vector<Load> tension(const std::string& name, double size) const {
+    const int index = force_index(assembly_.mechanism, name);
+    if (index < 0) return {};
+    const Force& force = assembly_.mechanism.forces[static_cast<std::size_t>(index)];
+    const auto [first, second] = assembly_.force_bodies[static_cast<std::size_t>(index)];
+    const Vec3 a = assembly_.point(first, force.points[0]), b = assembly_.point(second, force.points[1]),
+               pull = size * (b - a).stableNormalized();
+    std::vector<Load> loads;
+    if (first >= 0) loads.push_back({LoadKind::spring, false, a, pull, {PartKind::force, index}});
+    if (second >= 0) loads.push_back({LoadKind::spring, false, b, -pull, {PartKind::force, index}});
+    return loads;
+  }
+
+  const Assembly& assembly_;
+  const Run& motion_;
+  std::unordered_map<std::string_view, std::size_t> joints_;
+};
+
+} // namespace
+
+std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double time) {
+  if (motion.time.empty()) return {};
+  return MotionCollector(assembly, motion).at(Moment(motion.time, time));
+}
+
+LoadScales motion_load_scales(const Assembly& assembly, const Run& motion) {
+  std::vector<Load> largest; // of each track
+  const auto add = [&](LoadKind kind, bool moment, std::size_t samples, const auto& size_at) {
+    double most = 0;
+    for (std::size_t i = 0; i < samples; ++i)
+      if (const double size = size_at(i); size > most) most = size; // what is not known is no number
+    largest.push_back({kind, moment, Vec3::Zero(), most * Vec3::UnitX(), {}});
+  };
+  const auto add_vectors = [&](bool moment, const std::vector<Vec3>& vectors) {
+    add(LoadKind::reaction, moment, vectors.size(), [&](std::size_t i) { return vectors[i].norm(); });
+  };
+  const auto add_numbers = [&](LoadKind kind, bool moment, const std::vector<double>& numbers) {
+    add(kind, moment, numbers.size(), [&](std::size_t i) { return std::abs(numbers[i]); });
+  };
+  for (const ReactionTrack& track : motion.reactions) {
+    add_vectors(false, track.force);
+    add_vectors(true, track.torque);
+  }
+  for (const BearingTrack& track : motion.bearings) {
+    add_vectors(false, track.force);
+    add_vectors(true, track.torque);
+  }
+  for (const DriveTrack& track : motion.drives)
+    add_numbers(LoadKind::drive, track.angle, track.torque);
+  for (const SpringTrack& track : motion.springs) {
+    const bool both = track.between_points; // spring and damper are one arrow
+    add(LoadKind::spring, track.angle, track.spring.size(), [&](std::size_t i) {
+      return std::abs(track.spring[i] + track.stop[i] + (both ? track.damper[i] : 0));
+    });
+    if (!both) add_numbers(LoadKind::damper, track.angle, track.damper);
+  }
+  for (const GearTrack& track : motion.gears) {
+    add_numbers(LoadKind::gear, track.angle_a, track.a);
+    add_numbers(LoadKind::gear, track.angle_b, track.b);
+  }
+  return load_scales(assembly, largest, false);
+}
+
+} // namespace flyball

@@ -1,0 +1,18 @@
+// What acts on the bodies at a moment of a motion whose loads were recorded. No OpenGL.
+#pragma once
+
+#include "app/viewport/load_arrows.hpp"
+#include "engine/dynamics/simulation.hpp"
+
+namespace flyball {
+
+// What each joint's parent exerts on its child, and each bearing on its second body; of the former what
+// drives, springs and stops, dampers and gears exert along the joints' coordinates; springs between bodies
+// with their dampers, on both. Between samples in proportion. The assembly has the poses of that moment (s).
+// Inertial loads and the air are not recorded.
+std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double time);
+
+// Lengths of arrows that are the same through all of the motion.
+LoadScales motion_load_scales(const Assembly& assembly, const Run& motion);
+
+} // namespace flyball
