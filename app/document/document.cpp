@@ -202,8 +202,8 @@ void Document::name_untitled(const std::string& name) {
   changed(before.get());
 }
 
-void Document::recover(Mechanism mechanism) {
-  if (flyball::is_finite(mechanism)) take("Recover", std::move(mechanism), {}, 0);
+void Document::replace(std::string name, Mechanism mechanism) {
+  if (flyball::is_finite(mechanism)) take(std::move(name), std::move(mechanism), selection_, 0);
 }
 
 Mechanism Document::empty_mechanism() {

@@ -88,8 +88,8 @@ class Document {
   // A mechanism that nobody has named is called so, in every step: a name that comes with its file is none
   // of the edits, and changes nothing that is solved.
   void name_untitled(const std::string& name);
-  // A state that came back from an autosave: unsaved from the start, over what the file says.
-  void recover(Mechanism mechanism);
+  // Another mechanism as a file has it, mistakes in its expressions too: a step of its own.
+  void replace(std::string name, Mechanism mechanism);
 
   // No bodies, the earth's gravity along -y.
   static Mechanism empty_mechanism();

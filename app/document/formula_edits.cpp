@@ -20,12 +20,41 @@
 namespace flyball {
 namespace {
 
+// How many expressions have no value. (Laws of a state are among them, before and after an edit.)
+std::size_t wrong_expressions(const Mechanism& mechanism) {
+  const std::vector<GivenNumber> given = given_numbers(mechanism);
+  return static_cast<std::size_t>(std::ranges::count_if(given, [&](const GivenNumber& each) {
+    try {
+      evaluate_expression(mechanism, each.text, each.unit, each.address);
+      return false;
+    } catch (const SceneError&) {
+      return true;
+    }
+  }));
+}
+
+// Whether an edit is taken in spite of mistakes in expressions: they were there, and it makes no more of
+// them. So they can be mended one after the other, and the rest be built before that.
+bool mistakes_were_there(const Mechanism& before, const Mechanism& next) {
+  try {
+    Mechanism evaluated = before;
+    evaluate_formulas(evaluated);
+    return false;
+  } catch (const SceneError&) {
+    return wrong_expressions(next) <= wrong_expressions(before);
+  }
+}
+
 // What is thrown leaves the mechanism as it was.
 template <class Change>
 void all_or_nothing(Mechanism& mechanism, const Change& change) {
   Mechanism next = mechanism;
   change(next);
-  evaluate_formulas(next);
+  try {
+    evaluate_formulas(next);
+  } catch (const SceneError&) {
+    if (!mistakes_were_there(mechanism, next)) throw;
+  }
   mechanism = std::move(next);
 }
 
@@ -484,8 +513,10 @@ std::vector<std::string> users_of(const Mechanism& mechanism, std::string_view n
   return users;
 }
 
-void settle_formulas(const Mechanism& before, Mechanism& next) {
-  if (used_of_version_2(next).empty()) return;
+namespace {
+
+// `next` with the sources of what the edit has moved.
+Mechanism settle(const Mechanism& before, const Mechanism& next) {
   Mechanism settled = next;
   drop_lost_formulas(settled);
   evaluate_names(settled);
@@ -538,7 +569,19 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
     solve_for_sources(settled, std::move(moved), others);
   }
   evaluate_formulas(settled);
-  next = std::move(settled);
+  return settled;
+}
+
+} // namespace
+
+void settle_formulas(const Mechanism& before, Mechanism& next) {
+  if (used_of_version_2(next).empty()) return;
+  try {
+    next = settle(before, next);
+  } catch (const SceneError&) {
+    if (!mistakes_were_there(before, next)) throw;
+    drop_lost_formulas(next);
+  }
 }
 
 } // namespace flyball

@@ -146,8 +146,7 @@ void reload_document(Session& session) {
     const std::string text = read_bytes(file, patience);
     Mechanism theirs = parse_scene(text);
     const bool had_edits = session.document.unsaved();
-    ++session.gesture; // a step of its own
-    edit(session, "Reload", [&](Mechanism& mechanism, Selection&) { mechanism = std::move(theirs); });
+    replace_mechanism(session, "Reload", std::move(theirs));
     session.document.mark_saved(file);
     session.parameters = parameter_controls(session.mechanism(), session.document.stored(), session.units);
     session.problem.clear();

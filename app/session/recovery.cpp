@@ -39,8 +39,7 @@ void recover_now(Session& session, const Leftover& leftover) {
     show_error(session, "What was left is no longer there; another window may have recovered it.");
     return;
   }
-  ++session.gesture;
-  edit(session, "Recover", [&](Mechanism& present, Selection&) { present = std::move(mechanism); });
+  replace_mechanism(session, "Recover", std::move(mechanism));
   session.notice = "Recovered; not saved yet";
 }
 

@@ -160,6 +160,13 @@ void edit(Session& session, const std::string& name,
   if (session.document.revision() != before) take_document(session, false, false);
 }
 
+void replace_mechanism(Session& session, const std::string& name, Mechanism mechanism) {
+  const std::uint64_t before = session.document.revision();
+  session.document.replace(name, std::move(mechanism));
+  session.notice.clear();
+  if (session.document.revision() != before) take_document(session, false, false);
+}
+
 namespace {
 
 // Whether a step changes what the present mode shows: while building, what was tried makes no difference.

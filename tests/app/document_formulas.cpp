@@ -7,11 +7,13 @@
 #include "app/document/rename.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/force_law.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -290,4 +292,40 @@ TEST_CASE("laws are mirrored with their coordinates") {
     CHECK(value(damper_law(image, 0), damper_variable, 1) ==
           value(damper_law(joint, 0), damper_variable, -1));
   }
+}
+
+TEST_CASE("mistakes in expressions are mended one after the other, and the rest is edited before that") {
+  Mechanism wrong = governor();
+  const std::vector<GivenNumber> given = given_numbers(wrong);
+  REQUIRE(given.size() > 1);
+  const std::string first = given.front().address, last = given.back().address;
+  const auto put = [](Mechanism& mechanism, const std::string& address, const std::string& text) {
+    const FormulaPlace place = formula_place(mechanism, address);
+    std::ranges::find(*place.formulas, std::string(place.key), &Formula::key)->text = text;
+  };
+  put(wrong, first, "xq");
+  put(wrong, last, "LL");
+  Document document(wrong);
+  change(document, [](Mechanism& m) { m.gravity.y() = -1; });
+  CHECK(document.stored().gravity.y() == -1);
+  // The names are no mistake of this edit; one more is.
+  CHECK(says(refusal([&] { change(document, [&](Mechanism& m) { put(m, given[1].address, "no_such"); }); }),
+             "xq"));
+  const auto mend = [&](const std::string& address, const std::string& text) {
+    change(document, [&](Mechanism& m) { set_expression(m, address, text); });
+  };
+  SECTION("from the first") {
+    mend(first, given.front().text);
+    CHECK_FALSE(find_mistakes(document.stored()).empty());
+    mend(last, given.back().text);
+  }
+  SECTION("from the last") {
+    mend(last, given.back().text);
+    CHECK_FALSE(find_mistakes(document.stored()).empty());
+    mend(first, given.front().text);
+  }
+  CHECK(find_mistakes(document.stored()).empty());
+  Mechanism right = governor();
+  right.gravity.y() = -1;
+  CHECK(document.stored() == right);
 }

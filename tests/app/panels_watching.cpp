@@ -1,4 +1,5 @@
 // What others do to a file that is open.
+#include "engine/mechanism/validate.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 
@@ -31,6 +32,20 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk is read again where 
     undo(app.session);
     CHECK(robot.speed_now() == 8);
     undo(app.session);
+    CHECK(robot.speed_now() == 11.0174);
+  }
+  SECTION("a scene with a name that is not there: theirs, with its mistake, and nothing of it is lost") {
+    std::string theirs = read_bytes(file);
+    const std::size_t number = theirs.find("11.0174");
+    REQUIRE(number != std::string::npos);
+    theirs.replace(number, 7, "\"=xq + 1\"");
+    theirs.replace(theirs.find("\"flyball\": 1"), 12, "\"flyball\": 2");
+    write_bytes(file, theirs);
+    robot.pass(3);
+    CHECK_THAT(app.session.notice, ContainsSubstring("Reloaded governor.json"));
+    CHECK(find_mistakes(app.session.document.stored()).size() == 1);
+    CHECK_FALSE(app.session.document.unsaved());
+    robot.key('Z', true);
     CHECK(robot.speed_now() == 11.0174);
   }
   SECTION("no scene: the open one stays") {
