@@ -204,6 +204,18 @@ TEST_CASE("the interface has sizes, by command and key, which are kept") {
   CHECK(read_settings(folder.path()).zoom == most_zoom);
 }
 
+TEST_CASE("a file of what an axis shows names the unit of its numbers, whoever tells the axis its own") {
+  Plot plot;
+  plot.x = {.label = "speed", .unit = "rad/s"};
+  plot.y = {.label = "slide", .unit = "m"};
+  plot.curves.push_back({.name = "collar", .points = {{2, 0.25}}});
+  show_axis(plot, 0, plot.x.unit, workshop);
+  show_axis(plot, 1, plot.y.unit, workshop);
+  CHECK(plot.x.unit == "rpm");
+  CHECK(plot.curves[0].points[0][1] == Approx(250));
+  CHECK_THAT(to_csv(plot, {}), StartsWith("curve,speed [rad/s],slide [m]\r\ncollar,"));
+}
+
 TEST_CASE("an expression of numbers alone is in the unit of its field") {
   Robot robot({1280, 900});
   App& app = robot.app;

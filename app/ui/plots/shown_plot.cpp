@@ -4,10 +4,11 @@ namespace flyball {
 
 namespace {
 
+// `unit` may be the scale's own.
 template <class Scale>
 void name_unit(Scale& scale, const std::string& unit, const ShownUnit& shown) {
-  scale.unit = shown.text;
   scale.si_unit = unit;
+  scale.unit = shown.text;
   scale.factor = shown.factor;
   if (scale.range)
     for (double& end : *scale.range)
