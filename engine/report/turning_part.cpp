@@ -21,12 +21,8 @@ double change_of_balance(const Problem& problem, const Eigen::VectorXd& q, doubl
   return (f[1] - f[0]).norm();
 }
 
-} // namespace
-
-std::string turning_part(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q,
-                         double phase, Workspace& w) {
-  const System& system = problem.system;
-  Parameters only = problem.parameters;
+// The same mechanism with nothing that could change.
+Parameters without_parts(Parameters only) {
   for (LinkParameters& l : only.links) {
     l.mass = 0;
     l.has_inertia = false;
@@ -46,6 +42,22 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
     f.linear = f.quadratic = f.normal_quadratic = 0;
   for (CutDamperParameters& d : only.cut_dampers)
     d.remove_damper();
+  return only;
+}
+
+std::vector<std::size_t> indices(std::size_t count) {
+  std::vector<std::size_t> out(count);
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  return out;
+}
+
+} // namespace
+
+std::string turning_part(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& q,
+                         double phase, Workspace& w) {
+  const System& system = problem.system;
+  const Parameters bare = without_parts(problem.parameters);
+  Parameters only = bare;
   const Problem part{system, only, problem.scaling, problem.cancel, problem.form};
   const auto change = [&] { return change_of_balance(part, q, phase, w); };
   double worst = 0;
@@ -75,63 +87,43 @@ std::string turning_part(const Problem& problem, const Mechanism& mechanism, con
     for (std::size_t i = begin; i < end; ++i)
       consider(i);
   };
-  std::vector<std::size_t> bodies, springs(only.springs.size()), forces(only.body_forces.size());
+  std::vector<std::size_t> bodies;
   for (std::size_t l = 0; l < only.links.size(); ++l) {
     const LinkParameters& real = problem.parameters.links[l];
     if (system.links[l].body >= 0 && (real.mass != 0 || real.has_inertia)) bodies.push_back(l);
   }
-  std::iota(springs.begin(), springs.end(), std::size_t{0});
-  std::vector<std::size_t> bearings(only.bearings.size());
-  std::iota(bearings.begin(), bearings.end(), std::size_t{0});
-  std::iota(forces.begin(), forces.end(), std::size_t{0});
   const auto body_name = [&](std::size_t l) {
     return mechanism.bodies[static_cast<std::size_t>(system.links[l].body)].name;
   };
+  const auto force_of = [&](const auto& element) -> const Force& {
+    return mechanism.forces[static_cast<std::size_t>(element.force)];
+  };
+  const auto from = [&](bool on) -> const Parameters& { return on ? problem.parameters : bare; };
   only.moving = false;
   search(
-      bodies, [&](std::size_t l, bool on) { only.links[l].mass = on ? problem.parameters.links[l].mass : 0; },
+      bodies, [&](std::size_t l, bool on) { only.links[l].mass = from(on).links[l].mass; },
       [&](std::size_t l) { return "the weight of " + body_name(l); });
   only.moving = problem.parameters.moving;
-  const Vec3 gravity = only.gravity;
   only.gravity.setZero();
   search(
       bodies,
       [&](std::size_t l, bool on) {
-        only.links[l].mass = on ? problem.parameters.links[l].mass : 0;
-        only.links[l].has_inertia = on && problem.parameters.links[l].has_inertia;
+        only.links[l].mass = from(on).links[l].mass;
+        only.links[l].has_inertia = from(on).links[l].has_inertia;
       },
       [&](std::size_t l) { return "the inertia of " + body_name(l); });
-  only.gravity = gravity;
+  only.gravity = problem.parameters.gravity;
   search(
-      springs,
-      [&](std::size_t i, bool on) {
-        only.springs[i] = problem.parameters.springs[i];
-        if (!on) only.springs[i].remove();
-      },
-      [&](std::size_t i) {
-        return "the spring " + mechanism.forces[static_cast<std::size_t>(system.springs[i].force)].name;
-      });
+      indices(only.springs.size()), [&](std::size_t i, bool on) { only.springs[i] = from(on).springs[i]; },
+      [&](std::size_t i) { return "the spring " + force_of(system.springs[i]).name; });
   search(
-      bearings,
-      [&](std::size_t i, bool on) {
-        only.bearings[i] = problem.parameters.bearings[i];
-        if (on) return;
-        only.bearings[i].stiffness.setZero();
-        only.bearings[i].damping.setZero();
-      },
-      [&](std::size_t i) {
-        return "the bearing " + mechanism.forces[static_cast<std::size_t>(system.bearings[i].force)].name;
-      });
+      indices(only.bearings.size()), [&](std::size_t i, bool on) { only.bearings[i] = from(on).bearings[i]; },
+      [&](std::size_t i) { return "the bearing " + force_of(system.bearings[i]).name; });
   search(
-      forces,
-      [&](std::size_t i, bool on) {
-        only.body_forces[i] = problem.parameters.body_forces[i];
-        if (on) return;
-        only.body_forces[i].vector.setZero();
-        only.body_forces[i].linear = only.body_forces[i].quadratic = only.body_forces[i].normal_quadratic = 0;
-      },
+      indices(only.body_forces.size()),
+      [&](std::size_t i, bool on) { only.body_forces[i] = from(on).body_forces[i]; },
       [&](std::size_t i) {
-        const Force& f = mechanism.forces[static_cast<std::size_t>(system.body_forces[i].force)];
+        const Force& f = force_of(system.body_forces[i]);
         return "the " + std::string(type_name(f.type)) + " " + f.name;
       });
   return phrase;
