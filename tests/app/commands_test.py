@@ -81,6 +81,10 @@ def periodic(_):
         size = told["reactions"]["spin"]["force"]["size"]
         check("what its shaft bears is told", 0 < size["min"] < size["mean"] < size["max"])
         check("its power on the average is what dampers take", told["drive_powers"]["spin"]["mean"] > 0)
+        spring = told["joint_springs"]["across"]
+        check(f"what springs and dampers do is told: {spring}", told["springs"] == {} and
+              list(spring) == ["spring", "damper", "sum"] and
+              0 < spring["spring"]["max"] < spring["sum"]["max"] < spring["spring"]["max"] + spring["damper"]["max"])
     code, out, error = run("solve", SCENE, "--json")
     check("a steady state is told alone", code == 0 and "periodic" not in json.loads(out))
     code, _, error = run("solve", CASES / "control_characters.json", "--periodic", "--all")

@@ -46,6 +46,7 @@ TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
   App& app = robot.app;
   Mechanism crank = Document::empty_mechanism();
   add_driven_slider_crank(crank, 10);
+  crank.joints.front().coordinates.front().damping = 0.1; // of the crankshaft
   open_document(app.session, Document(crank));
   robot.frames(3);
   const PeriodicState* motion = periodic_motion(app.session);
@@ -60,8 +61,10 @@ TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
   }
   CHECK(going > 0);
   // What its joints bear, where it is asked for.
-  app.panels->results.sections().reactions = true;
+  app.panels->results.sections().reactions = app.panels->results.sections().springs = true;
   robot.frames(2);
+  REQUIRE(motion->springs.size() == 1);
+  CHECK(app.ui.widgets.contains("results/periodic/" + motion->springs[0].joint + ", damper"));
   REQUIRE_FALSE(motion->reactions.empty());
   for (const PeriodicReaction& reaction : motion->reactions)
     CHECK(app.ui.widgets.contains("results/periodic/" + reaction.name + ", force") ==

@@ -191,6 +191,7 @@ TEST_CASE(
   CHECK(told.find("across") != std::string::npos);
   CHECK(told.find("bearing") != std::string::npos);
   CHECK(told.find("Floquet multipliers") != std::string::npos);
+  CHECK(told.find("across, damper") != std::string::npos);
   CHECK_FALSE(contents_of("pendulum").periodic);
 }
 
@@ -292,6 +293,7 @@ TEST_CASE("a scene's texts are texts in a report") {
 TEST_CASE("a report without a steady state says why") {
   Mechanism m = load_scene(std::string(FLYBALL_ASSETS) + "/scenes/pendulum.json");
   m.gravity = {3, -9, 2};
+  m.sliders.resize(1); // over each of which a second of motions is followed
   const ReportContents contents = report_contents(std::make_shared<const Mechanism>(m), {});
   REQUIRE(contents.solution.status != Status::converged);
   const std::string page = report_page(contents);
