@@ -126,32 +126,35 @@ TEST_CASE("A resonance curve that is cancelled keeps what it has, and bounds end
 }
 
 TEST_CASE("A resonance curve that was stopped goes on with the points that are there") {
-  ResonanceOptions options;
-  options.coarse = 9;
-  options.tolerance = 0.03;
-  const ResonanceCurve whole = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
-  const std::size_t after = GENERATE(4u, 12u); // among those in order, and among those between
-  std::atomic<bool> cancel = false;
-  options.cancel = &cancel;
-  options.publish = [&](const ResonanceCurve& so_far) { cancel = so_far.points.size() >= after; };
-  const ResonanceCurve part = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
-  CHECK_FALSE(part.whole);
-  REQUIRE(part.points.size() == after);
-  std::vector<double> told;
-  options.cancel = nullptr;
-  options.publish = {};
-  options.begun = &part;
-  options.progress = [&](const Progress& now) { told.push_back(now.part); };
-  const ResonanceCurve rest = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
-  CHECK(rest.whole);
-  CHECK(told.size() == whole.points.size() - after);
-  CHECK(std::ranges::is_sorted(told));
-  REQUIRE(rest.points.size() == whole.points.size());
-  CHECK(rest.places == whole.places);
-  for (std::size_t i = 0; i < whole.points.size(); ++i)
-    CHECK(rest.points[i]->number == whole.points[i]->number);
-  for (const auto& point : part.points) // not found again
-    CHECK(std::ranges::find(rest.points, point) != rest.points.end());
+  ResonanceOptions usual;
+  usual.coarse = 9;
+  usual.tolerance = 0.03;
+  const ResonanceCurve whole = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, usual);
+  for (const std::size_t after : {4u, 12u}) { // among those in order, and among those between
+    CAPTURE(after);
+    ResonanceOptions options = usual;
+    std::atomic<bool> cancel = false;
+    options.cancel = &cancel;
+    options.publish = [&](const ResonanceCurve& so_far) { cancel = so_far.points.size() >= after; };
+    const ResonanceCurve part = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
+    CHECK_FALSE(part.whole);
+    REQUIRE(part.points.size() == after);
+    std::vector<double> told;
+    options.cancel = nullptr;
+    options.publish = {};
+    options.begun = &part;
+    options.progress = [&](const Progress& now) { told.push_back(now.part); };
+    const ResonanceCurve rest = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, options);
+    CHECK(rest.whole);
+    CHECK(told.size() == whole.points.size() - after);
+    CHECK(std::ranges::is_sorted(told));
+    REQUIRE(rest.points.size() == whole.points.size());
+    CHECK(rest.places == whole.places);
+    for (std::size_t i = 0; i < whole.points.size(); ++i)
+      CHECK(rest.points[i]->number == whole.points[i]->number);
+    for (const auto& point : part.points) // not found again
+      CHECK(std::ranges::find(rest.points, point) != rest.points.end());
+  }
 }
 
 TEST_CASE("A resonance curve takes the motion where a state only nearly stands") {
