@@ -20,28 +20,37 @@
 namespace flyball {
 namespace {
 
-// How many expressions have no value. (Laws of a state are among them, before and after an edit.)
-std::size_t wrong_expressions(const Mechanism& mechanism) {
-  const std::vector<GivenNumber> given = given_numbers(mechanism);
-  return static_cast<std::size_t>(std::ranges::count_if(given, [&](const GivenNumber& each) {
-    try {
-      evaluate_expression(mechanism, each.text, each.unit, each.address);
-      return false;
-    } catch (const SceneError&) {
-      return true;
+// Sets every number whose expression has a value, and returns how many have none. (Laws of a state are among
+// these, before and after an edit.)
+std::size_t evaluate_what_can_be(Mechanism& mechanism) {
+  std::size_t wrong = 0;
+  bool moved = true;
+  const std::size_t most = given_numbers(mechanism).size();
+  for (std::size_t pass = 0; moved && pass <= most; ++pass) { // names rest on names
+    moved = false;
+    wrong = 0;
+    for (const GivenNumber& given : given_numbers(mechanism)) {
+      try {
+        const double value = evaluate_expression(mechanism, given.text, given.unit, given.address);
+        moved = moved || value != given.value;
+        expressible_number(mechanism, given.address).set(value);
+      } catch (const SceneError&) {
+        ++wrong;
+      }
     }
-  }));
+  }
+  return wrong;
 }
 
-// Whether an edit is taken in spite of mistakes in expressions: they were there, and it makes no more of
-// them. So they can be mended one after the other, and the rest be built before that.
-bool mistakes_were_there(const Mechanism& before, const Mechanism& next) {
+// Takes an edit in spite of mistakes in expressions that were there before, if it makes no more of them; what
+// has a value is evaluated. So mistakes can be mended one after the other, and the rest be built before that.
+bool take_with_mistakes(const Mechanism& before, Mechanism& next) {
+  Mechanism former = before;
   try {
-    Mechanism evaluated = before;
-    evaluate_formulas(evaluated);
+    evaluate_formulas(former);
     return false;
   } catch (const SceneError&) {
-    return wrong_expressions(next) <= wrong_expressions(before);
+    return evaluate_what_can_be(next) <= evaluate_what_can_be(former);
   }
 }
 
@@ -53,7 +62,7 @@ void all_or_nothing(Mechanism& mechanism, const Change& change) {
   try {
     evaluate_formulas(next);
   } catch (const SceneError&) {
-    if (!mistakes_were_there(mechanism, next)) throw;
+    if (!take_with_mistakes(mechanism, next)) throw;
   }
   mechanism = std::move(next);
 }
@@ -579,8 +588,8 @@ void settle_formulas(const Mechanism& before, Mechanism& next) {
   try {
     next = settle(before, next);
   } catch (const SceneError&) {
-    if (!mistakes_were_there(before, next)) throw;
     drop_lost_formulas(next);
+    if (!take_with_mistakes(before, next)) throw;
   }
 }
 

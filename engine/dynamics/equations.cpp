@@ -197,8 +197,9 @@ Equations::Pencil Equations::pencil() {
   linearize(system_, parameters_, q_, lambda_, kinematics_, moving_residual_, linearization_);
   linearize_motion(system_, parameters_, q_, kinematics_, linearization_);
   Eigen::MatrixXd scaled(dense_.gradient().rows(), n_);
-  for (int v = 0; v < n_; ++v)
-    scaled.col(v) = dense_.gradient().col(v) * model_.scaling.column[v];
+  if (scaled.rows() > 0) // else of a tree, whose gradients are never evaluated
+    for (int v = 0; v < n_; ++v)
+      scaled.col(v) = dense_.gradient().col(v) * model_.scaling.column[v];
   ConstraintSpace space;
   space.factor(scaled, 1e-9, row_rounding);
   const Eigen::MatrixXd basis = model_.scaling.column.asDiagonal() * space.basis();

@@ -308,6 +308,13 @@ TEST_CASE("mistakes in expressions are mended one after the other, and the rest 
   Document document(wrong);
   change(document, [](Mechanism& m) { m.gravity.y() = -1; });
   CHECK(document.stored().gravity.y() == -1);
+  // What has a value follows: a parameter moves what rests on it, and a number that is given stays so.
+  const double arm = document.stored().points[1].at.x(), length = document.stored().parameters[0].value;
+  change(document, [&](Mechanism& m) { m.parameters[0].value = length + 0.01; });
+  CHECK(document.stored().points[1].at.x() == Approx(arm - 0.01));
+  change(document, [](Mechanism& m) { m.points[1].at.x() = 7; });
+  CHECK(document.stored().points[1].at.x() == Approx(arm - 0.01));
+  change(document, [&](Mechanism& m) { m.parameters[0].value = length; });
   // The names are no mistake of this edit; one more is.
   CHECK(says(refusal([&] { change(document, [&](Mechanism& m) { put(m, given[1].address, "no_such"); }); }),
              "xq"));

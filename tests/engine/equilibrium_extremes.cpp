@@ -207,5 +207,5 @@ TEST_CASE("a state of which rounding leaves no digit is refused") {
   const Solution s = solve(m);
   CHECK(s.status == Status::not_converged);
   CHECK(s.coordinates.empty());
-  CHECK_THAT(s.message, Catch::Matchers::Contains("no digit of"));
+  CHECK_THAT(s.message, ContainsSubstring("no digit of"));
 }
