@@ -27,10 +27,17 @@ struct ReportPicture {
   std::string problem;       // why there is none; then the rest is empty
 };
 
+// A number that was tried beside the file when the report was made.
+struct ExploredNumber {
+  std::string address;
+  double in_file = 0;
+};
+
 struct ReportContents {
   std::shared_ptr<const Mechanism> mechanism;
   std::string scene; // name of its file; may be empty
   std::string date;  // of the report, in words
+  std::vector<ExploredNumber> explored;
   ReportPicture picture;
   std::vector<SceneError> warnings;
   SystemSummary system;
@@ -59,8 +66,8 @@ struct ReportOptions {
   ReportProgress progress{};
 };
 
-// Solves, and follows the curves. Picture, scene and date are whoever asks' to fill in. Throws SceneError for
-// a mechanism that cannot be compiled, and for coordinates and starts that are none.
+// Solves, and follows the curves. Picture, scene, date and what is explored are whoever asks' to fill in.
+// Throws SceneError for a mechanism that cannot be compiled, and for coordinates and starts that are none.
 ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const ReportOptions& options);
 
 // Now, in the computer's time zone: "2026-11-24 23:05".

@@ -4,6 +4,8 @@
 #include "app/report/numbers.hpp"
 #include "app/report/sections.hpp"
 #include "app/report/style.hpp"
+#include "app/session/parameter_list.hpp"
+#include "engine/mechanism/address.hpp"
 
 namespace flyball {
 namespace {
@@ -35,6 +37,20 @@ Html picture_of(const ReportContents& contents) {
          "\n";
 }
 
+// Whoever solves the file finds something else.
+Html explored_line(const ReportContents& contents) {
+  const Mechanism& m = *contents.mechanism;
+  Html numbers;
+  for (const ExploredNumber& each : contents.explored) {
+    const std::string unit = parameter_unit(m, each.address);
+    numbers += Html(numbers.empty() ? "" : "; ") + parameter_phrase(each.address) + " " +
+               quantity(get_parameter(m, each.address), unit, 9) + " (in the file " +
+               quantity(each.in_file, unit, 9) + ")";
+  }
+  if (numbers.empty()) return {};
+  return element("p", Html("Explored, other than in the file: ") + numbers + ".", {{"class", "note"}});
+}
+
 Html header(const ReportContents& contents) {
   const Mechanism& m = *contents.mechanism;
   const Solution& s = contents.solution;
@@ -43,6 +59,7 @@ Html header(const ReportContents& contents) {
   if (!contents.date.empty()) kicker += Html(" · ") + element("time", contents.date);
   Html out = element("p", kicker, {{"class", "kicker"}}) + element("h1", m.name);
   if (!m.description.empty()) out += element("p", m.description, {{"class", "description"}});
+  out += explored_line(contents);
   const ReportVerdict v = verdict(s);
   Html words = element("span", v.word, {{"class", v.color}});
   if (s.status == Status::converged) words += element("span", Html("solved in ") + duration(s.run_time_s));

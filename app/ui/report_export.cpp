@@ -33,6 +33,15 @@ Pictures both_pictures(App& app, PixelSize size) {
   return out;
 }
 
+std::vector<ExploredNumber> explored_numbers(const Document& document) {
+  std::vector<ExploredNumber> all;
+  for (const ExploredValue& each : document.explored())
+    if (const auto in_file = find_number(document.stored(), each.address);
+        in_file && find_number(*document.shared(), each.address) != in_file)
+      all.push_back({each.address, *in_file});
+  return all;
+}
+
 } // namespace
 
 void begin_report(App& app, const ExportRequest& request) {
@@ -50,7 +59,8 @@ void begin_report(App& app, const ExportRequest& request) {
   app.session.notice = "Writing the report…";
   app.report.task->start([options, size, pictures, file = request.file,
                           mechanism = app.session.document.shared(),
-                          scene = app.session.document.file().filename().string()](
+                          scene = app.session.document.file().filename().string(),
+                          explored = explored_numbers(app.session.document)](
                              const TaskContext<std::filesystem::path>& context) mutable {
     options.cancel = &context.cancel;
     options.progress = context.progress;
@@ -58,6 +68,7 @@ void begin_report(App& app, const ExportRequest& request) {
     if (context.cancel) return std::filesystem::path(); // nobody is there any more
     contents.scene = scene;
     contents.date = report_date();
+    contents.explored = explored;
     contents.picture.problem = pictures->problem;
     if (pictures->problem.empty())
       contents.picture = {encode_png(pictures->light), encode_png(pictures->dark), size.width, size.height,

@@ -41,6 +41,8 @@ TEST_CASE("a report is exported of what is shown") {
   // While building, what is explored is put aside.
   CHECK(page.find(building ? "11.0174\u00a0rad/s" : "12.5\u00a0rad/s") != std::string::npos);
   CHECK(page.find("governor.json") != std::string::npos);
+  CHECK((page.find("speed of spin 12.5\u00a0rad/s (in the file 11.0174\u00a0rad/s)") == std::string::npos) ==
+        building);
   const std::size_t light = page.find("data:image/png;base64,"),
                     dark = page.find("data:image/png;base64,", light + 1);
   REQUIRE(dark != std::string::npos);

@@ -160,13 +160,15 @@ void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect
 
 namespace {
 
-// "speed of spin 15 rad/s is tried", or how many are.
+// "Explored: speed of spin 15 rad/s", or how many are. While building no result is with them.
 std::string tried_text(const Session& session) {
   const Explored& explored = session.document.explored();
-  if (explored.size() > 1) return std::to_string(explored.size()) + " explored values";
+  const bool aside = session.mode == Mode::build;
+  if (explored.size() > 1)
+    return std::to_string(explored.size()) + " explored values" + (aside ? " put aside" : "");
   const ShownUnit unit =
       shown_unit(parameter_unit(session.document.stored(), explored.front().address), session.units);
-  return "Explored: " + parameter_phrase(explored.front().address) + " " +
+  return (aside ? "Put aside: " : "Explored: ") + parameter_phrase(explored.front().address) + " " +
          short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
 }
 
