@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 
 namespace flyball {
 
@@ -58,12 +59,16 @@ void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based
   seen_ = document.stored_revision();
   due_ = std::max({0., std::min(pause - still_, longest - waited_), hold_});
   if (due_ > 0) return;
-  written_ = document.stored_revision();
-  still_ = waited_ = 0;
+  due_ = soon;
   // Turning thousands of bodies into text and waiting for the disk is nothing for the thread of the
   // interface.
-  writing_ = std::async(std::launch::async, [slot = slot_] { return slot->write(); });
-  due_ = soon;
+  try {
+    writing_ = std::async(std::launch::async, [slot = slot_] { return slot->write(); });
+  } catch (const std::system_error&) { // no thread is to be had now
+    return;
+  }
+  written_ = document.stored_revision();
+  still_ = waited_ = 0;
 }
 
 void Autosaver::reset() {

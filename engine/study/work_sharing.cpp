@@ -3,6 +3,7 @@
 #include "engine/study/block_queue.hpp"
 
 #include <algorithm>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -17,8 +18,13 @@ void ThreadSharing::run(const SharedWork& work) {
   BlockQueue queue(work, makers);
   {
     std::vector<std::jthread> threads;
-    for (std::size_t i = 0; i < makers; ++i)
-      threads.emplace_back([&] { queue.make(work); });
+    threads.reserve(makers); // nothing else is to throw while makers wait for what they made to be taken
+    try {
+      while (threads.size() < makers)
+        threads.emplace_back([&] { queue.make(work); });
+    } catch (const std::system_error&) { // no more to be had: those there are do it all
+      if (threads.empty()) throw;
+    }
     constexpr double patience = 0.02; // s, from one report of progress to the next
     while (queue.deliver(work, patience)) {
     }
