@@ -5,6 +5,7 @@
 #include "app/platform/process.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -100,8 +101,13 @@ std::vector<fs::path> files_of(const fs::path& file, const fs::path& state_folde
 } // namespace
 
 std::string write_autosave(const Autosave& autosave) {
-  const json line = {{"flyball_autosave", 1},   {"file", autosave.file.string()}, {"name", autosave.name},
-                     {"owner", autosave.owner}, {"based_on", autosave.based_on},  {"made", autosave.made}};
+  const std::string file = autosave.file.string();
+  json line = {{"flyball_autosave", 1},         {"file", file},
+               {"name", autosave.name},         {"owner", autosave.owner},
+               {"based_on", autosave.based_on}, {"made", autosave.made}};
+  // Text of JSON is UTF-8, which names of files need not be.
+  if (find_invalid_utf8(file) != std::string::npos)
+    line["file_bytes"] = std::vector<unsigned char>(file.begin(), file.end());
   return line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n" + autosave.scene;
 }
 
@@ -113,6 +119,10 @@ Autosave parse_autosave(std::string_view text) {
   try {
     Autosave autosave;
     autosave.file = line.at("file").get<std::string>();
+    if (line.contains("file_bytes")) {
+      const auto bytes = line["file_bytes"].get<std::vector<unsigned char>>();
+      autosave.file = std::string(bytes.begin(), bytes.end());
+    }
     autosave.name = line.at("name").get<std::string>();
     autosave.owner = line.at("owner").get<std::string>();
     autosave.based_on = line.at("based_on").get<std::uint64_t>();

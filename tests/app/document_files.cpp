@@ -198,7 +198,8 @@ TEST_CASE("a process is known to run, and to run no longer") {
 }
 
 TEST_CASE("an autosave reads back as it was") {
-  const Autosave autosave{.file = "/folder/with \"quotes\".json",
+  const char* const file = GENERATE("/folder/with \"quotes\".json", "/folder/of Latin-1: \xe9.json");
+  const Autosave autosave{.file = file,
                           .name = "Governor ω",
                           .based_on = 0xFFFF'FFFF'FFFF'FFFFU,
                           .owner = "here:1:2",
