@@ -134,12 +134,32 @@ TEST_CASE("the list of parameters and points") {
   d.click("inspector/parameters/add");
   d.frames(2);
   REQUIRE(parameter_index(d.m(), "p") >= 0);
-  // As long as it has no unit it takes that which is typed, of SI.
+  // As long as it has no unit it takes that which is typed, in SI.
   const auto added = [&] { return d.m().parameters[static_cast<std::size_t>(parameter_index(d.m(), "p"))]; };
-  d.enter("inspector/parameter/p", "3 rpm");
+  d.enter("inspector/parameter/p", "3 rpmm");
   CHECK(added().value == 1);
   CHECK(added().unit.empty());
   d.key(key_escape);
+  struct Typed {
+    const char *text, *unit;
+    double value;
+  };
+  for (const Typed& typed : {Typed{"12 mm", "m", 0.012},
+                             {"12mm", "m", 0.012},
+                             {"60 rpm", "rad/s", 6.283185307179586},
+                             {"0.2 N/mm", "N/m", 200},
+                             {"2 g", "kg", 0.002},
+                             {"90°", "rad", 1.5707963267948966},
+                             {"3 cm²", "m^2", 3e-4},
+                             {"1/2 kN m", "N m", 500}}) {
+    INFO(typed.text);
+    d.enter("inspector/parameter/p", typed.text);
+    CHECK(added().unit == typed.unit);
+    CHECK(added().value == Approx(typed.value).epsilon(1e-14));
+    d.key('Z', true);
+    d.frames(2);
+    REQUIRE(added().unit.empty());
+  }
   d.enter("inspector/parameter/p", "3 N m s");
   CHECK(added().value == 3);
   CHECK(added().unit == "N m s");

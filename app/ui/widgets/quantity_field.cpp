@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -63,14 +64,46 @@ struct NumberWithUnit {
   std::string unit;
 };
 
-// "3 N m s" where the field's unit is open; nothing for what else is typed.
-std::optional<NumberWithUnit> with_own_unit(const QuantityField& field, const std::string& text) {
+// The same unit without prefixes and the like, symbol by symbol: "N/m" of "N/mm", "rad/s" of "rpm"; empty
+// where that has no name.
+std::string si_unit_of(std::string_view text) {
+  constexpr std::array bases{"m", "kg", "s", "rad", "rad/s", "N", "N m", "W", "Pa"};
+  std::string si;
+  const auto is_letter = [&](std::size_t i) {
+    return i < text.size() && (std::isalpha(static_cast<unsigned char>(text[i])) != 0 ||
+                               static_cast<unsigned char>(text[i]) >= 0x80);
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i;
+    while (is_letter(end))
+      ++end;
+    if (end == i) {
+      si += text[i++];
+      continue;
+    }
+    const std::optional<Unit> symbol = find_unit(text.substr(i, end - i));
+    if (!symbol) return {};
+    const auto* const base = std::ranges::find_if(
+        bases, [&](const char* each) { return parse_unit(each)->dimension == symbol->dimension; });
+    si += symbol->factor == 1 ? symbol->name : base != bases.end() ? *base : "";
+    i = end;
+  }
+  const std::optional<Unit> named = parse_unit(si), meant = parse_unit(text);
+  return named && meant && named->factor == 1 && named->dimension == meant->dimension ? si : "";
+}
+
+// "3 N m s", "12 mm" where the field's unit is open: in SI units; nothing for what else is typed.
+std::optional<NumberWithUnit> with_own_unit(const QuantityField& field, const std::string& typed) {
   if (!field.set_with_unit) return {};
-  for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
-    const Quantity number = parse_quantity(text.substr(0, space), "");
-    std::string unit = text.substr(space + 1);
-    if (const std::optional<Unit> si = parse_unit(unit); number && si && si->factor == 1)
-      return NumberWithUnit{number.value, std::move(unit)};
+  const std::string text = plain_signs(typed);
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    const std::size_t begin = text.find_first_not_of(' ', i);
+    if (begin == std::string::npos) break;
+    const std::string unit = text.substr(begin);
+    const std::optional<Unit> read = parse_unit(unit);
+    const Quantity number = read ? parse_quantity(text.substr(0, i), "") : Quantity{0, "No unit."};
+    std::string si = number ? si_unit_of(unit) : "";
+    if (!si.empty()) return NumberWithUnit{times_unit(number.value, read->factor), std::move(si)};
   }
   return {};
 }
@@ -158,7 +191,7 @@ std::string mistake_in(const Session& session, const std::string& text, const Qu
   if (with_own_unit(field, text)) return {};
   const Quantity typed = typed_quantity(session, text, field);
   if (!typed && field.set_with_unit)
-    return "Expected a number, by itself or with an SI unit, e.g. 2, 1/3 or 3 N m s.";
+    return "Expected a number, by itself or with a unit, e.g. 2, 12 mm or 3 N m s.";
   constexpr double largest = 1e30; // as in a scene
   if (typed && std::abs(typed.value) > largest) return "Expected no more than 1e30 in size.";
   return typed ? too_small(typed.value, field.least) : typed.mistake;

@@ -29,7 +29,7 @@ struct QuantityField {
   bool framed = true;                // or plain digits to the right until it is pointed at
   // What else follows where an expression is typed, or a number over one.
   std::function<void(const Mechanism& before, Mechanism& next)> follow{};
-  // Where its unit is open, "": takes a number with an SI unit of its own, "3 N m s".
+  // Where its unit is open, "": takes a number with a unit of its own, in SI units: 0.012 and "m" of "12 mm".
   std::function<void(double value, const std::string& unit)> set_with_unit{};
   bool at_once = false; // `set` is called while drawing: for a number outside the document
   // It is a slider's, where numbers are tried: an expression of numbers alone is taken as its value.
