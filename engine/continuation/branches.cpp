@@ -18,6 +18,7 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -55,6 +56,7 @@ class Diagram {
     try {
       from_drawn_pose();
       off_crossings(true);
+      beside_singular_loops();
       if (options_.all)
         for (double value : values_to_search()) {
           if (options_.publish && !out_.branches.empty()) options_.publish(so_far());
@@ -63,6 +65,7 @@ class Diagram {
     } catch (const Interrupted&) {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
+    drop_folds_at_crossings();
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
     for (const std::string& note : {begun_, bands(), kinks(), follower_.limits()})
       if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
@@ -76,6 +79,7 @@ class Diagram {
     try {
       if (!from_state(state)) return std::nullopt;
       off_crossings(true);
+      beside_singular_loops();
     } catch (const Interrupted&) {
       if (out_.branches.empty()) throw;
     }
@@ -326,6 +330,46 @@ class Diagram {
     if (!first || known(*first)) return;
     add(follower_.follow(*first, out_.branches.empty()), true);
     out_.message.clear();
+  }
+
+  // Where loops are singular the balance does not tell where another branch leaves, as those of a governor
+  // whose arms hang on its axis: what solving gives from the drawn pose at some values there has its branch.
+  void beside_singular_loops() {
+    std::vector<double> values;
+    for (const FollowedBranch& branch : followed_) {
+      std::vector<double> singular;
+      for (const ResponsePoint& point : branch.points)
+        if (point.singular_loops) singular.push_back(point.parameter);
+      if (singular.empty()) continue;
+      for (const double value : {singular.back(), singular[singular.size() / 2], singular.front()})
+        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+    }
+    for (const double value : values) {
+      if (!going()) return;
+      const Problem problem = follower_.problem_at(value);
+      Workspace& w = follower_.workspace();
+      Eigen::VectorXd start;
+      drawn_configuration(problem.system, problem.parameters, start);
+      Found found;
+      std::vector<double> history;
+      find_equilibrium(problem, start, false, false, w, history, found);
+      if (found.status != Status::converged ||
+          !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q),
+                           w)
+               .holds)
+        continue;
+      const auto forth = follower_.begin(found.z, value, true), back = follower_.begin(found.z, value, false);
+      if (!forth || !back || known(*forth)) continue;
+      add_both_ways(*forth, *back, false, false);
+      const bool meets = std::ranges::any_of(crossings_, [&](const BranchState& crossing) {
+        return std::ranges::any_of(std::array{off_crossing, -off_crossing}, [&](double length) {
+          const auto state = follower_.off(crossing, length);
+          return state && known(*state);
+        });
+      });
+      out_.branches.back().connected = meets;
+      off_crossings(true);
+    }
   }
 
   // False where there is no steady state near it, or it is singular.

@@ -442,6 +442,56 @@ TEST_CASE("where loops are singular all along a branch no points are special", "
     CHECK(std::abs(point.at.parameter - std::sqrt(standard_gravity / 0.16)) > 1e-3);
 }
 
+TEST_CASE("where arms that hang part from each other the lifted curve is found from either end",
+          "[branches]") {
+  // Watt's governor, its arms hinged on the axis: there the links' rows are one. V'' = 0 at
+  // w^2 = (2 m + M) g / (2 m l); lifted, cos(angle) is that over w^2.
+  const double m = 1, collar = 0.5, l = 0.2;
+  const Mechanism governor = read_scene(R"({
+    "flyball": 1, "name": "Watt", "gravity": [0, -9.80665, 0],
+    "bodies": [
+      {"name": "shaft", "mass": 0.1, "position": [0, 0, 0], "inertia": [0.001, 0.001, 0.001]},
+      {"name": "ball1", "mass": 1, "position": [0.12, 0.14, 0]},
+      {"name": "ball2", "mass": 1, "position": [-0.12, 0.14, 0]},
+      {"name": "collar", "mass": 0.5, "position": [0, 0.14, 0]}],
+    "joints": [
+      {"name": "spin", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0], "axis": [0, 1, 0],
+       "drive": {"speed": 10}},
+      {"name": "arm1", "type": "revolute", "bodies": ["shaft", "ball1"], "at": [0, 0.3, 0], "axis": [0, 0, 1]},
+      {"name": "arm2", "type": "revolute", "bodies": ["shaft", "ball2"], "at": [0, 0.3, 0], "axis": [0, 0, -1]},
+      {"name": "slide", "type": "prismatic", "bodies": ["shaft", "collar"], "at": [0, 0.14, 0], "axis": [0, 1, 0]},
+      {"name": "link1", "type": "distance", "bodies": ["ball1", "collar"], "points": [[0.06, 0.22, 0], [0, 0.14, 0]]},
+      {"name": "link2", "type": "distance", "bodies": ["ball2", "collar"], "points": [[-0.06, 0.22, 0], [0, 0.14, 0]]}]
+  })");
+  const double lifts = (2 * m + collar) * standard_gravity / (2 * m * l), drawn = std::acos(0.8);
+  for (const auto& [from, to] : {std::pair{0., 15.}, {15., 0.}}) {
+    CAPTURE(from, to);
+    const ResponseDiagram d = follow_branches(governor, speed, from, to);
+    REQUIRE(d.branches.size() >= 2);
+    REQUIRE(!d.special.empty());
+    CHECK(std::ranges::any_of(d.special, [&](const SpecialPoint& point) {
+      return point.type == SpecialPointType::branch_point &&
+             std::abs(point.at.parameter - std::sqrt(lifts)) < 1e-5 * std::sqrt(lifts);
+    }));
+    int lifted = 0, hanging = 0;
+    for (const ResponseBranch& branch : d.branches) {
+      CHECK(branch.connected);
+      for (const ResponsePoint& p : branch.points) {
+        const double angle = std::abs(p.coordinates[1].value + drawn);
+        if (angle < 0.1) {
+          hanging += p.parameter < 5;
+          continue;
+        }
+        CHECK(std::abs(std::cos(angle) - lifts / (p.parameter * p.parameter)) < 1e-9);
+        CHECK(p.stable == true);
+        ++lifted;
+      }
+    }
+    CHECK(lifted > 20);
+    CHECK(hanging > 5);
+  }
+}
+
 TEST_CASE("a curve that turns back at a stop goes on along it", "[branches]") {
   SECTION("a pendulum in a spring's pull") {
     // Upright the rod is unstable; F pulls its top to the side: sin(q) m g h = F h cos(q) on the branch that
