@@ -282,6 +282,18 @@ TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number")
   CHECK(app.session.mode == Mode::explore);
 }
 
+TEST_CASE("after a drag of a slider with the mouse Tab is the mode again") {
+  Typist hand;
+  App& app = hand.app;
+  const double stored = get_parameter(app.session.mechanism(), spin_speed);
+  hand.drag(std::string("parameters/") + spin_speed, {0.4f, 0.5f}, {0.6f, 0.5f});
+  hand.frames(2);
+  REQUIRE(get_parameter(app.session.mechanism(), spin_speed) != stored);
+  hand.point(hand.widget("view").center());
+  hand.key(keys::tab);
+  CHECK(app.session.mode == Mode::build);
+}
+
 TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it") {
   Typist hand;
   App& app = hand.app;

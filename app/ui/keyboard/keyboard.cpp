@@ -224,8 +224,10 @@ bool take_focus_key(Ui& ui, const DialogState& dialog, const CommandRunner& comm
     return true;
   }
   if (key.key == keys::tab && !key.ctrl) {
-    const bool clicked_row = stop && stop->use == KeyUse::row && !state.ring && open == 0;
-    if (open == 0 && !typing && (!stop || clicked_row)) return false; // a command in the view
+    // The mouse has been at a row or a slider, and is done there.
+    const bool clicked =
+        stop && (stop->use == KeyUse::row || stop->use == KeyUse::slide) && !state.ring && open == 0;
+    if (open == 0 && !typing && (!stop || clicked)) return false; // a command in the view
     const std::string region = stop ? region_of(*stop) : popup_region();
     if (const KeyStop* next = tab_stop(state, region, stop, key.shift ? -1 : 1)) go(ui, *next, true);
     return true;
