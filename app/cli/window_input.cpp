@@ -48,6 +48,7 @@ void set_modifiers_after(const WindowEvent& event) {
 
 WindowInput::WindowInput(const Window& window) : window_(window) {
   ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);
+  imgui_compat::take_events_at_once(); // read() gives as many as a frame is to see
   glfwGetCursorPos(window.handle(), &cursor_[0], &cursor_[1]);
 }
 
