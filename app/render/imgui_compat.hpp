@@ -29,8 +29,8 @@ inline unsigned texture_name(ImTextureID id) {
 // Since 1.87 events wait in a queue, so that what is pressed and let go within a frame is seen.
 inline constexpr bool queues_events = IMGUI_VERSION_NUM >= 18700;
 
-// All that happened since the last frame is seen in the next one, as 1.86 has it: for who gives events frame by
-// frame, in steps that each see what the one before has done.
+// All that happened since the last frame is seen in the next one, as 1.86 has it: for who gives events frame
+// by frame, in steps that each see what the one before has done.
 inline void take_events_at_once() {
 #if IMGUI_VERSION_NUM >= 18700
   ImGui::GetIO().ConfigInputTrickleEventQueue = false;
