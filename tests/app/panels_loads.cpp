@@ -142,6 +142,9 @@ TEST_CASE("what is explored, the legend and a notice stand clear of each other, 
 TEST_CASE("arrows that come are taken into the view, unless a part is looked at") {
   Robot robot({1280, 900});
   App& app = robot.app;
+  app.view.ghost = false; // which takes room of its own
+  robot.key('F');
+  robot.frames(30, 0.04);
   const double drawn_from = app.view.camera.distance;
   const auto all_seen = [&] {
     return std::ranges::all_of(shown_scene(app.context())->arrows.arrows, [&](const LoadArrow& arrow) {

@@ -265,7 +265,7 @@ TEST_CASE("the model is exported, by the ending of its name") {
 }
 
 TEST_CASE("of what has no effect no gain and no phase are shown") {
-  TransferRobot robot("governor_watt");
+  TransferRobot robot("governor");
   robot.state().choice = {"force_z(collar)", "slide"};
   robot.frames(3);
   REQUIRE(robot.found().model.inputs[0].name == "force_z(collar)");
