@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Includes go one way: a folder sees itself and what this table names, and nothing else. Views do not name the App.
-A type is defined once (the one-definition rule).
+A type is defined once (the one-definition rule). A README.md of a folder names its headers.
 
     architecture_test.py SOURCE_DIR
 """
@@ -94,6 +94,18 @@ def defined_twice(source):
     return [f"{name}: in {' and in '.join(files)}" for name, files in places.items() if len(files) > 1]
 
 
+def unnamed(source):
+    """Headers that the README.md of their folder does not name; those of a folder within it by that folder's name."""
+    found = []
+    for readme in sorted([*source.glob("engine/*/README.md"), *source.glob("app/*/README.md")]):
+        words = set(re.findall(r"\w+", readme.read_text()))
+        for header in sorted(readme.parent.rglob("*.hpp")):
+            within = header.relative_to(readme.parent)
+            if within.stem not in words and within.parts[0] not in words:
+                found.append(f"{readme.relative_to(source).as_posix()}: nothing on {within.as_posix()}")
+    return found
+
+
 def self_test():
     """The rules refuse what they are there to refuse."""
     import tempfile
@@ -106,15 +118,16 @@ def self_test():
                            "app/ui/studies/c.cpp": '#include "app/session/session.hpp"\nvoid c(App& app);\n'}.items():
             (source / path).parent.mkdir(parents=True, exist_ok=True)
             (source / path).write_text(text)
-        return len(violations(source)) == 4 and len(defined_twice(source)) == 1
+        (source / "app/ui/README.md").write_text("`stage`, and what stands in panels/\n")
+        return len(violations(source)) == 4 and len(defined_twice(source)) == 1 and len(unnamed(source)) == 1
 
 
 def main():
     if not self_test():
         sys.exit("the rules do not refuse what they should")
     source = pathlib.Path(sys.argv[1])
-    found = violations(source) + defined_twice(source)
-    print("\n".join(found) or "includes go one way, and each type is defined once")
+    found = violations(source) + defined_twice(source) + unnamed(source)
+    print("\n".join(found) or "includes go one way, each type is defined once, and each header is told of")
     sys.exit(1 if found else 0)
 
 
