@@ -42,7 +42,7 @@ TEST_CASE("words that are too long for their place are cut, whole characters at 
 }
 
 TEST_CASE("what a coordinate goes on by in a period is told beside its range") {
-  Robot robot({1280, 900});
+  Robot robot({1280, 1800}); // all rows in sight
   App& app = robot.app;
   Mechanism crank = Document::empty_mechanism();
   add_driven_slider_crank(crank, 10);
