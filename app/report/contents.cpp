@@ -11,6 +11,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/periodic/limit_cycle.hpp"
 #include "engine/report/friction_state.hpp"
+#include "engine/stability/stability.hpp"
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/friction_ribbon.hpp"
 #include "engine/study/resonance_curve.hpp"
@@ -217,7 +218,7 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
     out.friction = report_friction(*out.mechanism, out.solution, options.cancel);
   if (out.solution.status == Status::converged) {
     out.modes = analysis.modes(most_modes);
-    out.evidence = analysis.stability_evidence();
+    if (out.system.free_coordinates <= largest_for_eigenvalues) out.evidence = analysis.stability_evidence();
     out.springs = spring_loads(*out.mechanism, out.solution);
   }
   if (out.solution.status == Status::no_steady_state) {

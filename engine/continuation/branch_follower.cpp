@@ -158,6 +158,7 @@ BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& ad
 
 Problem BranchFollower::problem_at(double parameter) {
   family_.set(parameter);
+  family_.expect_possible();
   Problem p = family_.problem();
   p.cancel = options_.cancel;
   return p;
@@ -307,8 +308,12 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
   if (nearest == &branch.states.back() && along > 0 && !branch.closed) return false;
   BranchState there;
   int iterations = 0;
-  return continuation_.step(*nearest, along, there, iterations) &&
-         size_of(there, difference(there, state)) < 1e-2 * least;
+  try {
+    return continuation_.step(*nearest, along, there, iterations) &&
+           size_of(there, difference(there, state)) < 1e-2 * least;
+  } catch (const SceneError&) { // no mechanism can be made there
+    return false;
+  }
 }
 
 bool BranchFollower::holds_at_every_phase(const BranchState& s) {
@@ -440,6 +445,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     } catch (const InfiniteRate& error) { // at a place between them
       out.end = infinite_rate_text(error);
       break;
+    } catch (const SceneError&) { // no mechanism can be made a little beyond: the next step ends there
     }
     out.points.push_back(then.point);
     out.states.push_back(next);

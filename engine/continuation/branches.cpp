@@ -110,8 +110,41 @@ class Diagram {
   bool room() const { return static_cast<int>(followed_.size()) < options_.max_branches; }
   bool going() const { return room() && !follower_.cancelled(); }
 
+  // Moves the beginning of the range to where a mechanism can be made first. Throws SceneError where none can
+  // at any of many values.
+  void begin_where_possible() {
+    constexpr int samples = 64;
+    constexpr double inside = 1e-6; // of the range
+    const double range = to_ - from_;
+    const auto possible = [&](double value) {
+      try {
+        follower_.problem_at(value);
+        return true;
+      } catch (const SceneError&) {
+        return false;
+      }
+    };
+    if (possible(from_)) return;
+    int first = 1;
+    while (first <= samples && !possible(from_ + range * first / samples))
+      ++first;
+    if (first > samples) follower_.problem_at(from_); // throws, saying why
+    double none = from_ + range * (first - 1) / samples, some = from_ + range * first / samples;
+    while (std::abs(some - none) > inside * std::abs(range)) {
+      const double middle = (none + some) / 2;
+      (possible(middle) ? some : none) = middle;
+    }
+    try {
+      follower_.problem_at(none);
+    } catch (const SceneError& error) {
+      begun_ = std::string("Before its beginning no mechanism can be made: ") + error.what() + ".";
+    }
+    from_ = some;
+  }
+
   void from_drawn_pose() {
     report_progress(options_.progress, "solving at the start");
+    begin_where_possible();
     const Problem problem = follower_.problem_at(from_);
     Workspace& w = follower_.workspace();
     Eigen::VectorXd start;

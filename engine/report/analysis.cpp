@@ -443,7 +443,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
 AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
   if (s.turned) s.bind_numbers();
-  s.turned = false;
+  s.turned = s.settled = false;
   const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
   for (const BodyPoint& point : options.points)
     find_point(s.system, *s.mechanism, s.parameters, point);

@@ -4,6 +4,7 @@
 #include "tests/support/campaign.hpp"
 
 #include "engine/continuation/branches.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -399,6 +400,35 @@ TEST_CASE("what nothing resists at the beginning of a range alone is followed fr
   CHECK(d.branches[0].end == "the end of the range");
   CHECK(d.branches[0].points.front().parameter == 0);
   CHECK(d.branches[0].points.size() > 40);
+}
+
+TEST_CASE("a curve begins where a mechanism can be made first", "[branches]") {
+  Mechanism m = shipped("governor_parametric");
+  NamedParameter& less = m.parameters.emplace_back();
+  less.name = "less";
+  less.unit = "kg";
+  less.value = 1;
+  for (Body& each : m.bodies)
+    if (each.name.starts_with("ball")) {
+      std::erase_if(each.formulas, [](const Formula& formula) { return formula.key == "mass"; });
+      each.formulas.push_back({"mass", "3 kg - less"});
+      std::ranges::sort(each.formulas, {}, &Formula::key);
+    }
+  evaluate_formulas(m);
+  const ResponseDiagram forth = follow_branches(m, "parameters.less", 0, 6),
+                        back = follow_branches(m, "parameters.less", 6, 0);
+  REQUIRE(!forth.branches.empty());
+  REQUIRE(!back.branches.empty());
+  CHECK(forth.branches[0].points.back().parameter == Approx(3).margin(1e-5));
+  CHECK(back.branches[0].points.front().parameter == Approx(3).margin(1e-5));
+  CHECK(back.branches[0].points.back().parameter == 0);
+  CHECK(back.branches[0].points.size() > 20);
+  CHECK_THAT(back.message, ContainsSubstring("no mechanism can be made"));
+  for (const ResponseDiagram* d : {&forth, &back})
+    for (const ResponseBranch& branch : d->branches)
+      for (const ResponsePoint& p : branch.points)
+        CHECK(p.parameter <= 3);
+  CHECK_THROWS_AS(follow_branches(m, "parameters.less", 4, 6), SceneError);
 }
 
 TEST_CASE("where many states are balanced the curve begins at the one that it tends to", "[branches]") {
