@@ -11,7 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <deque>
 
 namespace flyball {
 namespace {
@@ -223,23 +223,31 @@ System compile_for_drives(const Mechanism& mechanism) {
   System best = compile(mechanism);
   const System first = best;
   DrivenCuts fate = drive_cuts(best, mechanism);
-  // One cut for another of its loop as long as that is better. A bearing on a shaft that turns and another on
-  // the ground hold a pendulum alike: where it would be carried round it may hang as well.
-  for (bool better = true; better && (fate.opened > 0 || fate.varies);) {
-    better = false;
-    for (const CutChoice& choice : neighbouring_cuts(mechanism, best)) {
-      try {
-        System other = compile(mechanism, choice);
-        DrivenCuts there = drive_cuts(other, mechanism);
-        better = std::pair(there.opened, there.varies) < std::pair(fate.opened, fate.varies);
-        if (!better) continue;
-        fate = std::move(there);
-        best = std::move(other);
-        break;
-      } catch (const SceneError&) {
-        continue; // not admissible: a drive would be cut
-      }
+  std::deque<CutChoice> queue;
+  std::vector<std::vector<int>> seen;
+  const auto enqueue = [&](const System& from) {
+    for (CutChoice& c : neighbouring_cuts(mechanism, from)) {
+      std::ranges::sort(c.cut);
+      if (std::ranges::find(seen, c.cut) != seen.end()) continue;
+      seen.push_back(c.cut);
+      queue.push_back(std::move(c));
     }
+  };
+  if (fate.opened > 0) enqueue(best);
+  for (int tried = 0; tried < 500 && !queue.empty() && fate.opened > 0; ++tried) {
+    const CutChoice choice = std::move(queue.front());
+    queue.pop_front();
+    System other;
+    try {
+      other = compile(mechanism, choice);
+    } catch (const SceneError&) {
+      continue; // not admissible: a drive would be cut
+    }
+    if (DrivenCuts there = drive_cuts(other, mechanism); there.opened < fate.opened) {
+      fate = std::move(there);
+      best = other;
+    }
+    enqueue(other);
   }
   const auto let_turn = [&](const System& from, const std::vector<CoordinateReference>& more,
                             Begin begin = Begin::as_drawn) {
@@ -260,6 +268,22 @@ System compile_for_drives(const Mechanism& mechanism) {
   if (fate.opened == 0 && !drawn.torques.empty() && drive_cuts(drawn, mechanism, Begin::apart).opened > 0)
     for (const bool beside : {false, true})
       let_turn(drawn, implied_turning(drawn, bound(drawn, mechanism, Begin::apart), beside), Begin::apart);
+  // A bearing on a shaft that turns and another on the ground hold a pendulum alike: where it would be
+  // carried round it may hang as well.
+  const System carried = best;
+  if (fate.varies)
+    for (const CutChoice& choice : neighbouring_cuts(mechanism, carried)) {
+      try {
+        System other = compile(mechanism, choice);
+        DrivenCuts there = drive_cuts(other, mechanism);
+        if (there.opened > 0 || there.varies) continue;
+        fate = std::move(there);
+        best = std::move(other);
+        break;
+      } catch (const SceneError&) {
+        continue; // not admissible: a drive would be cut
+      }
+    }
   if (fate.opened == 0 && !best.drives.empty() && best.nv <= few && !keeps_momentum(best)) {
     const System standing = best;
     let_turn(standing, slipping_turning(standing, bound(standing, mechanism, Begin::as_drawn)));

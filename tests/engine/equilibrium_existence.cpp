@@ -412,3 +412,43 @@ TEST_CASE("sliding a parameter away and back gives the answer of a fresh start",
   CHECK(std::abs(back.coordinates[1].value - fresh.coordinates[1].value) < 1e-9);
   CHECK(std::abs(back.coordinates[2].value - fresh.coordinates[2].value) < 1e-9);
 }
+
+TEST_CASE("two cuts are exchanged where one exchange alone makes nothing better", "[existence]") {
+  // Loops that share a shaft: on the way to cuts that need no drive to be pulled open are some that need as
+  // many.
+  const char* const scenes[] = {R"({"flyball": 1, "name": "r", "gravity": [0, -9.8, 0],
+ "bodies": [
+  {"name": "b0", "mass": 1.0, "position": [0, 0.0, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b1", "mass": 1.3, "position": [0.1, 0.1, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b2", "mass": 1.6, "position": [0.2, 0.2, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b3", "mass": 1.9, "position": [0.1, 0.30000000000000004, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b4", "mass": 2.2, "position": [0.2, 0.4, 0], "inertia": [0.1, 0.12, 0.13]}],
+ "joints": [
+  {"name": "j0", "type": "revolute", "bodies": ["ground", "b0"], "at": [0, 0.1, 0], "axis": [0, 1, 0], "drive": {"speed": -4}},
+  {"name": "j1", "type": "cylindrical", "bodies": ["b0", "b1"], "at": [0, 0.3, 0], "axis": [0, 1, 0]},
+  {"name": "j2", "type": "distance", "bodies": ["b1", "b2"], "points": [[0.3, 0.1, 0], [0.1, 0.3, 0]], "length": 0.282842712474619},
+  {"name": "j3", "type": "revolute", "bodies": ["b1", "b3"], "at": [0.2, 0.3, 0], "axis": [1, 0, 0]},
+  {"name": "j4", "type": "revolute", "bodies": ["b0", "b4"], "at": [0, 0, 0], "axis": [0, 1, 0]},
+  {"name": "j5", "type": "distance", "bodies": ["b4", "ground"], "points": [[0.3, 0.1, 0], [0.1, 0.3, 0]], "length": 0.282842712474619},
+  {"name": "j6", "type": "revolute", "bodies": ["b1", "ground"], "at": [0, 0, 0], "axis": [0, 1, 0]},
+  {"name": "j7", "type": "prismatic", "bodies": ["b1", "b4"], "at": [0, 0.1, 0], "axis": [0, 0, 1]}]})",
+                                R"({"flyball": 1, "name": "r", "gravity": [0, -9.8, 0],
+ "bodies": [
+  {"name": "b0", "mass": 1.0, "position": [0.1, 0.0, 0.05], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b1", "mass": 1.3, "position": [0.2, 0.1, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b2", "mass": 1.6, "position": [0, 0.2, 0], "inertia": [0.1, 0.12, 0.13]},
+  {"name": "b3", "mass": 1.9, "position": [0.2, 0.30000000000000004, 0.05], "inertia": [0.1, 0.12, 0.13]}],
+ "joints": [
+  {"name": "j0", "type": "revolute", "bodies": ["ground", "b0"], "at": [0, 0, 0], "axis": [0, 1, 0], "drive": {"speed": 5}},
+  {"name": "j1", "type": "revolute", "bodies": ["b0", "b1"], "at": [0, 0.1, 0], "axis": [0, 1, 0]},
+  {"name": "j2", "type": "revolute", "bodies": ["b1", "b2"], "at": [0, 0.1, 0], "axis": [0, 1, 0]},
+  {"name": "j3", "type": "revolute", "bodies": ["b0", "b3"], "at": [0, 0.3, 0], "axis": [0, 1, 0]},
+  {"name": "j4", "type": "revolute", "bodies": ["b3", "b2"], "at": [0.2, 0, 0], "axis": [0, 1, 0]},
+  {"name": "j5", "type": "cylindrical", "bodies": ["b2", "b0"], "at": [0, 0.1, 0], "axis": [0, 1, 0]},
+  {"name": "j6", "type": "prismatic", "bodies": ["b1", "ground"], "at": [0.2, 0, 0], "axis": [0, 1, 0]}]})"};
+  for (const char* scene : scenes) {
+    const Solution s = solve(read_scene(scene));
+    CAPTURE(s.message);
+    CHECK(s.status == Status::converged);
+  }
+}
