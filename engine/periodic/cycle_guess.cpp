@@ -27,6 +27,7 @@ constexpr double steadily = 0.01;       // of its size: what changes less in bet
 constexpr double alike_in_space = 1e-6; // scaled, of motions from two angles
 constexpr double alike_in_time = 1e-9;  // and from two phases of drives: a small unbalance is one, too
 constexpr int most_periods = 20000;     // in which a drive is to stand otherwise against the others
+constexpr double alike_loads = 1e-6;    // of the largest, as steps' errors leave them
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 constexpr double least_share = 1e-6;    // of a unit vector: less is rounding
 constexpr int most_ways = 64, most_tries = 4096; // of turning: that are tried, and sets of what stands still
@@ -290,8 +291,22 @@ std::string quasi_periodic_message(const Flow& flow, const AlikeAngles& alike,
          ", and is quasi-periodic unless these are locked in a ratio of higher numbers.";
 }
 
-// Whether motions from beside a state go alike when they begin then (s) as at first; `rate` (1/s) is the
-// fastest drive's.
+// Whether what drives give, at the beginning and end of two runs, is the same.
+bool loads_alike(const Run& a, const Run& b, double reach) {
+  double largest = a.energy.kinetic.front(); // J, and so N m
+  for (const DriveTrack& drive : a.drives)
+    for (const double torque : drive.torque)
+      largest = std::max(largest, std::abs(torque) * (drive.angle ? 1 : reach));
+  for (std::size_t d = 0; d < a.drives.size(); ++d)
+    for (std::size_t i = 0; i < a.drives[d].torque.size(); ++i)
+      if (!(std::abs(a.drives[d].torque[i] - b.drives[d].torque[i]) * (a.drives[d].angle ? 1 : reach) <=
+            alike_loads * largest))
+        return false;
+  return true;
+}
+
+// Whether motions from beside a state go alike when they begin then (s) as at first, and what drives give;
+// `rate` (1/s) is the fastest drive's.
 bool goes_alike_at(Flow& flow, const FlowState& state, double rate, const std::array<double, 3>& times) {
   const double span = 0.1 / rate;
   const StateChart chart(flow.problem(), state, rate, {});
@@ -300,10 +315,14 @@ bool goes_alike_at(Flow& flow, const FlowState& state, double rate, const std::a
   const auto here = flow.pass(beside, span, step_tolerance * 1e-3);
   if (!here) return false;
   const StateChart after(flow.problem(), here->to, rate, {});
+  const Run loads = flow.record(beside, span, 1, step_tolerance);
+  if (loads.time.empty()) return false;
   return std::ranges::all_of(times, [&](double time) {
     beside.time = time;
     const auto there = flow.pass(beside, span, step_tolerance * 1e-3);
-    return there && after.distance(there->to) < alike_in_time;
+    if (!there || !(after.distance(there->to) < alike_in_time)) return false;
+    const Run others = flow.record(beside, span, 1, step_tolerance);
+    return !others.time.empty() && loads_alike(loads, others, flow.model().parameters.length);
   });
 }
 

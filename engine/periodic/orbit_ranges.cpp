@@ -202,8 +202,12 @@ class LoadRanges {
  public:
   LoadRanges(const Run& run, double reach) : largest_(largest_load(run, reach)), reach_(reach) {}
 
+  bool come_back(std::span<const double> values, bool moment) const {
+    return comes_back(values, small(moment));
+  }
+
   PeriodicRange of(std::span<const double> values, bool moment) const {
-    if (!comes_back(values, small(moment))) return {unknown, unknown, unknown, unknown};
+    if (!come_back(values, moment)) return {unknown, unknown, unknown, unknown};
     return rounded(range_over_period(values), moment);
   }
 
@@ -268,21 +272,6 @@ PeriodicSpring spring_of(const SpringTrack& track, const LoadRanges& ranges) {
   return out;
 }
 
-void fill_loads(const Run& run, PeriodicState& out) {
-  const double reach = run.segments.empty() ? 1 : run.segments.front().model->parameters.length;
-  const LoadRanges ranges(run, reach);
-  for (const ReactionTrack& track : run.reactions)
-    out.reactions.push_back({track.joint, ranges.of(track.force, false), ranges.of(track.torque, true)});
-  for (const BearingTrack& track : run.bearings)
-    out.bearings.push_back({track.bearing, ranges.of(track.force, false), ranges.of(track.torque, true)});
-  for (const GearTrack& track : run.gears)
-    out.gears.push_back({track.joint, track.angle_a, track.angle_b, ranges.of(track.a, track.angle_a),
-                         ranges.of(track.b, track.angle_b)});
-  for (const SpringTrack& track : run.springs)
-    if (PeriodicSpring spring = spring_of(track, ranges); spring.spring || spring.damper || spring.stop)
-      out.springs.push_back(std::move(spring));
-}
-
 // Of a drive: its torque times the rate of its coordinate, W.
 std::vector<double> power_of(const Run& run, const DriveTrack& drive) {
   std::vector<double> out(drive.torque.size(), unknown);
@@ -293,6 +282,28 @@ std::vector<double> power_of(const Run& run, const DriveTrack& drive) {
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = drive.torque[i] * turning->rate[i];
   return out;
+}
+
+void fill_loads(const Run& run, PeriodicState& out) {
+  const double reach = run.segments.empty() ? 1 : run.segments.front().model->parameters.length;
+  const LoadRanges ranges(run, reach);
+  for (const DriveTrack& track : run.drives) {
+    const bool known = ranges.come_back(track.torque, track.angle);
+    const PeriodicRange none{unknown, unknown, unknown, unknown};
+    out.drive_torques.push_back({track.joint, track.index, track.count, track.angle,
+                                 known ? range_over_period(track.torque) : none,
+                                 known ? range_over_period(power_of(run, track)) : none});
+  }
+  for (const ReactionTrack& track : run.reactions)
+    out.reactions.push_back({track.joint, ranges.of(track.force, false), ranges.of(track.torque, true)});
+  for (const BearingTrack& track : run.bearings)
+    out.bearings.push_back({track.bearing, ranges.of(track.force, false), ranges.of(track.torque, true)});
+  for (const GearTrack& track : run.gears)
+    out.gears.push_back({track.joint, track.angle_a, track.angle_b, ranges.of(track.a, track.angle_a),
+                         ranges.of(track.b, track.angle_b)});
+  for (const SpringTrack& track : run.springs)
+    if (PeriodicSpring spring = spring_of(track, ranges); spring.spring || spring.damper || spring.stop)
+      out.springs.push_back(std::move(spring));
 }
 
 bool jumps(const CoordinateTrack& track) { // a rotation vector that turns over
@@ -336,9 +347,6 @@ void fill_ranges(const Run& run, PeriodicState& out) {
     }
     out.coordinates.push_back(std::move(c));
   }
-  for (const DriveTrack& track : run.drives)
-    out.drive_torques.push_back({track.joint, track.index, track.count, track.angle,
-                                 range_over_period(track.torque), range_over_period(power_of(run, track))});
   fill_loads(run, out);
   for (const MeasureTrack& track : run.measures)
     out.measures.push_back({track.name, track.unit,

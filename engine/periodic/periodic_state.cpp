@@ -121,6 +121,18 @@ class Search {
       return out;
     }
     tell(*found, out);
+    if (const auto track = std::ranges::find_if(
+            out.drive_torques, [](const PeriodicTorque& each) { return std::isnan(each.range.mean); });
+        track != out.drive_torques.end()) {
+      PeriodicState none;
+      none.status = PeriodicStatus::not_periodic;
+      none.evaluations = out.evaluations;
+      none.message =
+          "What moves freely comes back after " + rounded_text(found->how.period, 6) +
+          " s, but what the drive " + coordinate_label(track->joint, track->index, track->count) +
+          " gives does not, as gears or other drives stand otherwise then: of this no period is known.";
+      return none;
+    }
     return out;
   }
 

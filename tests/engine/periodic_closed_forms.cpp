@@ -571,3 +571,30 @@ TEST_CASE("A balanced rotor at another speed has no part in the period") {
     CHECK((both.status != PeriodicStatus::found || both.period > 60));
   }
 }
+
+TEST_CASE("a period is common to all drives whose torque depends on where they stand", "[periodic]") {
+  // Two arms that weigh, and what swings beside them without feeling the slower one.
+  const double weight = 2 * 9.81 * 0.1; // N m
+  Mechanism m;
+  m.gravity = {0, -9.81, 0};
+  m.bodies = {body("a", 2, {0.1, 0, 0}, {0.01, 0.01, 0.01}), body("b", 2, {1.1, 0, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {driven(revolute("slow", "ground", "a", {0, 0, 0}, {0, 0, 1}), 5),
+              driven(revolute("fast", "ground", "b", {1, 0, 0}, {0, 0, 1}), 10)};
+  SECTION("nothing is free") {}
+  SECTION("a rotor in springs has a part in the period of the fast one alone") {
+    m.bodies.push_back(body("block", 3, {2, 0, 0}, {0.01, 0.01, 0.01}));
+    m.bodies.push_back(body("disc", 1, {2.01, 0, 0}, {0.01, 0.01, 0.02}));
+    m.joints.push_back(dampened(sprung(prismatic("x", "ground", "block", {2, 0, 0}, {1, 0, 0}), 1e3), 40));
+    m.joints.push_back(driven(revolute("spin", "block", "disc", {2, 0, 0}, {0, 0, 1}), 10));
+  }
+  const PeriodicState s = find_periodic_state(m, {});
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK_THAT(s.period, WithinRel(2 * pi / 5, 1e-12));
+  for (std::size_t i : {0U, 1U}) {
+    const PeriodicRange& range = s.drive_torques[i].range;
+    CHECK_THAT(range.mean, WithinAbs(0, 1e-9));
+    CHECK_THAT(range.least, WithinAbs(-weight, 1e-9));
+    CHECK_THAT(range.most, WithinAbs(weight, 1e-9));
+  }
+}
