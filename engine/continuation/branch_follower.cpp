@@ -48,7 +48,7 @@ struct AtStop {
 };
 
 std::optional<AtStop> stop_ahead(const Problem& problem, const BranchState& state) {
-  constexpr double at = 1e-6; // scaled length of the branch
+  constexpr double at = 1e-6, behind = -1e-10; // scaled lengths of the branch
   std::optional<AtStop> found;
   double least = at;
   for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
@@ -58,8 +58,8 @@ std::optional<AtStop> stop_ahead(const Problem& problem, const BranchState& stat
     const auto look = [&](double limit) {
       const double rate = state.tangent[link.v] * problem.scaling.column[link.v],
                    away = (limit - state.z.q[link.q]) / rate;
-      if (!(std::abs(away) < least)) return;
-      least = std::abs(away);
+      if (!(away > behind && away < least)) return;
+      least = away;
       found = {link.q, link.v, limit, rate > 0};
     };
     if (force.has_lower) look(force.lower);

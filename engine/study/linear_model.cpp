@@ -92,6 +92,7 @@ class Builder {
     Eigen::MatrixXd normalised;                // (p, 2k + m), of what directions are measured by
     Eigen::MatrixXd scaled_b0, scaled_shift;   // (k, m), of radians and parts of the reach
     double stiffness_size = 0, speed_size = 0; // scaled
+    Eigen::VectorXd held;                      // (k): what a radian or part of the reach takes of each
   };
 
   void check(const Solution& steady) const {
@@ -320,6 +321,7 @@ class Builder {
     out.scaled_b0 = column.asDiagonal() * out.b0;
     out.scaled_shift = column.cwiseInverse().asDiagonal() * out.shift;
     out.stiffness_size = motion.stiffness.norm();
+    out.held = (column.asDiagonal() * out.stiffness * column.asDiagonal()).rowwise().norm();
     out.speed_size = speed_scale(motion);
     for (Eigen::Index j = 0; j < inputs && k > 0; ++j) {
       if (!is_rounding(out, j, column.maxCoeff())) continue;
@@ -437,11 +439,12 @@ class Builder {
   // Whether nothing is left of what an input does but rounding: for all of a number, or one newton at the
   // longest arm.
   bool is_rounding(const Matrices& m, Eigen::Index j, double arm) const {
-    const double force = m.scaled_b0.col(j).lpNorm<Eigen::Infinity>(),
-                 speed = m.scaled_shift.col(j).lpNorm<Eigen::Infinity>();
-    if (numbers_[static_cast<std::size_t>(j)] < 0) return speed == 0 && force <= no_effect * arm;
+    const Eigen::VectorXd force = m.scaled_b0.col(j).cwiseAbs();
+    const double speed = m.scaled_shift.col(j).lpNorm<Eigen::Infinity>();
+    if (numbers_[static_cast<std::size_t>(j)] < 0) return speed == 0 && force.maxCoeff() <= no_effect * arm;
     const double all = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
-    return all > 0 && all * force <= no_effect * m.stiffness_size && all * speed <= no_effect * m.speed_size;
+    return all > 0 && (all * force.array() <= no_effect * m.held.array()).all() &&
+           all * speed <= no_effect * m.speed_size;
   }
 
   std::string output(Eigen::Index i) const { return signals_.outputs[static_cast<std::size_t>(i)].name; }
