@@ -283,7 +283,7 @@ TEST_CASE("a slider by keys: steps, fine, coarse, its ends, and a typed number")
 }
 
 TEST_CASE("after a drag of a slider with the mouse Tab is the mode again") {
-  Typist hand;
+  Robot hand({1280, 900});
   App& app = hand.app;
   const double stored = get_parameter(app.session.mechanism(), spin_speed);
   hand.drag(std::string("parameters/") + spin_speed, {0.4f, 0.5f}, {0.6f, 0.5f});
