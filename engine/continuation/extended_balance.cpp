@@ -379,12 +379,12 @@ ExtendedOutcome ExtendedBalance::correct(ExtendedState& state, const Eigen::Vect
   double previous = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 40; ++i) { // a double solution halves its error only
     outcome.residual = linearize(state);
-    if (!std::isfinite(outcome.residual)) return outcome;
+    if (!std::isfinite(outcome.residual)) break;
     const auto solved = solve(Rhs::balance, row, row.size() > 0 ? -row.dot(moved) : 0);
-    if (!solved) return outcome;
+    if (!solved) break;
     const Eigen::VectorXd& step = solved->scaled;
     const double length = step.lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(length) || length > 2) return outcome;
+    if (!std::isfinite(length) || length > 2) break;
     // Converged before: these are the last digits, as long as they still get smaller.
     if (outcome.converged && !(length < 0.5 * previous)) break;
     move(state, step);
