@@ -106,7 +106,7 @@ std::vector<RunColumn> columns_of(const Run& run) {
       for (int i = 0; i < 3 && track->size() == run.time.size(); ++i)
         columns.push_back({point_label(p.point) + prefix + "xyz"[i],
                            [values = track, i](std::size_t sample) { return (*values)[sample][i]; }});
-  if (!run.reactions.empty()) add_loads(columns, run);
+  if (!run.reactions.empty() || !run.bearings.empty() || !run.springs.empty()) add_loads(columns, run);
   return columns;
 }
 

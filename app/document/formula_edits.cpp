@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <unordered_map>
 #include <unordered_set>
@@ -23,10 +24,11 @@ namespace {
 // Sets every number whose expression has a value, and returns how many have none. (Laws of a state are among
 // these, before and after an edit.)
 std::size_t evaluate_what_can_be(Mechanism& mechanism) {
+  constexpr int most_passes = 64; // names rest on names
+  const Mechanism before = mechanism;
   std::size_t wrong = 0;
   bool moved = true;
-  const std::size_t most = given_numbers(mechanism).size();
-  for (std::size_t pass = 0; moved && pass <= most; ++pass) { // names rest on names
+  for (int pass = 0; moved && pass < most_passes; ++pass) {
     moved = false;
     wrong = 0;
     for (const GivenNumber& given : given_numbers(mechanism)) {
@@ -39,7 +41,9 @@ std::size_t evaluate_what_can_be(Mechanism& mechanism) {
       }
     }
   }
-  return wrong;
+  if (!moved) return wrong;
+  mechanism = before; // a circle of names has no values
+  return std::numeric_limits<std::size_t>::max();
 }
 
 // Takes an edit in spite of mistakes in expressions that were there before, if it makes no more of them; what

@@ -331,10 +331,14 @@ std::optional<BranchState> BranchFollower::beyond_stop(const BranchState& state)
   BranchState corner = state, next;
   corner.z.q[stop->q] = stop->limit + way * beside * problem.scaling.column[stop->v];
   int iterations = 0;
-  if (!continuation_.start(corner, way * Eigen::VectorXd::Unit(state.tangent.size(), stop->v)) ||
-      !continuation_.step(corner, first, next, iterations) || next.tangent.dot(corner.tangent) < 0.97 ||
-      (next.z.q[stop->q] - stop->limit) * way <= 0 || !holds_at_every_phase(next))
+  try {
+    if (!continuation_.start(corner, way * Eigen::VectorXd::Unit(state.tangent.size(), stop->v)) ||
+        !continuation_.step(corner, first, next, iterations) || next.tangent.dot(corner.tangent) < 0.97 ||
+        (next.z.q[stop->q] - stop->limit) * way <= 0 || !holds_at_every_phase(next))
+      return {};
+  } catch (const SceneError&) { // no mechanism can be made there
     return {};
+  }
   return next;
 }
 

@@ -85,9 +85,9 @@ class Diagram {
     }
     drop_folds_at_crossings();
     out_.status = Status::converged;
-    out_.message = std::to_string(out_.branches.size()) +
-                   (out_.branches.size() == 1 ? " branch" : " branches") + " through the present state" +
-                   (follower_.cancelled() ? "; cancelled." : ".");
+    const auto through = std::ranges::count(out_.branches, true, &ResponseBranch::connected);
+    out_.message = std::to_string(through) + (through == 1 ? " branch" : " branches") +
+                   " through the present state" + (follower_.cancelled() ? "; cancelled." : ".");
     for (const std::string& note : {kinks(), follower_.limits()})
       if (!note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 namespace flyball {
 namespace {
@@ -49,7 +50,6 @@ bool same_coordinates(const Run& a, const Run& b) {
                             }) &&
          a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size() &&
          a.bearings.size() == b.bearings.size() && a.gears.size() == b.gears.size() &&
-         a.springs.size() == b.springs.size() &&
          std::ranges::equal(a.points, b.points, {}, &PointTrack::point, &PointTrack::point) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::name, &MeasureTrack::name) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::unit, &MeasureTrack::unit);
@@ -106,6 +106,9 @@ Run joined(const Run& before, std::size_t last, const Run& after) {
   for (std::size_t i = 0; i < out.gears.size(); ++i)
     for (const auto track : {&GearTrack::a, &GearTrack::b})
       append(out.gears[i].*track, count, after.gears[i].*track);
+  const auto which = [](const SpringTrack& s) { return std::tuple(s.joint, s.index, s.between_points); };
+  if (!std::ranges::equal(out.springs, after.springs, {}, which, which))
+    out.springs.clear(); // others from here on
   for (std::size_t i = 0; i < out.springs.size(); ++i)
     for (const auto track : {&SpringTrack::spring, &SpringTrack::damper, &SpringTrack::stop})
       append(out.springs[i].*track, count, after.springs[i].*track);

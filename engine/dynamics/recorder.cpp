@@ -109,7 +109,7 @@ void Recorder::lay_out() {
 void Recorder::find_springs() {
   const System& system = model_->system;
   const Mechanism& m = model_->mechanism;
-  const bool first = run_.springs.empty();
+  const bool first = run_.time.empty();
   sprung_.clear();
   for (std::size_t i = 0; i < system.reported.size(); ++i) {
     const ReportedCoordinate& r = system.reported[i];
@@ -131,6 +131,9 @@ void Recorder::find_springs() {
     if (first)
       run_.springs.push_back({m.forces[index(system.springs[s].force)].name, 0, 1, true, false, {}, {}, {}});
   }
+  if (sprung_.size() == run_.springs.size()) return;
+  sprung_.clear(); // others than those that were recorded so far
+  run_.springs.clear();
 }
 
 void Recorder::name(const StopElement& stop, StopEvent& event) const {

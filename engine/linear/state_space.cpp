@@ -66,6 +66,7 @@ std::optional<StateSpace> without_unseen(const StateSpace& system) {
   PivotedQr qr;
   if (!qr.compute(a.transpose())) return {};
   const Eigen::Index rank = qr.rank(least_singular);
+  if (rank == n) return {}; // singular by a hair: nothing that could be left out
   const Eigen::MatrixXd q = qr.q(), left_out = q.rightCols(n - rank);
   if (((c * left_out).rowwise().norm().array() > hardly_felt * c.rowwise().norm().array()).any()) return {};
   PivotedQr moved;

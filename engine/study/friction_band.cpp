@@ -276,11 +276,11 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
       extent.high = std::max(extent.high, value);
     };
     for (const ResponseBranch& branch : diagram->branches)
-      std::ranges::for_each(branch.points, take);
+      if (branch.connected) std::ranges::for_each(branch.points, take);
     for (const SpecialPoint& special : diagram->special)
-      take(special.at);
+      if (diagram->branches[static_cast<std::size_t>(special.branch)].connected) take(special.at);
     for (const ResponseBranch& branch : diagram->branches)
-      take_crests(mechanism, share, branch.points, cancel, extent);
+      if (branch.connected) take_crests(mechanism, share, branch.points, cancel, extent);
     const double width = extent.high - extent.low;
     bool unbounded = false;
     for (const ResponsePoint* end : open) {

@@ -1,6 +1,7 @@
 #include "engine/study/friction_report.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
 
 #include <algorithm>
@@ -23,6 +24,7 @@ FrictionBand band_by_friction_alone(const Mechanism& mechanism, const std::atomi
   none.message = "There is no steady state without friction in it for a band to hang together with.";
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   if (frictions.size() != 1 || torques_drive(mechanism)) return none;
+  if (formula_at(mechanism, share_address(mechanism, frictions.front()))) return none;
   Mechanism pushed = mechanism;
   for (const double share : {-1., 1.}) {
     set_parameter(pushed, share_address(mechanism, frictions.front()), share);

@@ -136,7 +136,7 @@ void use_placing(const ViewContext& context, const ViewInput& input) {
   const Aim& aim = aim_at(context, input);
   const Aim from = tool.first.value_or(aim);
   const bool drawing = tool.first && input.moved;
-  const Vec3 axis = disc_axis(context, from);
+  const Vec3 axis = form == BodyForm::disc ? disc_axis(context, from) : Vec3::Unit(from.plane.normal);
   NewBody body = drawing ? drawn_out(input, form, from, aim, axis) : of_round_size(input, form, from);
   std::string mistake;
   const bool typing = !tool.typed.empty();
