@@ -162,7 +162,9 @@ class Diagram {
       other.find(problem, start, start, {.seconds = SolveOptions{}.search});
       others = other.others;
       if (other.holds) {
-        begun_ = "It begins at a steady state that a search found: the drawn pose leads to none.";
+        begun_ +=
+            (begun_.empty() ? "" : " ") +
+            std::string("It begins at a steady state that a search found: the drawn pose leads to none.");
         found = std::move(other.found);
         existence = other.existence;
       }
@@ -379,6 +381,7 @@ class Diagram {
     }
     for (const double value : values) {
       if (!going()) return;
+      follower_.untie();
       const Problem problem = follower_.problem_at(value);
       Workspace& w = follower_.workspace();
       Eigen::VectorXd start;

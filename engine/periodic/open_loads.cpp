@@ -32,7 +32,7 @@ void mark_open_loads(const Run& run, PeriodicState& out) {
   std::array<OpenForces, 3> at;
   for (std::size_t i = 0; i < at.size(); ++i)
     at[i] = open_at(run, static_cast<std::size_t>(moments[i] * static_cast<double>(run.time.size() - 1)), w);
-  // Of what is open at each.
+  // Of what is open at most of them.
   const auto mostly = [&](auto&& is_open) { return std::ranges::count_if(at, is_open) >= 2; };
   for (PeriodicReaction& reaction : out.reactions) {
     const auto joint = static_cast<std::size_t>(joint_index(model.mechanism, reaction.name));
