@@ -108,16 +108,18 @@ TEST_CASE("a value read off the map is told with the place it was computed at") 
 TEST_CASE("unstable places are hatched, which is neither read off nor written to a file") {
   Robot plain(wide);
   open_scene(plain.app.session, shipped_file("watt_governor"));
-  // A torque that turns along has no potential: then the answer is the state nearest to the drawn pose, and
+  // A force that turns along has no potential: then the answer is the state nearest to the drawn pose, and
   // that is unstable at high speeds.
-  edit(plain.app.session, "Twist", [](Mechanism& m, Selection&) {
-    Force twist;
-    twist.name = "twist";
-    twist.type = ForceType::torque;
-    twist.body = m.bodies.back().name;
-    twist.vector = {0, 0, 1e-9};
-    twist.frame = ForceFrame::body;
-    m.forces.push_back(twist);
+  edit(plain.app.session, "Follow", [](Mechanism& m, Selection&) {
+    const Body& link = m.bodies[static_cast<std::size_t>(body_index(m, "link1"))];
+    Force follower;
+    follower.name = "follower";
+    follower.type = ForceType::force;
+    follower.body = link.name;
+    follower.at = link.position;
+    follower.vector = {1e-9, 0, 0};
+    follower.frame = ForceFrame::body;
+    m.forces.push_back(follower);
   });
   plain.frames(3);
   plain.key('P');
