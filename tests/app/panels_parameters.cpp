@@ -222,6 +222,29 @@ struct TallDesk : Desk {
 
 } // namespace
 
+TEST_CASE("Tab from a new name opens the value beside it, though the row has another name then") {
+  Desk d("governor_parametric");
+  d.build();
+  select(d.app.session, {});
+  d.frames(2);
+  d.click("inspector/parameters/add");
+  d.frames(2);
+  d.click("inspector/parameter/p/name");
+  d.frames(2);
+  d.key('A', true);
+  d.type("q");
+  d.key(keys::tab);
+  d.frames(10);
+  CHECK(parameter_index(d.m(), "q") >= 0);
+  CHECK(d.app.ui.keyboard.at == "inspector/parameter/q");
+  CHECK(ImGui::GetIO().WantTextInput);
+  d.type("12 mm");
+  d.key(keys::enter);
+  d.frames(2);
+  CHECK(get_parameter(d.m(), "parameters.q") == 0.012);
+  CHECK(d.app.session.selection().parts.empty());
+}
+
 TEST_CASE("a shape's numbers take expressions and names as others do") {
   TallDesk d("governor_parametric");
   d.build();

@@ -69,7 +69,10 @@ void go(Ui& ui, const KeyStop& stop, bool type) {
   state.ring = true;
   state.reveal = 3;
   state.missing = 0;
-  if (type && stop.use == KeyUse::type) begin_typing(state, stop);
+  state.opening.clear();
+  if (!type || stop.use != KeyUse::type) return;
+  begin_typing(state, stop);
+  state.opening = stop.name;
 }
 
 void go_to_view(Ui& ui, bool ring) {
@@ -303,6 +306,7 @@ void find_another(Ui& ui) {
     if (region_of(stops[i]) == state.region && stops[i].use != KeyUse::aside &&
         (!nearest || i <= state.place))
       nearest = &stops[i];
+  if (nearest && state.opening == state.at && nearest->use == KeyUse::type) return go(ui, *nearest, true);
   if (nearest)
     state.at = nearest->name;
   else
@@ -340,6 +344,7 @@ void settle_keyboard(Ui& ui) {
   const std::vector<KeyStop>& stops = ui.widgets.stops;
   const auto found = std::ranges::find(stops, state.at, &KeyStop::name);
   if (state.at.empty()) return draw_view_ring(ui);
+  if (typed_stop(state)) state.opening.clear();
   if (found == stops.end()) {
     if (++state.missing > patience_to_draw) find_another(ui);
     return;

@@ -60,6 +60,7 @@ struct KeyboardState {
   // Characters typed before the field they are meant for has the keyboard, and the frames until it has.
   std::vector<ImWchar> ahead;
   int ahead_frames = 0;
+  std::string opening; // the field that is to be typed in, until it is: what was typed before may rename it
 };
 
 } // namespace flyball
