@@ -112,20 +112,16 @@ std::vector<DesignGoal> goals_now(const Session& session) {
   for (const Reaction& r : solution.reactions) {
     if (r.varying) continue;
     const std::string of = "(" + argument_text(r.joint) + ")";
-    if (!r.open.force.any())
-      goals.push_back({.key = "reaction" + of,
-                       .title = "force through " + r.joint,
-                       .quantity = "force " + r.joint,
-                       .unit = "N",
-                       .value = r.force.norm(),
-                       .expression = "reaction" + of});
-    if (!r.open.torque.any())
-      goals.push_back({.key = "moment" + of,
-                       .title = "torque through " + r.joint,
-                       .quantity = "torque " + r.joint,
-                       .unit = "N m",
-                       .value = r.torque.norm(),
-                       .expression = "moment" + of});
+    const auto add = [&](const char* function, const char* word, const char* unit, const Vec3& value) {
+      goals.push_back({.key = function + of,
+                       .title = word + (" through " + r.joint),
+                       .quantity = word + (" " + r.joint),
+                       .unit = unit,
+                       .value = value.norm(),
+                       .expression = function + of});
+    };
+    if (!r.open.force.any()) add("reaction", "force", "N", r.force);
+    if (!r.open.torque.any()) add("moment", "torque", "N m", r.torque);
   }
   return goals;
 }

@@ -110,6 +110,22 @@ class Diagram {
   bool room() const { return static_cast<int>(followed_.size()) < options_.max_branches; }
   bool going() const { return room() && !follower_.cancelled(); }
 
+  // At every phase of the drives.
+  bool holds(const Problem& problem, const Unknowns& z) {
+    return check_existence(problem, z.q, sample_phases(problem.system, problem.parameters, z.q),
+                           follower_.workspace())
+        .holds;
+  }
+
+  // Where solving leads from a start: by Newton-Raphson to the nearest, or to the answer.
+  std::optional<Unknowns> steady_state(const Problem& problem, const Eigen::VectorXd& start, bool nearest) {
+    Found found;
+    std::vector<double> history;
+    find_equilibrium(problem, start, nearest, false, follower_.workspace(), history, found);
+    if (found.status != Status::converged || !holds(problem, found.z)) return {};
+    return std::move(found.z);
+  }
+
   // Moves the beginning of the range to where a mechanism can be made first. Throws SceneError where none can
   // at any of many values.
   void begin_where_possible() {
@@ -212,15 +228,9 @@ class Diagram {
     std::optional<BranchState> out;
     try {
       const Problem problem = follower_.problem_at(value);
-      Workspace& w = follower_.workspace();
-      Found found;
-      std::vector<double> history;
-      find_equilibrium(problem, start, true, false, w, history, found);
-      if (found.status == Status::converged &&
-          check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q), w)
-              .holds &&
-          find_stability(factor_at(problem, found.z, w), false).neutral.empty())
-        out = follower_.begin(found.z, value, true);
+      const auto z = steady_state(problem, start, true);
+      if (z && find_stability(factor_at(problem, *z, follower_.workspace()), false).neutral.empty())
+        out = follower_.begin(*z, value, true);
     } catch (const SceneError&) { // no mechanism can be made there
     }
     follower_.problem_at(from_);
@@ -352,16 +362,9 @@ class Diagram {
 
   // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.
   void from_answer(const Eigen::VectorXd& start) {
-    const Problem problem = follower_.problem_at(from_);
-    Workspace& w = follower_.workspace();
-    Found found;
-    std::vector<double> history;
-    find_equilibrium(problem, start, false, false, w, history, found);
-    if (found.status != Status::converged ||
-        !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q), w)
-             .holds)
-      return;
-    const auto first = follower_.begin(found.z, from_, true);
+    const auto z = steady_state(follower_.problem_at(from_), start, false);
+    if (!z) return;
+    const auto first = follower_.begin(*z, from_, true);
     if (!first || known(*first)) return;
     add(follower_.follow(*first, out_.branches.empty()), true);
     out_.message.clear();
@@ -383,18 +386,11 @@ class Diagram {
       if (!going()) return;
       follower_.untie();
       const Problem problem = follower_.problem_at(value);
-      Workspace& w = follower_.workspace();
       Eigen::VectorXd start;
       drawn_configuration(problem.system, problem.parameters, start);
-      Found found;
-      std::vector<double> history;
-      find_equilibrium(problem, start, false, false, w, history, found);
-      if (found.status != Status::converged ||
-          !check_existence(problem, found.z.q, sample_phases(problem.system, problem.parameters, found.z.q),
-                           w)
-               .holds)
-        continue;
-      const auto forth = follower_.begin(found.z, value, true), back = follower_.begin(found.z, value, false);
+      const auto z = steady_state(problem, start, false);
+      if (!z) continue;
+      const auto forth = follower_.begin(*z, value, true), back = follower_.begin(*z, value, false);
       if (!forth || !back || known(*forth)) continue;
       add_both_ways(*forth, *back, false, false);
       const bool meets = std::ranges::any_of(crossings_, [&](const BranchState& crossing) {
@@ -415,8 +411,7 @@ class Diagram {
     Workspace& w = follower_.workspace();
     Unknowns z{configuration_of(problem, state.coordinates), Eigen::VectorXd::Zero(problem.system.rows)};
     if (!newton(problem, z, w, {}, nullptr).converged) return false;
-    if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters, z.q), w).holds)
-      return false;
+    if (!holds(problem, z)) return false;
     if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) follower_.expect_families();
     const auto forth = follower_.begin(z, state.parameter, true),
                back = follower_.begin(z, state.parameter, false);
@@ -524,8 +519,7 @@ class Diagram {
     for (const Unknowns& z : list.states) {
       if (!going()) return;
       follower_.problem_at(value);
-      if (!check_existence(problem, z.q, sample_phases(problem.system, problem.parameters, z.q), w).holds)
-        continue;
+      if (!holds(problem, z)) continue;
       // A family along a direction that nothing resists is no branch.
       if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);

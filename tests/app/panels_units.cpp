@@ -23,6 +23,15 @@ constexpr const char* speed = "joints.spin.drive.speed";
 constexpr DisplayUnits workshop{AngleUnit::degree, LengthUnit::millimetre, SpeedUnit::rpm};
 constexpr DisplayUnits si{AngleUnit::radian, LengthUnit::metre, SpeedUnit::radian};
 
+void enter_in(Robot& robot, const char* field, const std::string& text) {
+  robot.frames(60); // no double click
+  robot.click(field);
+  robot.key('A', true);
+  robot.type(text);
+  robot.key(key_enter);
+  robot.frames(2);
+}
+
 } // namespace
 
 TEST_CASE("shown and typed back, a number is the same to the last digit") {
@@ -221,14 +230,7 @@ TEST_CASE("an expression of numbers alone is in the unit of its field") {
   App& app = robot.app;
   choose_units(app.session, app.ui, app.view, workshop);
   set_mode(app.session, Mode::build);
-  const auto enter = [&](const char* field, const char* text) {
-    robot.frames(60); // no double click
-    robot.click(field);
-    robot.key('A', true);
-    robot.type(text);
-    robot.key(key_enter);
-    robot.frames(2);
-  };
+  const auto enter = [&](const char* field, const char* text) { enter_in(robot, field, text); };
   const auto collar = [&] { return app.session.document.stored().bodies.back(); };
   select(app.session, {{{PartKind::body, "collar"}}});
   robot.frames(3);
@@ -256,12 +258,7 @@ TEST_CASE("numbers have the same value with and without the sign of an expressio
   select(app.session, {{{PartKind::body, "collar"}}});
   robot.frames(3);
   const auto entered = [&](const char* field, const std::string& text) {
-    robot.frames(60); // no double click
-    robot.click(field);
-    robot.key('A', true);
-    robot.type(text);
-    robot.key(key_enter);
-    robot.frames(2);
+    enter_in(robot, field, text);
     return app.session.document.stored();
   };
   for (const char* text : {"10*pi", "10 + 5 mm", "1/2 in", "sqrt(2)", "-3", "2*0.1 m", "0.03"}) {
