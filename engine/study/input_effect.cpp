@@ -6,6 +6,7 @@ namespace flyball {
 namespace {
 
 constexpr double massless = 1e-13;    // beside the largest inertia
+constexpr double coupling = 1e-13;    // of an inertia between two coordinates, beside the mean of their own
 constexpr double consistent = 1e-9;   // what an equation may leave of what it is made of
 constexpr double same_balance = 1e-8; // a balance at another angle of a drive, likewise
 
@@ -103,11 +104,20 @@ InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd
       throw Refusal{"the balance depends on the angle that the speed adds up to"};
   }
   out.b0 = -(basis.transpose() * (out.force + l_.stiffness.topLeftCorner(n_, n_) * out.closing));
-  out.b1 = -(basis.transpose() * (l_.mass.topRightCorner(n_, drives_) * out.drive_rates +
-                                  l_.velocity.topLeftCorner(n_, n_) * out.closing));
-  out.shift = accelerate(out.b1);
-  if (!((mass * out.shift - out.b1).norm() <= consistent * out.b1.norm()))
+  out.b1 =
+      -(basis.transpose() * (carried(out.drive_rates) + l_.velocity.topLeftCorner(n_, n_) * out.closing));
+  if (!((shape_.vectors().leftCols(without_mass).transpose() * out.b1).norm() <= consistent * out.b1.norm()))
     throw Refusal{"its rate moves dampers of parts without mass"};
+  out.shift = accelerate(out.b1);
+  return out;
+}
+
+Eigen::VectorXd MotionAt::carried(const Eigen::VectorXd& drive_rates) const {
+  Eigen::VectorXd out = l_.mass.topRightCorner(n_, drives_) * drive_rates;
+  const Eigen::VectorXd own = l_.mass.diagonal().cwiseMax(0).cwiseSqrt();
+  const double turned = own.tail(drives_).dot(drive_rates.cwiseAbs());
+  for (Eigen::Index v = 0; v < n_; ++v)
+    if (std::abs(out[v]) <= coupling * own[v] * turned) out[v] = 0;
   return out;
 }
 

@@ -54,6 +54,9 @@ class MotionAt {
 
  private:
   Eigen::MatrixXd reduced(const Eigen::MatrixXd& m) const;
+  // What coordinates feel of the inertia that drives carry, as these change their speeds. Rounding, which is
+  // measured by the inertias M_ii M_jj >= M_ij^2 themselves, is zero: M^-1 makes much of it in a long chain.
+  Eigen::VectorXd carried(const Eigen::VectorXd& drive_rates) const;
   void find_multipliers();
 
   const MotionModel& model_;

@@ -88,11 +88,13 @@ class Builder {
     Eigen::MatrixXd b0, shift;                 // (k, m): b0 - (C + G) M^-1 b1, and M^-1 b1
     Eigen::MatrixXd explicit_velocity, explicit_stiffness, explicit_b; // the same times M^-1
     Eigen::MatrixXd c_position, c_rate, d;                             // (p, k), (p, m)
-    Eigen::VectorXd values, error, most;       // (p), see LinearModel::output_error; the most an output feels
-    Eigen::MatrixXd normalised;                // (p, 2k + m), of what directions are measured by
-    Eigen::MatrixXd scaled_b0, scaled_shift;   // (k, m), of radians and parts of the reach
-    double stiffness_size = 0, speed_size = 0; // scaled
-    Eigen::VectorXd held;                      // (k): what a radian or part of the reach takes of each
+    Eigen::VectorXd values, error, most; // (p), see LinearModel::output_error; the most an output feels
+    Eigen::MatrixXd normalised;          // (p, 2k + m), of what directions are measured by
+    Eigen::VectorXd sizes;               // (2k + m), of these, in the units of the model
+    // Of radians and parts of the reach: what inputs do, M^-1 not taken of it, which makes much of rounding.
+    Eigen::MatrixXd force, momentum;                              // (k, m): b0 and b1
+    double stiffness_size = 0, momentum_size = 0, speed_size = 0; // momentum: of M at that speed
+    Eigen::VectorXd held, inertia; // (k): what a radian or part of the reach takes of each
   };
 
   void check(const Solution& steady) const {
@@ -308,27 +310,33 @@ class Builder {
     std::vector<InputEffect> effects;
     out.b0.resize(k, inputs);
     out.shift.resize(k, inputs);
+    out.force.resize(k, inputs);
+    out.momentum.resize(k, inputs);
     Eigen::MatrixXd fed(k, inputs); // on the basis
     for (Eigen::Index j = 0; j < inputs; ++j) {
       effects.push_back(effect(motion, static_cast<std::size_t>(j), t));
       fed.col(j) = effects.back().b0 - motion.velocity * effects.back().shift;
       out.b0.col(j) = from.transpose() * fed.col(j);
       out.shift.col(j) = to * effects.back().shift;
+      out.force.col(j) = from.transpose() * effects.back().b0;
+      out.momentum.col(j) = from.transpose() * effects.back().b1;
     }
     Eigen::VectorXd column(k);
     for (Eigen::Index i = 0; i < k; ++i)
       column[i] = motion.column()[chosen_.entries[static_cast<std::size_t>(i)]];
-    out.scaled_b0 = column.asDiagonal() * out.b0;
-    out.scaled_shift = column.cwiseInverse().asDiagonal() * out.shift;
+    out.force = column.asDiagonal() * out.force;
+    out.momentum = column.asDiagonal() * out.momentum;
     out.stiffness_size = motion.stiffness.norm();
     out.held = (column.asDiagonal() * out.stiffness * column.asDiagonal()).rowwise().norm();
+    out.inertia = (column.asDiagonal() * out.mass * column.asDiagonal()).rowwise().norm();
     out.speed_size = speed_scale(motion);
+    out.momentum_size = out.speed_size * motion.mass.norm();
     for (Eigen::Index j = 0; j < inputs && k > 0; ++j) {
       if (!is_rounding(out, j, column.maxCoeff())) continue;
       InputEffect& e = effects[static_cast<std::size_t>(j)];
       for (Eigen::VectorXd* x : {&e.b0, &e.shift})
         x->setZero();
-      for (Eigen::MatrixXd* x : {&fed, &out.b0, &out.shift, &out.scaled_b0, &out.scaled_shift})
+      for (Eigen::MatrixXd* x : {&fed, &out.b0, &out.shift, &out.force, &out.momentum})
         x->col(j).setZero();
     }
     const auto accelerated = [&](const Eigen::MatrixXd& rhs) {
@@ -430,6 +438,7 @@ class Builder {
                       "does that vanishes there. Its components may have one."};
     refuse_rates(motion, effects, h, rate, out.most);
     out.normalised = normalised;
+    out.sizes = sizes;
     const Eigen::MatrixXd per_unit = normalised * sizes.asDiagonal();
     out.c_position = per_unit.leftCols(k);
     out.c_rate = per_unit.middleCols(k, k);
@@ -439,12 +448,12 @@ class Builder {
   // Whether nothing is left of what an input does but rounding: for all of a number, or one newton at the
   // longest arm.
   bool is_rounding(const Matrices& m, Eigen::Index j, double arm) const {
-    const Eigen::VectorXd force = m.scaled_b0.col(j).cwiseAbs();
-    const double speed = m.scaled_shift.col(j).lpNorm<Eigen::Infinity>();
-    if (numbers_[static_cast<std::size_t>(j)] < 0) return speed == 0 && force.maxCoeff() <= no_effect * arm;
+    const Eigen::ArrayXd force = m.force.col(j).cwiseAbs(), momentum = m.momentum.col(j).cwiseAbs();
+    if (numbers_[static_cast<std::size_t>(j)] < 0)
+      return momentum.isZero(0) && force.maxCoeff() <= no_effect * arm;
     const double all = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
-    return all > 0 && (all * force.array() <= no_effect * m.held.array()).all() &&
-           all * speed <= no_effect * m.speed_size;
+    return all > 0 && (all * force <= no_effect * m.held.array()).all() &&
+           (all * momentum <= no_effect * m.speed_size * m.inertia.array()).all();
   }
 
   std::string output(Eigen::Index i) const { return signals_.outputs[static_cast<std::size_t>(i)].name; }
@@ -501,7 +510,7 @@ class Builder {
   }
 
   // That inputs and outputs are the same at another phase. What is nothing beside the stiffness, or the
-  // speeds, is rounding.
+  // momenta, is rounding.
   void compare(const Matrices& a, const Matrices& b, double rounding_of_angles) const {
     const double alike = same_phase + rounding_of_angles;
     for (Eigen::Index j = 0; j < a.b0.cols() && a.b0.rows() > 0; ++j) {
@@ -511,8 +520,7 @@ class Builder {
         return (x.col(j) - y.col(j)).lpNorm<Eigen::Infinity>() >
                std::max(alike * x.col(j).lpNorm<Eigen::Infinity>(), floor);
       };
-      if (differs(a.scaled_b0, b.scaled_b0, a.stiffness_size) ||
-          differs(a.scaled_shift, b.scaled_shift, a.speed_size))
+      if (differs(a.force, b.force, a.stiffness_size) || differs(a.momentum, b.momentum, a.momentum_size))
         throw Refusal{"The input " + signals_.inputs[static_cast<std::size_t>(j)].name +
                       " acts otherwise at every phase of the drives: no constant matrices tell of it."};
     }
@@ -521,8 +529,10 @@ class Builder {
       const double size = alike * a.most[i];
       bool same =
           turn || std::abs(a.values[i] - b.values[i]) <= std::max(size, alike * std::abs(a.values[i]));
-      for (Eigen::Index s = 0; s < a.normalised.cols(); ++s)
-        same = same && std::abs(a.normalised(i, s) - b.normalised(i, s)) <= size;
+      for (Eigen::Index s = 0; s < a.normalised.cols(); ++s) {
+        const double measured = a.sizes[s] > 0 ? b.sizes[s] / a.sizes[s] : 1;
+        same = same && std::abs(a.normalised(i, s) - measured * b.normalised(i, s)) <= size;
+      }
       if (!same)
         throw Refusal{"The output " + output(i) +
                       " is another at every phase of the drives: no constant matrices tell of it."};

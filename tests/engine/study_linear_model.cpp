@@ -398,3 +398,28 @@ TEST_CASE("an input of which rounding alone is left acts on nothing", "[linear-m
   const LinearModel some = block(0.3 + 1e-6); // a weak one is none that is left out
   check_transfer(some, 0, 0, {0, 3}, (0.3 + 1e-6 - some.outputs[0].value) / (1e6 + 10 - 2 * 9.), 1e-6);
 }
+
+TEST_CASE("long chains have the linear models that their speed and torque ask for", "[linear-model]") {
+  Mechanism m = hanging_chain(100, 3); // M^-1 makes 1e10 of rounding
+  for (std::size_t i = 1; i < m.bodies.size(); ++i) {
+    m.bodies[i].position.x() += 0.05; // it hangs beside the axis, and leans outwards
+    m.joints[i].at.x() += 0.05;
+    m.joints[i] = dampened(sprung(m.joints[i], 1), 1e-3);
+  }
+  const auto at_speed = [&](double w) {
+    Mechanism turned = m;
+    turned.joints[0].coordinates[0].drive->speed = w;
+    const Solution steady = Analysis(turned).solve();
+    return std::ranges::find(steady.coordinates, "hinge1", &CoordinateSolution::joint)->value;
+  };
+  const LinearModel by_speed = linear_model(m, {"joints.spin.drive.speed"}, {"hinge1"});
+  REQUIRE(by_speed.gain);
+  const double step = 1e-4;
+  CHECK((*by_speed.gain)(0, 0) ==
+        Approx((at_speed(3 + step) - at_speed(3 - step)) / (2 * step)).epsilon(1e-6));
+
+  const LinearModel by_torque =
+      linear_model(with_torque(m, "6 N m - 2 N m s * rate(spin)"), {"torque(spin)"}, {"rate(spin)"});
+  REQUIRE(by_torque.gain);
+  CHECK((*by_torque.gain)(0, 0) == Approx(0.5).epsilon(1e-9));
+}
