@@ -11,8 +11,7 @@ namespace flyball {
 namespace {
 
 std::string label_of(const System& system, const CoordinateInfo& c) {
-  const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-  return coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+  return coordinate_label(system.tree_joints[static_cast<std::size_t>(c.tree_joint)], c.index);
 }
 
 } // namespace

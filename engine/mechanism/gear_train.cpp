@@ -10,9 +10,7 @@ namespace flyball {
 std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateReference coordinate) {
   std::vector<GearedCoordinate> train{{coordinate, 1}};
   const auto is_known = [&](CoordinateReference c) {
-    return std::ranges::any_of(train, [&](const GearedCoordinate& known) {
-      return known.at.joint == c.joint && known.at.coordinate == c.coordinate;
-    });
+    return std::ranges::find(train, c, &GearedCoordinate::at) != train.end();
   };
   for (std::size_t i = 0; i < train.size(); ++i) {
     const GearedCoordinate from = train[i];
@@ -22,8 +20,7 @@ std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateR
                             find_coordinate(mechanism, gear.joints[1])};
       const double ratio = gear_ratio(gear);
       for (const std::size_t end : {0u, 1u})
-        if (ends[end].joint == from.at.joint && ends[end].coordinate == from.at.coordinate &&
-            !is_known(ends[1 - end]))
+        if (ends[end] == from.at && !is_known(ends[1 - end]))
           train.push_back({ends[1 - end], from.ratio * (end == 0 ? ratio : 1 / ratio)});
     }
   }

@@ -357,6 +357,8 @@ int force_index(const Mechanism& mechanism, std::string_view name);
 struct CoordinateReference {
   int joint = -1;
   int coordinate = 0;
+
+  bool operator==(const CoordinateReference&) const = default;
 };
 CoordinateReference find_coordinate(const Mechanism& mechanism, std::string_view name);
 // "name", or "name.index" where the joint has several coordinates: the inverse of find_coordinate.

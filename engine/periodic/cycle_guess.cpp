@@ -216,9 +216,7 @@ SettledDrives settled_drives(const Flow& flow, const FlowState& state, double ra
   for (const DriveTorqueElement& drive : model.system.torques) {
     if (drive.implied) continue;
     const Link& link = model.system.links[static_cast<std::size_t>(drive.link)];
-    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    const std::string drive_at =
-        coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at ";
+    const std::string drive_at = coordinate_label(model.system, link) + " at ";
     const bool angle = link.type == LinkType::revolute;
     const double speed = state.u[link.v];
     if (std::abs(speed) > standing * rate * model.scaling.column[link.v]) {
@@ -280,9 +278,7 @@ std::string quasi_periodic_message(const Flow& flow, const AlikeAngles& alike,
     const bool named =
         alike.drives.empty() ? drives : std::ranges::find(alike.drives, link.v) != alike.drives.end();
     if (!named || link.type != LinkType::revolute) continue;
-    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    turning.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " at " +
-                      rounded_text(speeds[link.v], 6) + " rad/s");
+    turning.push_back(coordinate_label(system, link) + " at " + rounded_text(speeds[link.v], 6) + " rad/s");
   }
   return "The motion from the drawn pose settles, but does not repeat itself within three turns: it depends "
          "on "

@@ -67,8 +67,7 @@ DrivePeriod drive_period(const MotionModel& model) {
     const Link& link = model.system.links[l];
     const double speed = model.parameters.links[l].speed;
     if (speed == 0) continue;
-    const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    out.names.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
+    out.names.push_back(coordinate_label(model.system, link));
     if (link.type != LinkType::revolute) {
       out.trouble = out.names.back() + " slides on and on: no motion with it comes back.";
       out.speeds.clear();
@@ -415,7 +414,7 @@ class Search {
       const int count = link.type == LinkType::spherical ? 3 : 1;
       if (link.v < 0 || most < link.v || most >= link.v + count) continue;
       const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-      return count > 1 ? joint.name : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+      return count > 1 ? joint.name : coordinate_label(joint, c.index);
     }
     return {};
   }

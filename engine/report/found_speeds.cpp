@@ -1,6 +1,7 @@
 #include "engine/report/found_speeds.hpp"
 
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/report.hpp"
@@ -15,23 +16,11 @@
 namespace flyball {
 namespace {
 
-Coordinate& driven_coordinate(Mechanism& mechanism, const System& system, const Link& link) {
-  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-  return mechanism.joints[static_cast<std::size_t>(tree.joint)]
-      .coordinates[static_cast<std::size_t>(link.coordinate)];
-}
-
-std::string name_of_drive(const System& system, const Link& link) {
-  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-  return coordinate_count(tree.type) == 1 ? tree.name : tree.name + "." + std::to_string(link.coordinate);
-}
-
 // The link of another system, in which other joints may be cut, that is this coordinate; -1: none.
 int same_link(const System& system, const Link& link, const System& other) {
-  const TreeJoint& tree = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
+  const CoordinateReference at = reference_to(system, link);
   const auto found = std::ranges::find_if(other.links, [&](const Link& l) {
-    return l.tree_joint >= 0 && l.coordinate == link.coordinate && l.type == link.type &&
-           other.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint == tree.joint;
+    return l.tree_joint >= 0 && l.type == link.type && reference_to(other, l) == at;
   });
   return found == other.links.end() ? -1 : static_cast<int>(found - other.links.begin());
 }
@@ -48,7 +37,7 @@ Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, c
   for (const DriveTorqueElement& torque : system.torques) {
     if (torque.implied) continue;
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
-    Drive& drive = *driven_coordinate(out, system, link).drive;
+    Drive& drive = *coordinate_of(out, reference_to(system, link)).drive;
     drive.torque.reset();
     drive.load.reset();
     drive.keeps = DriveKeeps::speed;
@@ -148,10 +137,9 @@ std::string missing_speed_message(const Mechanism& mechanism, const Problem& pro
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
     if (system.torques[i].keeps_momentum || system.torques[i].implied) continue;
     const Link& link = system.links[static_cast<std::size_t>(system.torques[i].link)];
-    const std::string name = name_of_drive(system, link);
-    const auto taken = std::ranges::find_if(there.drive_torques, [&](const DriveTorque& d) {
-      return (d.count == 1 ? d.joint : d.joint + "." + std::to_string(d.index)) == name;
-    });
+    const std::string name = coordinate_label(system, link);
+    const auto taken = std::ranges::find_if(
+        there.drive_torques, [&](const DriveTorque& d) { return coordinate_label(d) == name; });
     if (taken == there.drive_torques.end()) continue;
     const bool turns = link.type == LinkType::revolute;
     const std::string unit = turns ? " N m" : " N";
@@ -174,7 +162,7 @@ std::string undetermined_speed_message(const Mechanism& mechanism, const System&
   for (const DriveTorqueElement& torque : system.torques) {
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
     if (std::ranges::find(neutral, link.v) == neutral.end()) continue;
-    names.push_back(name_of_drive(system, link));
+    names.push_back(coordinate_label(system, link));
     implied = implied || torque.implied;
   }
   if (names.empty()) return {};

@@ -208,9 +208,7 @@ class Attempt {
   bool plays(const std::string& name) const {
     const CoordinateReference named = find_coordinate(mechanism_, name);
     for (std::size_t i = 0; i < frictions_.size(); ++i)
-      if (parts_[i] != Part::none && frictions_[i].joint == named.joint &&
-          frictions_[i].coordinate == named.coordinate)
-        return true;
+      if (parts_[i] != Part::none && frictions_[i] == named) return true;
     return false;
   }
 
@@ -518,10 +516,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   SolveOptions inner = options;
   std::erase_if(inner.start, [&](const auto& named) { // these stand as drawn
-    const CoordinateReference at = find_coordinate(mechanism, named.first);
-    const auto found = std::ranges::find_if(frictions, [&](CoordinateReference f) {
-      return f.joint == at.joint && f.coordinate == at.coordinate;
-    });
+    const auto found = std::ranges::find(frictions, find_coordinate(mechanism, named.first));
     return found != frictions.end() &&
            parts[place(static_cast<int>(found - frictions.begin()))] == Part::holds;
   });

@@ -248,9 +248,7 @@ class HoldingAttempt {
     Coordinates rest;
     for (const auto& [name, value] : at_) {
       const CoordinateReference c = find_coordinate(mechanism_, name);
-      const bool is_held = std::ranges::any_of(independent_, [&](const CoordinateReference& f) {
-        return f.joint == c.joint && f.coordinate == c.coordinate;
-      });
+      const bool is_held = std::ranges::find(independent_, c) != independent_.end();
       // Without friction of its own a joint may close a loop, and then follows; so it does behind a gear.
       const int there = c.joint >= 0 ? held.find(still.mechanism, c) : -1;
       const bool follows = c.joint >= 0 && (there < 0 || moved_by_gears(held, there));

@@ -26,8 +26,7 @@ Owner owner_of(const System& system, const Mechanism& mechanism, const Kink& kin
   case Kink::Of::drive: {
     const Link& link = system.links[static_cast<std::size_t>(system.torques[kink.entry].link)];
     const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-    return {coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)),
-            is_angle(joint.type, link.coordinate)};
+    return {coordinate_label(joint, link.coordinate), is_angle(joint.type, link.coordinate)};
   }
   case Kink::Of::coordinate:
   case Kink::Of::stop: break;

@@ -107,11 +107,8 @@ std::vector<std::string> notes(const System& system, const Mechanism& mechanism)
                     ", which turns at a constant rate in the steady state.");
   std::vector<std::string> implied;
   for (const DriveTorqueElement& torque : system.torques)
-    if (torque.implied) {
-      const Link& link = system.links[static_cast<std::size_t>(torque.link)];
-      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-      implied.push_back(coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)));
-    }
+    if (torque.implied)
+      implied.push_back(coordinate_label(system, system.links[static_cast<std::size_t>(torque.link)]));
   if (!implied.empty())
     all.push_back("Loops and gears make " +
                   word_list(std::vector<std::string_view>(implied.begin(), implied.end()), "and") +
@@ -230,10 +227,9 @@ std::string open_loop_message(const ReportInput& in) {
 }
 
 std::string rubbing_message(const ReportInput& in) {
-  const Link& link = in.problem.system.links[static_cast<std::size_t>(in.existence.rubs)];
-  const TreeJoint& joint = in.problem.system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-  const std::string name = coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type));
-  return "No steady state was found in which dry friction holds " + name +
+  const System& system = in.problem.system;
+  return "No steady state was found in which dry friction holds " +
+         coordinate_label(system, system.links[static_cast<std::size_t>(in.existence.rubs)]) +
          ", which a torque turns, or slips at a constant rate.";
 }
 

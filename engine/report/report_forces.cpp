@@ -335,10 +335,8 @@ Unknowns with_reported_multipliers(const Problem& problem, const Eigen::VectorXd
 // Ends come in the order of the chain from the motor, or of the gear.
 GearEnds ends_in_order(const Mechanism& mechanism, const System& system, const GearForces& gear) {
   if (gear.a.link < 0) return {gear.a, gear.b};
-  const Link& link = system.links[at(gear.a.link)];
-  const CoordinateReference first = find_coordinate(mechanism, mechanism.joints[at(gear.joint)].joints[0]);
-  const bool in_order =
-      first.joint == system.tree_joints[at(link.tree_joint)].joint && first.coordinate == link.coordinate;
+  const bool in_order = reference_to(system, system.links[at(gear.a.link)]) ==
+                        find_coordinate(mechanism, mechanism.joints[at(gear.joint)].joints[0]);
   return in_order ? GearEnds{gear.a, gear.b} : GearEnds{gear.b, gear.a};
 }
 

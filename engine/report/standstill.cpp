@@ -21,10 +21,6 @@ namespace {
 constexpr std::array<std::string_view, 2> torque_and_load_keys{"torque", "load"};
 constexpr std::size_t most_that_may_rest = 3;
 
-bool same(CoordinateReference a, CoordinateReference b) {
-  return a.joint == b.joint && a.coordinate == b.coordinate;
-}
-
 void drive_at_rest(Coordinate& c) {
   c = {.drawn = c.drawn, .spring = {}, .damping = 0, .stop = {}, .friction = {}, .drive = Drive{}};
 }
@@ -86,8 +82,7 @@ std::string without_standing(const Mechanism& mechanism, std::string_view law,
                              std::span<const Standing> standing) {
   return with_calls_replaced(
       mechanism, law, [&](const ResultCall& call, CoordinateReference asked) -> std::optional<std::string> {
-        const auto found =
-            std::ranges::find_if(standing, [&](const Standing& x) { return same(x.at, asked); });
+        const auto found = std::ranges::find_if(standing, [&](const Standing& x) { return x.at == asked; });
         if (found == standing.end()) return std::nullopt;
         return standing_number(mechanism, call.result, *found);
       });
@@ -178,7 +173,7 @@ class Stopper {
 
  private:
   void add_standing(CoordinateReference at) {
-    if (std::ranges::none_of(standing_, [&](const Standing& x) { return same(x.at, at); }))
+    if (std::ranges::none_of(standing_, [&](const Standing& x) { return x.at == at; }))
       standing_.push_back({at, coordinate_of(mechanism_, at).drawn});
   }
 
@@ -188,7 +183,7 @@ class Stopper {
       for (const GearedCoordinate& geared : gear_train(mechanism_, x.at)) {
         if (has_torque(mechanism_, geared.at) &&
             std::ranges::none_of(out_.carried,
-                                 [&](const TorqueAtRest& known) { return same(known.at, geared.at); }))
+                                 [&](const TorqueAtRest& known) { return known.at == geared.at; }))
           out_.carried.push_back({.at = geared.at, .held = x.at, .ratio = geared.ratio});
         add_standing(geared.at);
       }
@@ -229,9 +224,9 @@ class Stopper {
       moving[k] = with_calls_replaced(
           mechanism_, law->text,
           [&](const ResultCall& call, CoordinateReference asked) -> std::optional<std::string> {
-            if (call.result == Result::rate && same(asked, at)) return std::string(damper_variable);
+            if (call.result == Result::rate && asked == at) return std::string(damper_variable);
             const auto found =
-                std::ranges::find_if(standing_, [&](const Standing& x) { return same(x.at, asked); });
+                std::ranges::find_if(standing_, [&](const Standing& x) { return x.at == asked; });
             return standing_number(mechanism_, call.result, *found);
           });
     }
@@ -284,9 +279,8 @@ std::vector<std::vector<CoordinateReference>> may_rest(const Mechanism& mechanis
       const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
       if (!has_torque(mechanism, at)) continue;
       const std::vector<GearedCoordinate> train = gear_train(mechanism, at);
-      if (std::ranges::none_of(train, [&](const GearedCoordinate& x) {
-            return std::ranges::any_of(held, [&](CoordinateReference h) { return same(h, x.at); });
-          }))
+      if (std::ranges::none_of(
+              train, [&](const GearedCoordinate& x) { return std::ranges::find(held, x.at) != held.end(); }))
         drives.push_back(at);
     }
   std::vector<std::vector<CoordinateReference>> sets{{}};
@@ -319,7 +313,7 @@ std::optional<double> carried_torque(const Standstill& still, CoordinateReferenc
                                      std::span<const MeasureSolution> measures) {
   double sum = 0;
   for (const TorqueAtRest& torque : still.carried) {
-    if (!same(torque.held, held)) continue;
+    if (torque.held != held) continue;
     const std::optional<std::array<double, 2>> value = values_at_rest(torque, measures);
     if (!value) return std::nullopt;
     sum += torque.ratio * ((*value)[0] - (*value)[1]);

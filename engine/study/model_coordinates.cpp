@@ -59,8 +59,8 @@ LinearModel::State name_state(const MotionModel& model, int v, bool rate) {
     if (link.v < 0 || (ball ? link.v + c.index - link.coordinate : link.v) != v) continue;
     LinearModel::State out;
     const TreeJoint& joint = model.system.tree_joints[static_cast<std::size_t>(c.tree_joint)];
-    out.name = ball ? joint.name + ".turn." + "xyz"[c.index - link.coordinate]
-                    : coordinate_label(joint.name, c.index, coordinate_count(joint.type));
+    out.name =
+        ball ? joint.name + ".turn." + "xyz"[c.index - link.coordinate] : coordinate_label(joint, c.index);
     out.unit = c.angle ? "rad" : "m";
     if (rate) {
       out.name += ".rate";

@@ -215,9 +215,7 @@ class Compiler {
     for (std::size_t d = 0; d < s_.drives.size(); ++d)
       for (std::size_t e = 0; e < s_.drives.size(); ++e) {
         const Link& l = link(s_.drives[e].link);
-        const TreeJoint& t = s_.tree_joints[static_cast<std::size_t>(l.tree_joint)];
-        if (s_.drives[e].gears.empty() && t.joint == motors_[d].joint &&
-            l.coordinate == motors_[d].coordinate)
+        if (s_.drives[e].gears.empty() && reference_to(s_, l) == motors_[d])
           s_.drives[d].motor = static_cast<int>(e);
       }
   }

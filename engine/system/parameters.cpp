@@ -162,10 +162,8 @@ class Binder {
   }
 
   bool is_end(const Joint& g, int end, const DrivenCoordinate& d) const {
-    const Link& l = s_.links[static_cast<std::size_t>(d.link)];
-    const CoordinateReference r = find_coordinate(m_, g.joints[static_cast<std::size_t>(end)]);
-    return r.joint == s_.tree_joints[static_cast<std::size_t>(l.tree_joint)].joint &&
-           r.coordinate == l.coordinate;
+    return reference_to(s_, s_.links[static_cast<std::size_t>(d.link)]) ==
+           find_coordinate(m_, g.joints[static_cast<std::size_t>(end)]);
   }
 
   void bind_speeds() {
@@ -180,11 +178,11 @@ class Binder {
         continue;
       }
       N ratio = 1, value = read_(c.drawn);
-      CoordinateReference at{s_.tree_joints[static_cast<std::size_t>(m.tree_joint)].joint, m.coordinate};
+      CoordinateReference at = reference_to(s_, m);
       for (int gear : d.gears) {
         const Joint& g = joint(gear);
         const CoordinateReference a = find_coordinate(m_, g.joints[0]), b = find_coordinate(m_, g.joints[1]);
-        if (a.joint == at.joint && a.coordinate == at.coordinate) {
+        if (a == at) {
           ratio *= gear_ratio(g, read_);
           value = gear_ratio(g, read_) * value + gear_offset(g);
           at = b;

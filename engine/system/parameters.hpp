@@ -232,7 +232,6 @@ struct BasicParameters {
 };
 
 using CoordinateForce = BasicCoordinateForce<double>;
-using CoordinateForces = BasicCoordinateForces<double>;
 using LinkParameters = BasicLinkParameters<double>;
 using Offset = BasicOffset<double>;
 using PointSpringParameters = BasicPointSpringParameters<double>;

@@ -11,6 +11,7 @@
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/mechanism.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/system/division.hpp"
 
 #include <memory>
@@ -242,6 +243,18 @@ enum class TorqueDriven {
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).
 System compile(const Mechanism& mechanism, const CutChoice& choice = {},
                TorqueDriven torque_driven = TorqueDriven::turns_steadily);
+
+// Which coordinate a link's first is.
+inline CoordinateReference reference_to(const System& system, const Link& link) {
+  return {system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint, link.coordinate};
+}
+// What it is called (mechanism/text.hpp).
+inline std::string coordinate_label(const TreeJoint& joint, int index) {
+  return coordinate_label(joint.name, index, coordinate_count(joint.type));
+}
+inline std::string coordinate_label(const System& system, const Link& link) {
+  return coordinate_label(system.tree_joints[static_cast<std::size_t>(link.tree_joint)], link.coordinate);
+}
 
 // Whether the link's coordinate turns at a constant speed that is among the unknowns.
 inline bool finds_speed(const Link& link) {
