@@ -7,7 +7,8 @@
 
 namespace flyball {
 
-std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateReference coordinate) {
+std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateReference coordinate,
+                                         const Joint* without) {
   std::vector<GearedCoordinate> train{{coordinate, 1}};
   const auto is_known = [&](CoordinateReference c) {
     return std::ranges::find(train, c, &GearedCoordinate::at) != train.end();
@@ -15,7 +16,7 @@ std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateR
   for (std::size_t i = 0; i < train.size(); ++i) {
     const GearedCoordinate from = train[i];
     for (const Joint& gear : mechanism.joints) {
-      if (gear.type != JointType::gear) continue;
+      if (gear.type != JointType::gear || &gear == without) continue;
       const std::array ends{find_coordinate(mechanism, gear.joints[0]),
                             find_coordinate(mechanism, gear.joints[1])};
       const double ratio = gear_ratio(gear);

@@ -12,7 +12,8 @@ struct GearedCoordinate {
   double ratio = 1; // its rate over that of the coordinate that was asked for
 };
 
-// All coordinates that gears tie to one, each once, itself first.
-std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateReference coordinate);
+// All coordinates that gears tie to one, each once, itself first; `without`: as if this gear were not there.
+std::vector<GearedCoordinate> gear_train(const Mechanism& mechanism, CoordinateReference coordinate,
+                                         const Joint* without = nullptr);
 
 } // namespace flyball

@@ -6,6 +6,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/referred_to.hpp"
@@ -219,19 +220,58 @@ class Attempt {
     return std::abs(most) > std::abs(least) ? most : least;
   }
 
+  // What a spring of a coordinate gives along it as drawn.
+  double of_spring(CoordinateReference at) const {
+    const Coordinate& c = coordinate_of(mechanism_, at);
+    if (!c.spring) return 0;
+    return -elastic_force(mechanism_, joint_of(mechanism_, at), at.coordinate, c.drawn - c.spring->free)
+                .force;
+  }
+
   // What springs of geared coordinates give along a held one as drawn: they are on driven coordinates, which
   // no balance has. Nothing where there are stops, too.
   std::optional<double> of_geared_springs(CoordinateReference held) const {
     double sum = 0;
     for (const GearedCoordinate& geared : gear_train(mechanism_, held)) {
-      const Coordinate& c = coordinate_of(mechanism_, geared.at);
-      if (c.stop) return std::nullopt;
-      if (c.spring)
-        sum -= geared.ratio * elastic_force(mechanism_, joint_of(mechanism_, geared.at), geared.at.coordinate,
-                                            c.drawn - c.spring->free)
-                                  .force;
+      if (coordinate_of(mechanism_, geared.at).stop) return std::nullopt;
+      sum += geared.ratio * of_spring(geared.at);
     }
     return sum;
+  }
+
+  // Gears bear what torques and springs beyond them, seen from what is held, give: no balance has these.
+  // False where a torque is not known.
+  bool add_to_gears(const Standstill& still, Solution& s) const {
+    for (GearReaction& r : s.gears) {
+      const Joint& gear = *std::ranges::find(mechanism_.joints, r.joint, &Joint::name);
+      const CoordinateReference a = find_coordinate(mechanism_, gear.joints[0]),
+                                b = find_coordinate(mechanism_, gear.joints[1]);
+      const std::vector<GearedCoordinate> at_a = gear_train(mechanism_, a, &gear),
+                                          at_b = gear_train(mechanism_, b, &gear);
+      const auto holds = [&](const GearedCoordinate& x) {
+        return std::ranges::any_of(held(), [&](CoordinateReference other) { return other == x.at; });
+      };
+      const bool from_a = std::ranges::any_of(at_a, holds), from_b = std::ranges::any_of(at_b, holds);
+      r.nonunique = r.nonunique || (from_a && from_b); // each holds any share
+      if (r.nonunique || from_a == from_b) continue;
+      double beyond = 0; // along the farther end
+      for (const GearedCoordinate& x : from_a ? at_b : at_a) {
+        beyond += x.ratio * of_spring(x.at);
+        for (const TorqueAtRest& torque : still.carried) {
+          if (torque.at != x.at) continue;
+          const std::optional<std::array<double, 2>> value = values_at_rest(torque, s.measures);
+          if (!value) return false;
+          beyond += x.ratio * ((*value)[0] - (*value)[1]);
+        }
+      }
+      const double ratio = gear_ratio(gear); // of the rate of b over that of a
+      const double before = r.b;
+      r.b -= from_a ? beyond : -beyond / ratio;
+      r.a = -ratio * r.b;
+      const Vec3 axis = turned(joint_of(mechanism_, b), s) * joint_of(mechanism_, b).axis.normalized();
+      (r.angle_b ? r.torque : r.force) += (r.b - before) * axis;
+    }
+    return true;
   }
 
   // Whether it stands still as a fixed joint: see Standstill.
@@ -257,17 +297,20 @@ class Attempt {
     }
   }
 
+  // A joint's parent from the drawn pose.
+  Mat3 turned(const Joint& joint, const Solution& s) const {
+    const auto parent = std::ranges::find(mechanism_.bodies, joint.bodies[0], &Body::name);
+    if (parent == mechanism_.bodies.end()) return Mat3::Identity();
+    return (s.poses[place(static_cast<int>(parent - mechanism_.bodies.begin()))].rotation *
+            parent->rotation.normalized().conjugate())
+        .toRotationMatrix();
+  }
+
   // What holds one. Nothing where that changes as the drives turn.
   std::optional<double> of_fixed(const Joint& joint, const Solution& s) const {
     const auto reaction = std::ranges::find(s.reactions, joint.name, &Reaction::joint);
     if (reaction == s.reactions.end() || reaction->varying) return {};
-    const auto parent = std::ranges::find(mechanism_.bodies, joint.bodies[0], &Body::name);
-    Mat3 turned = Mat3::Identity();
-    if (parent != mechanism_.bodies.end())
-      turned = (s.poses[place(static_cast<int>(parent - mechanism_.bodies.begin()))].rotation *
-                parent->rotation.normalized().conjugate())
-                   .toRotationMatrix();
-    return holding_force(joint, *reaction, turned);
+    return holding_force(joint, *reaction, turned(joint, s));
   }
 
   // Puts what was found of drives into the words of friction. False where it is not found what they give.
@@ -338,7 +381,7 @@ class Attempt {
         s.drive_torques.erase(drive);
       }
     }
-    if (!tell_drives_at_rest(still, s)) return false;
+    if (!add_to_gears(still, s) || !tell_drives_at_rest(still, s)) return false;
     for (CoordinateSolution& c : s.coordinates) // what closes a loop with those that are held stands
       if (c.dependent && c.speed && std::abs(*c.speed) <= c.speed_error) {
         c.driven = false;

@@ -486,6 +486,42 @@ TEST_CASE("what holding takes of a spring behind a gear") {
   }
 }
 
+TEST_CASE("a gear bears what torques and springs beyond it give where friction holds the train") {
+  const bool nut_first = GENERATE(false, true);
+  CAPTURE(nut_first);
+  const std::string ends = nut_first ? R"("gear", "joints": ["nut", "spin"], "ratio": 628.31853071795865)"
+                                     : R"("gear", "kind": "screw", "joints": ["spin", "nut"], "lead": 0.01)";
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Screw", "gravity": [0, -9.81, 0],
+    "bodies": [{"name": "A", "mass": 1, "position": [0, 0, 0]},
+      {"name": "N", "mass": 5, "position": [0, 0.3, 0], "rotation": [0.8, 0, 0, 0.6]},
+      {"name": "W", "mass": 1, "position": [1, 0, 0]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 0, 0],
+        "axis": [0, 1, 0], "drive": {"torque": "=0.05 N m - 0.4 N m s*rate(spin)", "speed": 0.2}},
+      {"name": "nut", "type": "prismatic", "bodies": ["ground", "N"], "at": [0, 0.3, 0], "axis": [0, 1, 0],
+        "friction": {"limit": 45}},
+      {"name": "wheel", "type": "revolute", "bodies": ["ground", "W"], "at": [1, 0, 0], "axis": [0, 1, 0],
+        "spring": {"stiffness": 2, "free": -0.01}},
+      {"name": "g", "type": )json" +
+                                 ends +
+                                 R"json(},
+      {"name": "h", "type": "gear", "joints": ["spin", "wheel"], "ratio": -3}]})json");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  REQUIRE(s.gears.size() == 2);
+  const double per_turn = 2 * std::numbers::pi / 0.01;
+  const double of_wheel = 2 * -0.01;           // of the spring, along the wheel
+  const double at_spin = 0.05 + -3 * of_wheel; // that and the torque
+  const GearReaction& screw = s.gears[0];
+  CHECK_THAT(nut_first ? screw.b : screw.a, WithinRel(-at_spin, 1e-12));
+  CHECK_THAT(nut_first ? screw.a : screw.b, WithinRel(at_spin * per_turn, 1e-12));
+  CHECK((nut_first ? screw.torque - Vec3(0, -at_spin, 0) : screw.force - Vec3(0, at_spin * per_turn, 0))
+            .norm() < 1e-12);
+  CHECK_THAT(s.gears[1].b, WithinRel(-of_wheel, 1e-12));
+  CHECK_THAT(s.gears[1].a, WithinRel(-3 * of_wheel, 1e-12));
+  CHECK_THAT(*s.frictions.at(0).value, WithinRel(5 * 9.81 - at_spin * per_turn, 1e-12));
+}
+
 TEST_CASE("friction that cannot be is refused") {
   const auto mistake = [](const std::string& friction, const std::string& extra = "") {
     try {
