@@ -94,10 +94,14 @@ std::string add_lowest_eigenvalues(const Problem& problem, const Unknowns& z, in
     out.stable = false;
     out.reason = StabilityReason::unstable;
   }
-  if (eigenvalues.size() > static_cast<std::size_t>(count))
-    eigenvalues.resize(static_cast<std::size_t>(count));
   out.eigenvalues = std::move(eigenvalues);
   return {};
+}
+
+// Of a large mechanism as many eigenvalues as are asked for.
+void keep_asked_for(const Problem& problem, int modes, Stability& stability) {
+  if (problem.system.nv > largest_for_eigenvalues && modes > 0 && stability.eigenvalues)
+    keep_nearest(*stability.eigenvalues, static_cast<std::size_t>(modes));
 }
 
 // Along tangents of singular loops more moves than can: what grows there need not grow, and nothing swings
@@ -391,9 +395,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
     } else if (!stability.eigenvalues) { // only of a minimum the sign is found without them
       stability = stability_of(problem, steady, true, options.modes);
     }
-    if (options.modes > 0 && stability.eigenvalues &&
-        stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
-      stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+    keep_asked_for(problem, options.modes, stability);
   }
   if (open && stability.reason != StabilityReason::neutral) leave_verdict_open(steady, stability);
   if (options.details) {
@@ -506,6 +508,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     std::string without_modes;
     if (by_pivots && options.modes > 0 && options.details && !varies)
       without_modes = add_lowest_eigenvalues(problem, found.z, options.modes, steady.elsewhere(), stability);
+    if (!varies) keep_asked_for(problem, options.modes, stability);
     // A family along a direction that nothing resists is one entry.
     Potential potential;
     if (s.system.conservative)
@@ -587,7 +590,10 @@ std::vector<VibrationMode> Analysis::modes(int count) {
   if (!s.settled || s.steady.error.singular_loops) return {};
   const Problem problem{s.system, s.parameters, s.scaling, nullptr, s.system.kkt_form};
   const Unknowns& z = s.steady.found.z;
-  if (!pivots_decide(problem)) return find_modes(s.steady.factored(by_matrices(problem)));
+  if (!pivots_decide(problem))
+    return s.system.nv > largest_for_eigenvalues
+               ? find_modes(s.steady.factored(by_matrices(problem)), static_cast<std::size_t>(count))
+               : find_modes(s.steady.factored(by_matrices(problem)));
   if (may_vary(problem, z, s.steady.phases, s.steady.elsewhere())) return {};
   return find_lowest_modes(problem, z, count, s.steady.elsewhere()).modes;
 }

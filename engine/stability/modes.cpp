@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 namespace flyball {
@@ -148,13 +149,25 @@ const ModeAmplitude* VibrationMode::leading() const {
   return most;
 }
 
+void keep_nearest(std::vector<Complex>& eigenvalues, std::size_t most) {
+  if (eigenvalues.size() <= most) return;
+  std::vector<std::size_t> nearest(eigenvalues.size());
+  std::iota(nearest.begin(), nearest.end(), std::size_t{0});
+  std::ranges::stable_sort(nearest, {}, [&](std::size_t i) { return std::abs(eigenvalues[i]); });
+  nearest.resize(most);
+  std::ranges::sort(nearest);
+  for (std::size_t i = 0; i < most; ++i)
+    eigenvalues[i] = eigenvalues[nearest[i]];
+  eigenvalues.resize(most);
+}
+
 void sort_modes(std::vector<VibrationMode>& modes) {
   std::ranges::stable_sort(modes, [](const VibrationMode& a, const VibrationMode& b) {
     return a.frequency != b.frequency ? a.frequency < b.frequency : a.eigenvalue.real() > b.eigenvalue.real();
   });
 }
 
-std::vector<VibrationMode> find_modes(const FactoredState& at) {
+std::vector<VibrationMode> find_modes(const FactoredState& at, std::size_t most) {
   const Stability stability = find_stability(at, true);
   const TimedMotion motion = timed_motion(at);
   const Eigen::VectorXd of_balance = motion.unit.cwiseQuotient(at.problem.scaling.column);
@@ -166,6 +179,7 @@ std::vector<VibrationMode> find_modes(const FactoredState& at) {
     largest = std::max(largest, std::abs(s));
   // Of a conjugate pair one; rounding takes a double zero apart, either way.
   std::erase_if(left, [](Complex s) { return s.imag() < 0; });
+  keep_nearest(left, most);
   const auto zero = [&](Complex s) { return std::abs(s) <= 1e-7 * largest; };
   const auto alike = [&](Complex a, Complex b) {
     return (zero(a) && zero(b)) || std::abs(a - b) <= 1e-9 * std::abs(a) + 1e-12 * largest;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <complex>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,13 +57,18 @@ struct VibrationMode {
 VibrationMode describe_mode(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXcd& scaled,
                             std::complex<double> s, double residual);
 
+// Leaves those nearest to zero, `most` of them, in their order.
+void keep_nearest(std::vector<std::complex<double>>& eigenvalues, std::size_t most);
+
 // By frequency, and of one frequency the fastest growing first.
 void sort_modes(std::vector<VibrationMode>& modes);
 
 // Of one steady state of a dense problem: one mode a conjugate pair and one a real eigenvalue, by frequency.
 // A repeated eigenvalue counts as often as it has shapes of its own. Infinite eigenvalues (massless
-// coordinates) have no mode; massless coordinates follow the others.
-std::vector<VibrationMode> find_modes(const FactoredState& at);
+// coordinates) have no mode; massless coordinates follow the others. Of more than `most` those nearest to
+// zero.
+std::vector<VibrationMode> find_modes(const FactoredState& at,
+                                      std::size_t most = std::numeric_limits<std::size_t>::max());
 
 // q moved by amplitude Re(v e^(i phase)) along a mode, its loops closed at `t` seconds of driving. A large
 // amplitude that the loops do not allow is halved until they do. `amplitude` is that of the largest entry,

@@ -1,6 +1,7 @@
 // Modes of large mechanisms without their matrices, against the dense ones and closed forms.
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/engine/reference/random_mechanism.hpp"
+#include "tests/engine/torque_parts.hpp"
 
 #include "engine/kkt/motion_products.hpp"
 #include "engine/solve/factored_state.hpp"
@@ -304,4 +305,32 @@ TEST_CASE("the lowest modes of random trees and loops are those of the matrices"
   CHECK(trees > 10);
   CHECK(loops > 10);
   CHECK(with_dampers > 10);
+}
+
+TEST_CASE("of many coordinates on a shaft by torque the modes nearest to zero are told", "[modes]") {
+  Mechanism m = hanging_chain(205, 3);
+  for (std::size_t i = 1; i < m.joints.size(); ++i)
+    m.joints[i] = dampened(sprung(m.joints[i], 2), 1e-3);
+  m = with_torque(m, "6 N m - 2 N m s * rate(spin)");
+  SolveOptions options;
+  options.modes = 1000;
+  Analysis analysis(m);
+  const Solution all = analysis.solve(options);
+  REQUIRE(all.eigenvalues);
+  REQUIRE(all.eigenvalues->size() > 400);
+  std::vector<double> sizes;
+  for (const std::complex<double> s : *all.eigenvalues)
+    sizes.push_back(std::abs(s));
+  std::ranges::sort(sizes);
+  options.modes = 5;
+  const Solution some = analysis.solve(options);
+  REQUIRE(some.eigenvalues);
+  REQUIRE(some.eigenvalues->size() == 5);
+  CHECK(std::ranges::any_of(*some.eigenvalues, [](std::complex<double> s) { return s.imag() > 1; }));
+  for (const std::complex<double> s : *some.eigenvalues)
+    CHECK(std::abs(s) <= sizes[4] * (1 + 1e-9));
+  const std::vector<VibrationMode> modes = analysis.modes(3);
+  REQUIRE(modes.size() == 3);
+  for (const VibrationMode& mode : modes)
+    CHECK(mode.natural_frequency <= sizes[5] * (1 + 1e-9)); // conjugate pairs counted once
 }
