@@ -22,7 +22,7 @@ struct RenderOptions {
   float scale = 1;
   int mode = 0;
   double amplitude = 0.15;
-  bool interface = false, plain = false, loads = false;
+  bool interface = false, plain = false, loads = false, by_cube_root = false;
 };
 
 Ending run_render(const RenderOptions& options) {
@@ -35,6 +35,7 @@ Ending run_render(const RenderOptions& options) {
                  : options.theme == "light" ? Theme::light
                                             : Theme::high_contrast;
   wanted.loads = options.loads;
+  wanted.by_cube_root = options.by_cube_root;
   wanted.free_body = options.free_body;
   wanted.antialiased = !options.plain;
   wanted.mode = options.mode;
@@ -80,8 +81,14 @@ void add_render(CLI::App& app, Ending& ending) {
   command->add_option("--theme", options->theme, "Colours")
       ->check(CLI::IsMember({"light", "dark", "high-contrast"}))
       ->capture_default_str();
-  command->add_flag("--loads", options->loads,
-                    "With arrows of reactions, drive torques, springs' forces and inertial loads");
+  CLI::Option* loads =
+      command->add_flag("--loads", options->loads,
+                        "With arrows of reactions, drive torques, springs' forces and inertial loads, all "
+                        "forces to one scale and all moments to one");
+  command
+      ->add_flag("--cube-root", options->by_cube_root,
+                 "Lengths of arrows by the cube root, so that small forces are seen beside large ones")
+      ->needs(loads);
   command->add_option("--free-body", options->free_body, "With the free-body diagram of this body");
   CLI::Option* mode =
       command

@@ -143,15 +143,25 @@ void Document::select(Selection selection) {
   selection_ = existing(std::move(selection), stored());
 }
 
+bool Document::is_seen(std::size_t step) const {
+  return !aside_ || step == 0 || steps_[step].mechanism != steps_[step - 1].mechanism;
+}
+
 bool Document::undo() {
   if (!can_undo()) return false;
-  go_to(position_ - 1);
+  std::size_t step = position_;
+  while (step > 1 && !is_seen(step))
+    --step;
+  go_to(step - 1);
   return true;
 }
 
 bool Document::redo() {
   if (!can_redo()) return false;
-  go_to(position_ + 1);
+  std::size_t step = position_ + 1;
+  while (step + 1 < steps_.size() && !is_seen(step))
+    ++step;
+  go_to(step);
   return true;
 }
 

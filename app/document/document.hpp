@@ -75,7 +75,8 @@ class Document {
 
   bool can_undo() const { return position_ > 0; }
   bool can_redo() const { return position_ + 1 < steps_.size(); }
-  // False where there is nothing to undo or redo.
+  // To the step before or after, past those that change nothing of what is shown, as while what is explored
+  // is put aside those that only try. False where there is nothing to undo or redo.
   bool undo();
   bool redo();
   // Step 0 is how it was opened. Steps before `position` are done, those after it undone.
@@ -98,6 +99,7 @@ class Document {
 
  private:
   const Step& now() const { return steps_[position_]; }
+  bool is_seen(std::size_t step) const;
   void take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture);
   void push(Step step);
   void changed(const Mechanism* stored_before);

@@ -121,9 +121,6 @@ PlotLayout plot_layout(const Plot& plot, const PlotLook& look, double width, dou
 // line.
 PlotCurve legend_line(const Plot& plot, const PlotLegendEntry& entry);
 
-// All texts that the layout has placed.
-std::vector<const PlotText*> texts_of(const PlotLayout& layout);
-
 // A place for a label beside a point, inside the frame, off the other texts and
 // where there is a choice off the curves; none where there is none.
 std::optional<PlotText> label_beside(const PlotLayout& layout, double x, double y, const std::string& text,

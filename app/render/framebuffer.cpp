@@ -131,9 +131,4 @@ void bind_window_framebuffer(int width, int height) {
   glViewport(0, 0, width, height);
 }
 
-Image read_window_framebuffer(int width, int height) {
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  return read_bound(width, height);
-}
-
 } // namespace flyball

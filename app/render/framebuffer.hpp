@@ -44,6 +44,5 @@ Framebuffer largest_framebuffer(int width, int height, int samples);
 
 // The same for the window's own picture.
 void bind_window_framebuffer(int width, int height);
-Image read_window_framebuffer(int width, int height);
 
 } // namespace flyball

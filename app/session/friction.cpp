@@ -12,10 +12,15 @@ FrictionReport find_friction(const FrictionRequest& request, const TaskContext<F
 FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRibbon>& context) {
   const ResponseRequest& of = request.curve->of;
   FoundRibbon found;
-  std::vector<RibbonPlace> places;
-  for (BandPlace& place : band_places(*request.curve, BandOf::not_unstable, found.stretches))
-    places.push_back({place.number, std::move(place.start)});
-  found.points = friction_ribbon(*of.mechanism, of.address, places, &context.cancel);
+  for (const BandRun& run : band_runs(*request.curve, BandOf::not_unstable)) {
+    std::vector<RibbonPlace> places;
+    for (const ResponsePoint* state : run.states)
+      places.push_back({state->parameter, start_values(state->coordinates)});
+    const std::vector<RibbonPoint> points =
+        friction_ribbon_at_bends(*of.mechanism, of.address, places, run.apart, &context.cancel);
+    found.stretches.push_back({found.points.size(), points.size()});
+    found.points.insert(found.points.end(), points.begin(), points.end());
+  }
   return found;
 }
 

@@ -167,35 +167,17 @@ void replace_mechanism(Session& session, const std::string& name, Mechanism mech
   if (session.document.revision() != before) take_document(session, false, false);
 }
 
-namespace {
-
-// Whether a step changes what the present mode shows: while building, what was tried makes no difference.
-bool is_seen(const Session& session, std::size_t step) {
-  const std::vector<Step>& steps = session.document.steps();
-  return session.mode == Mode::explore || step == 0 || steps[step].mechanism != steps[step - 1].mechanism;
-}
-
-} // namespace
-
 void undo(Session& session) {
   const Document& document = session.document;
-  if (!document.can_undo()) return;
-  std::size_t step = document.position();
-  while (step > 1 && !is_seen(session, step))
-    --step;
-  session.notice = "Undone: " + document.steps()[step].name;
-  session.document.go_to(step - 1);
+  if (!session.document.undo()) return;
+  session.notice = "Undone: " + document.steps()[document.position() + 1].name;
   take_document(session, false, false);
 }
 
 void redo(Session& session) {
   const Document& document = session.document;
-  if (!document.can_redo()) return;
-  std::size_t step = document.position() + 1;
-  while (step + 1 < document.steps().size() && !is_seen(session, step))
-    ++step;
-  session.document.go_to(step);
-  session.notice = "Redone: " + document.steps()[step].name;
+  if (!session.document.redo()) return;
+  session.notice = "Redone: " + document.steps()[document.position()].name;
   take_document(session, false, false);
 }
 

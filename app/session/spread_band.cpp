@@ -24,7 +24,12 @@ FoundBand find_band(const BandRequest& request, const TaskContext<FoundBand>& co
     context.progress({"making the band", static_cast<double>(done) / static_cast<double>(all)});
   };
   FoundBand found;
-  const std::vector<BandPlace> places = band_places(*request.curve, BandOf::stable, found.stretches);
+  std::vector<BandPlace> places;
+  for (const BandRun& run : band_runs(*request.curve, BandOf::stable)) {
+    found.stretches.push_back({places.size(), run.apart.size()});
+    for (const std::size_t i : run.apart)
+      places.push_back({run.states[i]->parameter, start_values(run.states[i]->coordinates)});
+  }
   ThreadSharing sharing;
   found.band = spread_band(*of.mechanism, of.address, places, request.tolerances, options, sharing);
   return found;
@@ -40,46 +45,47 @@ std::string share_text(double share) {
 
 } // namespace
 
-std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, BandOf which,
-                                   std::vector<BandStretch>& stretches) {
+std::vector<BandRun> band_runs(const ResponseCurve::Found& curve, BandOf which) {
+  std::vector<BandRun> runs;
+  for (const ResponseLine& line : curve.result.lines) {
+    if (rests_on_friction(line)) continue;
+    bool on = false;
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      const ResponsePoint& point = line.points[i];
+      const bool counts = which == BandOf::stable ? point.stable == true : point.stable != false;
+      if (counts && !line.special[i]) {
+        if (!on) runs.emplace_back();
+        on = true;
+        runs.back().states.push_back(&point);
+      } else {
+        on = on && line.special[i];
+      }
+    }
+  }
   const ResponseRequest& of = curve.of;
-  const auto counts = [&](const ResponsePoint& point) {
-    return which == BandOf::stable ? point.stable == true : point.stable != false;
-  };
   // How far along the axis, in parts of it.
   const auto along = [&](double number) {
     return of.logarithmic ? std::log(number / of.from) / std::log(of.to / of.from)
                           : (number - of.from) / (of.to - of.from);
   };
-  std::vector<BandPlace> places;
+  std::size_t places = 0;
   double step = 1 / parts;
   do {
-    places.clear();
-    stretches.clear();
-    for (const ResponseLine& line : curve.result.lines) {
-      if (rests_on_friction(line)) continue;
-      bool on = false;
+    places = 0;
+    for (BandRun& run : runs) {
+      run.apart.clear();
       double last = 0;
-      for (std::size_t i = 0; i < line.points.size(); ++i) {
-        const ResponsePoint& point = line.points[i];
-        if (!counts(point) || line.special[i]) {
-          on = on && line.special[i];
-          continue;
-        }
-        // The ends of a stretch are places, whatever they are apart.
-        const bool ends = i + 1 == line.points.size() || !counts(line.points[i + 1]);
-        const double at = along(point.parameter);
-        if (on && !ends && std::abs(at - last) < step) continue;
-        if (!on) stretches.push_back({places.size(), 0});
-        on = true;
+      for (std::size_t i = 0; i < run.states.size(); ++i) {
+        const double at = along(run.states[i]->parameter);
+        if (i > 0 && i + 1 < run.states.size() && std::abs(at - last) < step) continue;
         last = at;
-        places.push_back({point.parameter, start_values(point.coordinates)});
-        ++stretches.back().count;
+        run.apart.push_back(i);
       }
+      places += run.apart.size();
     }
     step *= 1.5;
-  } while (places.size() > most_places && step < 1);
-  return places;
+  } while (places > most_places && step < 1);
+  return runs;
 }
 
 std::string band_refusal(const Session& session) {

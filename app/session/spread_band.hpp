@@ -41,9 +41,13 @@ std::optional<std::size_t> band_output(const Session& session);
 
 // Stable states alone; or those that are undecided, too, which friction may hold.
 enum class BandOf { stable, not_unstable };
-// The places of the curve's states about which a band is made: about a fortieth of the range apart. None of
-// what rests on friction.
-std::vector<BandPlace> band_places(const ResponseCurve::Found& curve, BandOf which,
-                                   std::vector<BandStretch>& stretches);
+// States of a line that follow one another, places of special points left out, and which of them are about
+// a fortieth of the range apart, its ends among them.
+struct BandRun {
+  std::vector<const ResponsePoint*> states; // of the curve
+  std::vector<std::size_t> apart;
+};
+// Those about which a band is made. None of what rests on friction.
+std::vector<BandRun> band_runs(const ResponseCurve::Found& curve, BandOf which);
 
 } // namespace flyball

@@ -23,7 +23,7 @@ bool is_within(const ViewCamera& camera, ViewSize size, const Vec3& point) {
 // have gone the camera goes back, if nobody has moved it since.
 bool fit_loads(const ViewContext& context, ViewSize size) {
   ViewState& view = context.view;
-  if (!view.fit_loads) return false;
+  if (!view.fit_loads || view.fit) return false;
   const ViewScene& scene = *shown_scene(context);
   if (view.loads && scene.arrows.arrows.empty()) return false; // not yet
   view.fit_loads = false;
@@ -45,9 +45,7 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   return true;
 }
 
-void fit_view(const ViewContext& context, ViewSize size) {
-  const bool for_loads = fit_loads(context, size);
-  if (!context.view.fit) return;
+void fit_whole(const ViewContext& context, ViewSize size) {
   const ViewScene& scene = *shown_scene(context);
   Bounds bounds = scene.solid.bounds;
   for (const std::vector<Instance>* beside : {&scene.ghost, &scene.drawn})
@@ -59,9 +57,15 @@ void fit_view(const ViewContext& context, ViewSize size) {
     context.view.glide.reset();
     context.view.camera = initial_camera(*shown_mechanism(context.session, context.tool), bounds, size);
   }
-  if (for_loads) (*context.view.loads_fit)[1] = settled_camera(context.view);
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(context.session)) context.view.fit = false;
+}
+
+void fit_view(const ViewContext& context, ViewSize size) {
+  if (context.view.fit) fit_whole(context, size);
+  if (!fit_loads(context, size)) return;
+  fit_whole(context, size);
+  (*context.view.loads_fit)[1] = settled_camera(context.view);
 }
 
 // Another document is looked at afresh.

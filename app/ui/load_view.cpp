@@ -37,6 +37,7 @@ bool shows_moment(const Session& session) {
 }
 
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
+  frame.load_lengths = view.loads_by_root ? LoadLengths::by_cube_root : LoadLengths::in_proportion;
   const PeriodicStudy::Posed* moment = shown_moment(session);
   if (moment && view.loads && !tool.pull && session.mode == Mode::explore) {
     frame.loads_motion = moment->motion.get();

@@ -23,14 +23,16 @@ const ShownScene& keep(const Session& session, const ToolState& tool, ShownScene
   const std::uint64_t revision = waits ? 0 : session.document.revision();
   if (shown.scene && source.revision == revision && source.ticket == session.answer.ticket &&
       source.theme == frame.theme && source.loads == (frame.loads || frame.loads_motion) &&
-      source.loads_body == frame.loads_body && source.hidden == frame.hidden &&
-      same(source.poses, frame.poses) && same(source.ghost, frame.ghost) && same(source.motion, frame.motion))
+      source.loads_body == frame.loads_body && source.load_lengths == frame.load_lengths &&
+      source.hidden == frame.hidden && same(source.poses, frame.poses) && same(source.ghost, frame.ghost) &&
+      same(source.motion, frame.motion))
     return shown;
   source.revision = revision;
   source.ticket = session.answer.ticket;
   source.theme = frame.theme;
   source.loads = frame.loads || frame.loads_motion;
   source.loads_body = frame.loads_body;
+  source.load_lengths = frame.load_lengths;
   source.hidden = frame.hidden;
   source.poses.assign(frame.poses.begin(), frame.poses.end());
   source.ghost.assign(frame.ghost.begin(), frame.ghost.end());

@@ -22,6 +22,7 @@ struct SceneSource {
   Theme theme = Theme::light;
   bool loads = false;
   int loads_body = -1;
+  LoadLengths load_lengths = LoadLengths::in_proportion;
   std::vector<PartId> hidden;
   std::vector<Pose> poses, ghost, motion;
 };

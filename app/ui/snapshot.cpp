@@ -1,6 +1,7 @@
 #include "app/ui/snapshot.hpp"
 
 #include "app/ui/app.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/plots/plot_picture.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/view_frame.hpp"
@@ -51,8 +52,12 @@ Image interface_picture(App& app, PixelSize size, float scale) {
   const UiFonts former_fonts = app.ui.fonts;
   const WidgetMap former_widgets = std::exchange(app.ui.widgets, {});
   const KeyboardState former_keyboard = std::exchange(app.ui.keyboard, {});
-  const unsigned former_texture = app.view.texture;
+  const ViewState former_view = app.view;
   app.view.hovered = {};
+  app.view.camera = settled_camera(app.view);
+  app.view.glide.reset();
+  app.view.animated = false;
+  app.view.fit_loads = app.view.loads; // a picture has another shape than the window
   Image image;
   {
     Stage stage(app.ui, scale);
@@ -67,7 +72,7 @@ Image interface_picture(App& app, PixelSize size, float scale) {
   app.ui.fonts = former_fonts;
   app.ui.widgets = former_widgets;
   app.ui.keyboard = former_keyboard;
-  app.view.texture = former_texture;
+  app.view = former_view;
   return image;
 }
 

@@ -185,8 +185,4 @@ ViewCamera initial_camera(const Mechanism& mechanism, const Bounds& bounds, View
   return camera;
 }
 
-Camera scene_camera(const ViewCamera& camera) {
-  return {camera.target, camera.distance, camera.azimuth, camera.elevation};
-}
-
 } // namespace flyball

@@ -63,7 +63,5 @@ struct ViewCamera {
 
 // The camera the scene file asks for, otherwise one that sees the whole mechanism (`bounds`) from the front.
 ViewCamera initial_camera(const Mechanism& mechanism, const Bounds& bounds, ViewSize view);
-// As it is written in the scene file.
-Camera scene_camera(const ViewCamera& camera);
 
 } // namespace flyball

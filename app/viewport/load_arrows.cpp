@@ -1,6 +1,7 @@
 #include "app/viewport/load_arrows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flyball {
@@ -8,10 +9,6 @@ namespace flyball {
 namespace {
 
 constexpr double load_rounding = 1e-9; // beside the largest
-
-constexpr std::array all_kinds{LoadKind::reaction, LoadKind::drive, LoadKind::spring,
-                               LoadKind::damper,   LoadKind::gear,  LoadKind::weight,
-                               LoadKind::applied,  LoadKind::air,   LoadKind::inertia};
 
 // Across a line, to the side that is to the front.
 Vec3 across(const Vec3& line) {
@@ -47,60 +44,62 @@ Vec3 beside_part(const Assembly& assembly, const Load& load, const Vec3& along, 
 
 } // namespace
 
-LoadScales::LoadScales(const std::vector<Load>& loads, bool in_proportion, double longest)
-    : in_proportion_(in_proportion), longest_(longest) {
+LoadScales::LoadScales(const std::vector<Load>& loads, LoadLengths lengths, double longest)
+    : lengths_(lengths), longest_(longest) {
   for (const Load& load : loads) {
     double& largest = largest_[static_cast<std::size_t>(load.kind)][load.moment ? 1 : 0];
     largest = std::max(largest, load.vector.stableNorm());
+    full_[load.moment ? 1 : 0] = std::max(full_[load.moment ? 1 : 0], largest);
   }
-  std::array<double, 2> most{};
-  for (const LoadKind kind : all_kinds)
-    for (const bool moment : {false, true})
-      most[moment ? 1 : 0] = std::max(most[moment ? 1 : 0], of(largest_, kind, moment));
   // Moments of a mechanism that has none are rounding of its forces at their arms.
-  const std::array least{load_rounding * most[0], load_rounding * std::max(most[1], most[0] * longest)};
-  for (const LoadKind kind : all_kinds)
-    for (const std::size_t moment : {0, 1}) {
-      const auto k = static_cast<std::size_t>(kind);
-      if (!(largest_[k][moment] > least[moment])) largest_[k][moment] = 0;
-      full_[k][moment] = in_proportion && largest_[k][moment] > 0 ? most[moment] : largest_[k][moment];
-    }
+  const std::array least{load_rounding * full_[0], load_rounding * std::max(full_[1], full_[0] * longest)};
+  for (const std::size_t moment : {0, 1}) {
+    for (auto& of_kind : largest_)
+      if (!(of_kind[moment] > least[moment])) of_kind[moment] = 0;
+    if (!(full_[moment] > least[moment])) full_[moment] = 0;
+  }
 }
 
-double LoadScales::length(LoadKind kind, bool moment, double size) const {
-  const double full = of(full_, kind, moment);
+double LoadScales::length(bool moment, double size) const {
+  const double full = full_[moment ? 1 : 0];
   if (!(full > 0) || !(size > load_rounding * full)) return 0;
   const double share = size / full;
-  return longest_ * (in_proportion_ ? share : std::cbrt(share));
+  return longest_ * (lengths_ == LoadLengths::in_proportion ? share : std::cbrt(share));
 }
 
-double LoadScales::size(LoadKind kind, bool moment, double length) const {
+double LoadScales::size(bool moment, double length) const {
   if (!(longest_ > 0)) return 0;
   const double share = length / longest_;
-  return of(full_, kind, moment) * (in_proportion_ ? share : share * share * share);
+  return full_[moment ? 1 : 0] * (lengths_ == LoadLengths::in_proportion ? share : share * share * share);
 }
 
-LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion) {
-  return {loads, in_proportion, std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit)};
+LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, LoadLengths lengths) {
+  return {loads, lengths, std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit)};
 }
 
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
-                       const Palette& colors) {
+                       const Palette& colors, bool diagram) {
   LoadArrows out;
   out.scales = scales;
   Sketch sketch(out.solids);
-  const double u = assembly.scale.unit, radius = 0.2 * u, head = 6 * radius;
+  const double u = assembly.scale.unit, largest_head = 1.2 * u, least = 0.4 * largest_head;
+  out.least = {scales.size(false, least), scales.size(true, least)};
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const Load& load = loads[i];
     const double exact = out.scales.length(load);
     if (!(exact > 0)) continue;
-    const double least = load.moment ? 1.7 * head : head, length = std::max(exact, least);
+    if (exact < least && !diagram) {
+      ++out.left_out[load.moment ? 1 : 0];
+      continue;
+    }
+    const double length = std::max(exact, least), head = std::min(largest_head, 0.55 * length);
+    const double radius = head / 6;
     const Vec3 along = load.vector.stableNormalized();
     Vec3 from = load.at;
     if (load.moment) { // a free vector: anywhere will do
       const Vec3 side = along.cross(assembly.scale.up);
       from += 1.6 * u * (side.norm() > 1e-3 ? Vec3(side.normalized()) : along.unitOrthogonal());
-    } else if (!scales.in_proportion()) { // others fade beside a body's diagram
+    } else if (!diagram) { // others fade beside a body's diagram
       from += beside_part(assembly, load, along, length);
     }
     const Vec3 to = from + length * along;

@@ -8,36 +8,35 @@
 
 namespace flyball {
 
-// How lengths of arrows tell sizes.
-//   Of a mechanism: each kind has a scale of its own, and lengths grow with the cube root, as the loads of
-//   a mechanism often differ by orders of magnitude (a shaft's weight in its bearing, a ball's inertial
-//   load). Of one body: in proportion and all to one scale, so that the arrows of its free-body diagram add
-//   up.
+enum class LoadLengths { in_proportion, by_cube_root };
+
+// How lengths of arrows tell sizes: all forces to one scale, and all moments to one. In proportion polygons
+// of forces can be read off; the cube root shows small ones beside large ones (a ball's inertial load beside
+// a shaft's weight in its bearing).
 class LoadScales {
  public:
   LoadScales() = default;
-  LoadScales(const std::vector<Load>& loads, bool in_proportion, double longest);
+  LoadScales(const std::vector<Load>& loads, LoadLengths lengths, double longest);
 
   // m; zero for what is rounding beside the other loads.
-  double length(LoadKind kind, bool moment, double size) const;
-  double length(const Load& load) const { return length(load.kind, load.moment, load.vector.stableNorm()); }
-  // The size (N, N m) of the kind that an arrow as long as that (m) stands for.
-  double size(LoadKind kind, bool moment, double length) const;
+  double length(bool moment, double size) const;
+  double length(const Load& load) const { return length(load.moment, load.vector.stableNorm()); }
+  // The size (N, N m) that an arrow as long as that (m) stands for; zero where there are none.
+  double size(bool moment, double length) const;
   // The largest of its kind; zero where there is none, or it is rounding.
-  double largest(LoadKind kind, bool moment) const { return of(largest_, kind, moment); }
-  bool in_proportion() const { return in_proportion_; }
+  double largest(LoadKind kind, bool moment) const {
+    return largest_[static_cast<std::size_t>(kind)][moment ? 1 : 0];
+  }
+  LoadLengths lengths() const { return lengths_; }
 
  private:
-  using Sizes = std::array<std::array<double, 2>, load_kinds>;
-  static double of(const Sizes& sizes, LoadKind kind, bool moment) {
-    return sizes[static_cast<std::size_t>(kind)][moment ? 1 : 0];
-  }
-  Sizes largest_{}, full_{}; // full: what the longest arrow stands for
-  bool in_proportion_ = false;
+  std::array<std::array<double, 2>, load_kinds> largest_{};
+  std::array<double, 2> full_{}; // what the longest arrow stands for, a force and a moment
+  LoadLengths lengths_ = LoadLengths::in_proportion;
   double longest_ = 0; // m
 };
 
-LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, bool in_proportion);
+LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, LoadLengths lengths);
 
 struct LoadArrow {
   std::size_t load = 0; // in the list of loads
@@ -48,11 +47,15 @@ struct LoadArrows {
   std::vector<LoadArrow> arrows;
   std::vector<Instance> solids;
   std::vector<std::size_t> arrow_of; // by solid
+  // Forces and moments that would be too short to be seen, and what an arrow (N, N m) has to be to be drawn.
+  std::array<int, 2> left_out{};
+  std::array<double, 2> least{};
 };
-// An arrow shorter than its head is drawn as the head. Moments stand beside their point, clear of forces; of
-// a mechanism (not in proportion) so do forces along links and slides, clear of these.
+// Short arrows have smaller heads. Moments stand beside their point, clear of forces; of a mechanism so do
+// forces along links and slides, clear of these. Of a body's diagram nothing is left out: what is too short
+// to be seen is as long as can be seen.
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
-                       const Palette& colors);
+                       const Palette& colors, bool diagram);
 
 Color load_color(LoadKind kind, const Palette& colors);
 

@@ -112,7 +112,7 @@ std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double t
   return MotionCollector(assembly, motion).at(Moment(motion.time, time));
 }
 
-LoadScales motion_load_scales(const Assembly& assembly, const Run& motion) {
+LoadScales motion_load_scales(const Assembly& assembly, const Run& motion, LoadLengths lengths) {
   std::vector<Load> largest; // of each track
   const auto add = [&](LoadKind kind, bool moment, std::size_t samples, const auto& size_at) {
     double most = 0;
@@ -147,7 +147,7 @@ LoadScales motion_load_scales(const Assembly& assembly, const Run& motion) {
     add_numbers(LoadKind::gear, track.angle_a, track.a);
     add_numbers(LoadKind::gear, track.angle_b, track.b);
   }
-  return load_scales(assembly, largest, false);
+  return load_scales(assembly, largest, lengths);
 }
 
 } // namespace flyball

@@ -38,8 +38,9 @@ struct ViewFrame {
   Quat loads_turn = Quat::Identity();           // since the drawn phase, which the solution is of
   const Run* loads_motion = nullptr;            // instead: of this motion, at
   double loads_time = 0;                        // this moment (s)
-  int loads_body = -1;                          // its free-body diagram; -1: all loads
-  BodyColouring colouring;                      // without: as the mechanism alone says
+  int loads_body = -1;                          // its free-body diagram, in proportion; -1: all loads
+  LoadLengths load_lengths = LoadLengths::in_proportion;
+  BodyColouring colouring; // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;

@@ -247,7 +247,9 @@ TEST_CASE("arrows of springs and links of a mechanism stand beside what would hi
   const double u = assembly.scale.unit;
   int springs = 0, links = 0;
   for (const LoadArrow& arrow :
-       load_arrows(assembly, loads, load_scales(assembly, loads, false), palette(Theme::light)).arrows) {
+       load_arrows(assembly, loads, load_scales(assembly, loads, LoadLengths::by_cube_root),
+                   palette(Theme::light), false)
+           .arrows) {
     const Load& load = loads[arrow.load];
     if (load.moment || load.part.kind != PartKind::joint) continue;
     const Joint& joint = assembly.joint(load.part.index);
@@ -267,29 +269,38 @@ TEST_CASE("arrows of springs and links of a mechanism stand beside what would hi
   CHECK(links == 2);
 }
 
-TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body") {
+TEST_CASE("arrows: one scale for all forces and one for all moments, in proportion or by the cube root") {
   const Steady steady = solved(shipped("governor"));
   const Mechanism& mechanism = steady.mechanism;
   const Assembly assembly(mechanism, steady.solution.poses);
   const Palette& colors = palette(Theme::light);
   const std::vector<Load> all = loads_of(assembly, steady.solution, steady.turning, -1);
-  const LoadArrows arrows = load_arrows(assembly, all, load_scales(assembly, all, false), colors);
-  const LoadScales& scales = arrows.scales;
+  const LoadScales scales = load_scales(assembly, all, LoadLengths::in_proportion),
+                   roots = load_scales(assembly, all, LoadLengths::by_cube_root);
   const double reaction = scales.largest(LoadKind::reaction, false),
                inertia = scales.largest(LoadKind::inertia, false);
   CHECK(reaction > 100 * inertia); // the shaft's weight
-  CHECK(scales.length(LoadKind::inertia, false, inertia) ==
-        Approx(scales.length(LoadKind::reaction, false, reaction)));
-  CHECK(scales.length(LoadKind::inertia, false, inertia / 8) ==
-        Approx(scales.length(LoadKind::inertia, false, inertia) / 2));
+  CHECK(scales.length(false, inertia) / inertia == Approx(scales.length(false, reaction) / reaction));
+  CHECK(roots.length(false, reaction) == scales.length(false, reaction));
+  CHECK(roots.length(false, reaction / 8) == Approx(roots.length(false, reaction) / 2));
   for (const double size : {0.3, 2., 11.})
-    CHECK(scales.size(LoadKind::inertia, false, scales.length(LoadKind::inertia, false, size)) ==
-          Approx(size));
+    for (const LoadScales* each : {&scales, &roots})
+      CHECK(each->size(false, each->length(false, size)) == Approx(size));
   CHECK(scales.largest(LoadKind::weight, false) == 0); // part of a body's diagram only
+
+  // Of the mechanism too short ones are left out, and counted; all others have their exact length.
+  const LoadArrows arrows = load_arrows(assembly, all, scales, colors, false);
+  CHECK(arrows.left_out[0] > 3);
+  CHECK(arrows.least[0] > inertia);
+  for (const LoadArrow& arrow : arrows.arrows)
+    CHECK((arrow.to - arrow.from).norm() == Approx(scales.length(all[arrow.load])));
+  const LoadArrows rooted = load_arrows(assembly, all, roots, colors, false);
+  CHECK(rooted.arrows.size() > arrows.arrows.size() + 3);
 
   const int ball = body_index(mechanism, "ball1");
   const std::vector<Load> of_ball = loads_of(assembly, steady.solution, steady.turning, ball);
-  const LoadArrows diagram = load_arrows(assembly, of_ball, load_scales(assembly, of_ball, true), colors);
+  const LoadArrows diagram = load_arrows(
+      assembly, of_ball, load_scales(assembly, of_ball, LoadLengths::in_proportion), colors, true);
   double longest = 0;
   Vec3 tip = Vec3::Zero(); // of all forces one after the other
   for (const LoadArrow& arrow : diagram.arrows) {
@@ -297,7 +308,7 @@ TEST_CASE("arrows: a scale for each kind in a mechanism, one for all of a body")
     if (load.moment) continue;
     CHECK((arrow.from - load.at).norm() < 1e-12);
     const double exact = diagram.scales.length(load);
-    if (exact < 1e-3) continue; // drawn as a head
+    if (exact < (arrow.to - arrow.from).norm() * (1 - 1e-9)) continue; // too short to be seen
     CHECK((arrow.to - arrow.from).cross(load.vector).norm() < 1e-9 * load.vector.norm());
     longest = std::max(longest, exact);
     tip += exact * load.vector.normalized();

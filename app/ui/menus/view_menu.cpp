@@ -162,6 +162,17 @@ const std::array view_commands{
                   app.view.fit_loads = true;
                 },
             .checked = [](const App& app) { return app.view.loads; }},
+    Command{.id = "view.loads_by_root",
+            .title = "Forces by the cube root",
+            .help = "Lengths of arrows grow with the cube root, so that small forces are seen beside large "
+                    "ones, rather than in proportion.",
+            .run =
+                [](App& app) {
+                  app.view.loads_by_root = !app.view.loads_by_root;
+                  app.view.loads = app.view.loads || app.view.loads_by_root;
+                  app.view.fit_loads = true;
+                },
+            .checked = [](const App& app) { return app.view.loads_by_root; }},
     Command{.id = "view.grid",
             .title = "Grid",
             .help = "The grid on the floor.",

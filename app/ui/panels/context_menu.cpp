@@ -153,7 +153,9 @@ void view_items(const Session& session, Ui& ui, const CommandRunner& commands) {
   menu_title(ui, "View", "");
   command_items(ui, commands, {"view.fit", "view.front", "view.side", "view.top", "view.iso"});
   ImGui::Separator();
-  command_items(ui, commands, {"view.ghost", "view.loads", "view.grid", "view.shadow", "view.show_all"});
+  command_items(
+      ui, commands,
+      {"view.ghost", "view.loads", "view.loads_by_root", "view.grid", "view.shadow", "view.show_all"});
   ImGui::Separator();
   command_item(ui, commands, "view.mode");
   if (session.mode != Mode::build) return command_item(ui, commands, "view.play");

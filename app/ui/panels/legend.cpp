@@ -197,7 +197,7 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float top = at.y + std::round((line - side) / 2);
     const bool note = shown[i].mark == LegendMark::note;
-    if (shown[i].mark == LegendMark::load)
+    if (shown[i].mark == LegendMark::load || shown[i].mark == LegendMark::scale)
       draw_load_mark(context.ui, shown[i], {at.x + s, at.y}, line);
     else if (!note)
       draw_mark(context.session, context.ui, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});

@@ -12,14 +12,15 @@
 
 namespace flyball {
 
-enum class LegendMark { solid, outlined, dashed, glass, motion, load, note }; // note: words alone
+// scale: a length of the view; note: words alone.
+enum class LegendMark { solid, outlined, dashed, glass, motion, load, scale, note };
 
 struct LegendRow {
   LegendMark mark = LegendMark::solid;
   std::string words{}; // "Steady state"
   LoadKind load = LoadKind::reaction;
   bool moment = false;
-  float length = 0;   // pixels, of a load's arrow
+  float length = 0;   // pixels, of an arrow
   std::string help{}; // where it is pointed at
 };
 // What is in the view now; nothing for an empty document.

@@ -13,7 +13,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float longest_sample = 46, shortest_sample = 9; // points
+constexpr float longest_sample = 46, kind_sample = 18; // points
 
 // The largest of 1, 2, 5, 10, ... that is no larger.
 double round_below(double value) {
@@ -59,23 +59,32 @@ std::string load_size_words(double size, bool moment) {
   return short_text(size, 4) + (moment ? " N m" : " N");
 }
 
-LegendRow load_row(const Ui& ui, const LoadScales& scales, LoadKind kind, bool moment, double pixel,
-                   bool diagram) {
-  const double largest = scales.largest(kind, moment);
-  const double fits = scales.size(kind, moment, static_cast<double>(longest_sample * ui.scale) * pixel);
-  const double sample = round_below(std::min(fits, largest));
+LegendRow load_row(const Ui& ui, double largest, LoadKind kind, bool moment, bool diagram) {
   LegendRow row;
   row.mark = LegendMark::load;
   row.load = kind;
   row.moment = moment;
-  row.length =
-      std::max(static_cast<float>(scales.length(kind, moment, sample) / pixel), shortest_sample * ui.scale);
-  row.words = load_size_words(sample, moment) + ": " + load_name(kind) + ", up to " +
-              load_size_words(largest, moment);
+  row.length = kind_sample * ui.scale;
+  row.words = std::string(load_name(kind)) + ", up to " + load_size_words(largest, moment);
   row.help = load_help(kind, moment, diagram);
-  row.help += scales.in_proportion() ? ".\nAll forces are to one scale, and so are all moments."
-                                     : ".\nEach kind has a scale of its own; lengths grow with the cube "
-                                       "root: eight times the load is twice as long.";
+  return row;
+}
+
+// An arrow that stands for a round number. `pixel`: m.
+LegendRow scale_row(const Ui& ui, const LoadScales& scales, bool moment, double pixel) {
+  const double sample =
+      round_below(scales.size(moment, static_cast<double>(longest_sample * ui.scale) * pixel));
+  LegendRow row;
+  row.mark = LegendMark::scale;
+  row.moment = moment;
+  row.length = static_cast<float>(scales.length(moment, sample) / pixel);
+  row.words = load_size_words(sample, moment);
+  row.help =
+      scales.lengths() == LoadLengths::in_proportion
+          ? "So long is an arrow of this size; all others are in proportion."
+          : "So long is an arrow of this size. Lengths grow with the cube root: eight times the load is "
+            "twice as long. View, Forces by the cube root shows them in proportion again.";
+  if (moment) row.help = "Moments have two heads. " + row.help;
   return row;
 }
 
@@ -111,16 +120,24 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   if (diagram)
     note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
          ", adds up to zero");
+  const LoadArrows& arrows = scene.arrows;
   const std::size_t before = rows.size();
-  for (const LoadKind kind :
-       {LoadKind::reaction, LoadKind::drive, LoadKind::spring, LoadKind::damper, LoadKind::gear,
-        LoadKind::weight, LoadKind::applied, LoadKind::air, LoadKind::inertia})
-    for (const bool moment : {false, true})
-      if (scene.arrows.scales.largest(kind, moment) > 0)
-        rows.push_back(load_row(context.ui, scene.arrows.scales, kind, moment, pixel, diagram));
+  for (const bool moment : {false, true}) {
+    if (!(arrows.scales.size(moment, pixel) > 0)) continue;
+    rows.push_back(scale_row(context.ui, arrows.scales, moment, pixel));
+    for (std::size_t kind = 0; kind < load_kinds; ++kind)
+      if (const double largest = arrows.scales.largest(static_cast<LoadKind>(kind), moment); largest > 0)
+        rows.push_back(load_row(context.ui, largest, static_cast<LoadKind>(kind), moment, diagram));
+    if (const int left_out = arrows.left_out[moment ? 1 : 0]; left_out > 0) {
+      note(std::to_string(left_out) + " below " + load_size_words(arrows.least[moment ? 1 : 0], moment) +
+           " not drawn");
+      rows.back().help = "Too short to be seen. View, Forces by the cube root shows them; with a body chosen "
+                         "they are drawn to the scale of that body's loads.";
+    }
+  }
   if (rows.size() == before)
     note("No forces act");
-  else if (!diagram)
+  else if (arrows.scales.lengths() == LoadLengths::by_cube_root)
     note("Twice as long: eight times as much");
   if (rows.size() > before && shows_moment(context.session)) note("Of this moment; without inertial loads");
 }
@@ -129,7 +146,8 @@ void draw_load_mark(const Ui& ui, const LegendRow& row, ImVec2 from, float heigh
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float s = ui.scale, middle = std::round(from.y + height / 2), head = 7 * s, half = 3.2f * s;
   const float tip = from.x + row.length;
-  const ImU32 color = packed(load_color(row.load, palette(ui.theme)), 1);
+  const ImU32 color = row.mark == LegendMark::scale ? packed(colors_of(ui).text)
+                                                    : packed(load_color(row.load, palette(ui.theme)), 1);
   const auto cone = [&](float at) {
     list.AddTriangleFilled({at - head, middle - half}, {at, middle}, {at - head, middle + half}, color);
   };

@@ -1,4 +1,4 @@
-// What the arrows of loads mean: for each kind what an arrow of a certain length stands for, and its largest.
+// What the arrows of loads mean: what an arrow of a certain length stands for, and the largest of each kind.
 #pragma once
 
 #include "app/ui/panels/legend.hpp"
