@@ -14,6 +14,31 @@ using namespace flyball;
 
 namespace {
 
+// All that are placed.
+std::vector<const PlotText*> texts_of(const PlotLayout& layout) {
+  std::vector<const PlotText*> texts;
+  const auto add = [&](const std::optional<PlotText>& text) {
+    if (text && !text->text.empty()) texts.push_back(&*text);
+  };
+  add(layout.title);
+  add(layout.x_label);
+  add(layout.y_label);
+  for (const auto* ticks : {&layout.x_ticks, &layout.y_ticks})
+    for (const PlotTick& tick : *ticks)
+      add(tick.label);
+  for (const PlotLegendEntry& entry : layout.legend)
+    texts.push_back(&entry.text);
+  if (layout.bar) {
+    for (const PlotTick& tick : layout.bar->ticks)
+      add(tick.label);
+    add(layout.bar->label);
+  }
+  for (const auto* placed : {&layout.references, &layout.marks})
+    for (const PlotPlaced& p : *placed)
+      add(p.label);
+  return texts;
+}
+
 void check_apart(const PlotLayout& layout) {
   const std::vector<const PlotText*> texts = texts_of(layout);
   for (std::size_t i = 0; i < texts.size(); ++i) {
