@@ -65,11 +65,8 @@ std::string add_measure(Mechanism& mechanism, const DesignGoal& goal) {
   return measure.name;
 }
 
-DesignAnswer find_solutions(const DesignRequest& request, const TaskContext<DesignAnswer>& context) {
-  DesignOptions options;
-  options.largest_step = response_step(request.of);
-  options.cancel = &context.cancel;
-  options.progress = context.progress;
+// On the branches that hang together with the drawn pose's, as a curve has them, or on all.
+DesignAnswer solutions_on(const DesignRequest& request, const DesignOptions& options) {
   const auto ask = [&](const Mechanism& mechanism, const std::string& name) {
     return design(mechanism, request.of.address, request.of.from, request.of.to, name, request.value,
                   options);
@@ -82,6 +79,22 @@ DesignAnswer find_solutions(const DesignRequest& request, const TaskContext<Desi
   for (DesignSolution& solution : answer.solutions)
     std::erase_if(solution.at.measures, [&](const MeasureSolution& m) { return m.name == name; });
   return answer;
+}
+
+// What a curve shows is told at once, other poses when they are found.
+DesignAnswer find_solutions(const DesignRequest& request, const TaskContext<DesignAnswer>& context) {
+  DesignOptions options;
+  options.largest_step = response_step(request.of);
+  options.cancel = &context.cancel;
+  options.progress = context.progress;
+  options.all = false;
+  DesignAnswer connected = solutions_on(request, options);
+  const bool found = connected.end == DesignEnd::found;
+  if (found) context.publish(connected);
+  options.all = true;
+  DesignAnswer all = solutions_on(request, options);
+  all.run_time_s += connected.run_time_s;
+  return all.end == DesignEnd::cancelled && found ? connected : all;
 }
 
 std::vector<DesignGoal> goals_now(const Session& session) {

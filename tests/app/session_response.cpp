@@ -1,4 +1,5 @@
 // The response's point, taken along its curve, without a window.
+#include "app/session/response_design.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
@@ -150,10 +151,34 @@ TEST_CASE("Session: what friction holds is one band past a kink, at which stabil
   }
   line.special.assign(line.points.size(), 0);
   curve.result.lines = {line};
-  std::vector<BandStretch> stretches;
-  CHECK(band_places(curve, BandOf::not_unstable, stretches).size() == 5);
-  REQUIRE(stretches.size() == 1); // or the slow rise and fall would jump from one to the next
-  CHECK(stretches[0].count == 5);
-  CHECK(band_places(curve, BandOf::stable, stretches).size() == 4);
-  CHECK(stretches.size() == 2);
+  const std::vector<BandRun> held = band_runs(curve, BandOf::not_unstable);
+  REQUIRE(held.size() == 1); // or the slow rise and fall would jump from one to the next
+  CHECK(held[0].states.size() == 5);
+  CHECK(held[0].apart == std::vector<std::size_t>{0, 1, 2, 3, 4});
+  CHECK(band_runs(curve, BandOf::stable).size() == 2);
+}
+
+TEST_CASE("Session: Find tells what the curve crosses before it looks for other poses") {
+  std::vector<std::size_t> told; // solutions, each time there was news of them
+  Session* seen = nullptr;
+  Session session({.mode = LiveSolver::Mode::immediate, .on_news = [&] {
+                     if (!seen) return;
+                     take_design(*seen);
+                     const auto& found = seen->study.response.design.answer.found;
+                     if (found) told.push_back(found->result.solutions.size());
+                   }});
+  open_scene(session, shipped_file("governor"));
+  open_study(session, StudyKind::response);
+  for (int i = 0; i < 3; ++i)
+    update(session, 0);
+  ResponseDesign& design = session.study.response.design;
+  design.coordinate = "slide";
+  design.value = 0.12;
+  seen = &session;
+  find_design(session);
+  seen = nullptr;
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] >= 1);
+  CHECK(told[1] >= told[0]);
+  CHECK(design.answer.found->result.solutions.front().parameter > 0);
 }

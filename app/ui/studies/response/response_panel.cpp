@@ -371,6 +371,11 @@ void design_answer(Session& session, Ui& ui) {
   const std::vector<SharedNumber> numbers = shared_numbers(answer);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     solution_row(session, ui, design.answer.found->of, numbers[i], i, control ? control->unit : "");
+  if (design.answer.running()) { // what hangs together with the drawn pose is found first
+    ImGui::TextDisabled("Looking for other poses");
+    note_widget(ui.widgets, "response/looking");
+    return;
+  }
   if (!session.options.numbers.run_times) return;
   row(ui, "Run time", duration_text(answer.run_time_s, session.options.numbers), "",
       design_words(session).c_str(), margin_width(ui));
