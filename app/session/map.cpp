@@ -136,6 +136,15 @@ std::string first_address(const Session& session, std::size_t axis) {
   return found;
 }
 
+// What the response shows; else as there a length, as of a collar, or the first.
+std::string first_shown(const Session& session, const std::vector<MapQuantity>& all) {
+  const std::string& response = session.study.response.choice.quantity;
+  for (const MapQuantity& each : all)
+    if (response == "value " + each.name || response == "measure " + each.name) return each.name;
+  const auto length = std::ranges::find(all, "m", &MapQuantity::unit);
+  return (length == all.end() ? all.front() : *length).name;
+}
+
 // What is chosen at first, and instead of what is not there any more. False where there is nothing to vary or
 // to show.
 bool choose(Session& session) {
@@ -150,7 +159,7 @@ bool choose(Session& session) {
   const std::vector<MapQuantity> all = map_quantities(session);
   if (std::ranges::find(all, choice.shown, &MapQuantity::name) != all.end()) return true;
   if (all.empty()) return false;
-  choice.shown = all.front().name;
+  choice.shown = first_shown(session, all);
   choice.level.reset();
   return true;
 }

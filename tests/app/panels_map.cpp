@@ -48,6 +48,7 @@ TEST_CASE("no map before it is asked for, and a closed one is gone but for what 
   robot.key('P');
   robot.frames(2);
   REQUIRE(robot.app.session.study.map.cells.found);
+  CHECK(robot.app.session.study.map.choice.shown == "slide"); // as the response shows it
   robot.app.session.study.map.choice.axes[0].count = 21;
   robot.click("study/close");
   CHECK_FALSE(robot.app.session.study.map.cells.asked);
@@ -240,7 +241,7 @@ TEST_CASE("on the curve of a constant value the coordinate has it") {
   CHECK(points > 5);
   // It is drawn, with its value and unit in the legend.
   CHECK(std::ranges::any_of(robot.app.panels->studies.shown().map.plot.curves,
-                            [&](const PlotCurve& c) { return c.name.starts_with("arm1 = 45.012"); }));
+                            [&](const PlotCurve& c) { return c.name.starts_with("slide = "); }));
   CHECK(app.ui.widgets.count("map/level/value") == 1);
 }
 

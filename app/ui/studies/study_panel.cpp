@@ -1,4 +1,5 @@
 #include "app/render/icons.hpp"
+#include "app/session/units.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -107,6 +108,12 @@ void StudyPanel::forget_closed(const Session& session) {
     shown_.campbell = {};
     shown_.campbell.hertz = hertz;
   }
+}
+
+std::string range_label(const Session& session, const std::string& label, const std::string& si_unit) {
+  constexpr std::size_t has_room = 3; // letters
+  const ShownUnit unit = shown_unit(si_unit, session.units);
+  return unit.text.size() > has_room ? label + " (" + unit.text + ")" : label;
 }
 
 void StudyPanel::fit() {

@@ -36,6 +36,9 @@ void map_panel(Session& session, Ui& ui, MapView& drawn);
 void spread_panel(Session& session, Ui& ui, SpreadView& drawn);
 void transfer_panel(Session& session, Ui& ui, TransferView& drawn, const CommandRunner& commands);
 
+// Before two half fields, in which a unit of many letters has no room: "Range (N/mm)".
+std::string range_label(const Session& session, const std::string& label, const std::string& si_unit);
+
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {
   std::string key;   // "value theta"

@@ -60,8 +60,8 @@ void axis_choice(Session& session, Ui& ui, MapView& drawn, std::size_t which) {
                            fit_plot(drawn.view);
                          }};
   };
-  two_fields(session, ui, "from, to", "The range of this axis.", end("from", axis.from, false),
-             end("to", axis.to, true));
+  two_fields(session, ui, range_label(session, "from, to", parameter_unit(session.mechanism(), axis.address)),
+             "The range of this axis.", end("from", axis.from, false), end("to", axis.to, true));
 }
 
 void point_counts(Session& session, Ui& ui) {
@@ -126,15 +126,9 @@ void map_words(Session& session, Ui& ui) {
   if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   if (map.stale) paragraph("Computed before the last changes.", colors.warn);
-  if (computing_map(session)) {
-    if (text_button(ui, "map/cancel", "Cancel")) cancel_map(session);
-    ImGui::SameLine();
-    task_bar(ui, "map/progress", map_progress(session), map_seconds(session),
-             std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
-  } else if (map.stale || !problem.empty()) {
+  if (computing_map(session)) return; // it has the bar above
+  if (map.stale || !problem.empty())
     if (text_button(ui, "map/again", "Compute again", true)) compute_map(session);
-  }
-  if (computing_map(session)) return;
   const auto& curves = map.curves.found;
   if (curves && map.choice.folds && curves->result.folds && curves->result.folds->curves.empty())
     paragraph(curves->result.folds->message, colors.dim);
@@ -151,20 +145,37 @@ void map_words(Session& session, Ui& ui) {
     unsolved += std::isfinite(cell.value) ? 0 : 1;
     unstable += cell.stable == false ? 1 : 0;
   }
-  std::string text = std::to_string(cells.size()) + " solves";
-  if (session.options.numbers.run_times)
-    text += " in " + duration_text(map.cells.found->run_time, session.options.numbers);
-  text += unsolved > 0 ? ", " + std::to_string(unsolved) + " without a steady state (left free)" : "";
-  text += unstable > 0 ? ", " + std::to_string(unstable) + " unstable (hatched)" : "";
-  paragraph(text + ". Each starts from the drawn pose. Click a place, or drag the mark, to go there.",
+  std::string text;
+  if (unsolved > 0) text += std::to_string(unsolved) + " without a steady state (left free). ";
+  if (unstable > 0) text += std::to_string(unstable) + " unstable (hatched). ";
+  paragraph(text + "Each starts from the drawn pose. Click a place, or drag the mark, to go there.",
             colors.dim);
   note_widget(ui.widgets, "map/words");
+}
+
+// A bar on top, where it is in sight whatever the panel's height; nothing moves as it comes and goes.
+void map_progress_line(Session& session, Ui& ui) {
+  const float below = ImGui::GetCursorPosY() + ImGui::GetFrameHeightWithSpacing();
+  if (computing_map(session)) {
+    if (text_button(ui, "map/cancel", "Cancel")) cancel_map(session);
+    ImGui::SameLine();
+    task_bar(ui, "map/progress", map_progress(session), map_seconds(session),
+             std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
+  } else if (const auto& cells = session.study.map.cells.found) {
+    std::string text = std::to_string(cells->result.size()) + " solves";
+    if (session.options.numbers.run_times)
+      text += " in " + duration_text(cells->run_time, session.options.numbers);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", text.c_str());
+  }
+  ImGui::SetCursorPosY(below);
 }
 
 void map_choices(Session& session, Ui& ui, MapView& drawn) {
   ImGui::BeginChild("choices", {map_choices_width * ui.scale, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
   if (!session.study.map.choice.shown.empty() && session.mistakes.empty()) {
+    map_progress_line(session, ui);
     axis_choice(session, ui, drawn, 0);
     axis_choice(session, ui, drawn, 1);
     point_counts(session, ui);
