@@ -6,9 +6,21 @@
 #include "engine/study/slow_change.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 namespace flyball {
 namespace {
+
+constexpr double bend = 0.01;            // see friction_ribbon_at_bends()
+constexpr std::size_t most_points = 200; // of it
+
+// Lower ones first.
+double edge(const RibbonPoint& point, std::size_t e) {
+  const std::size_t n = point.extents.size();
+  return e < n ? point.extents[e].low : point.extents[e - n].high;
+}
 
 // Of several joints with friction that move by themselves.
 void add_slow_change(const Mechanism& mechanism, const std::string& address,
@@ -29,6 +41,49 @@ void add_slow_change(const Mechanism& mechanism, const std::string& address,
       points[i].slow.push_back(way[i]);
 }
 
+RibbonPoint ribbon_point(const Mechanism& mechanism, const std::string& address, const RibbonPlace& place,
+                         const std::atomic<bool>* cancel) {
+  FrictionBandOptions options;
+  options.start = place.start;
+  options.through_folds = options.errors = false;
+  options.cancel = cancel;
+  RibbonPoint point{place.number, {}};
+  FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);
+  if (band.found && band.whole) point.extents = std::move(band.extents);
+  return point;
+}
+
+// Between the lowest and the highest of each edge, lower ones first; of the points that have a band.
+std::vector<double> heights(const std::map<std::size_t, RibbonPoint>& points) {
+  std::vector<double> least, most;
+  for (const auto& [i, point] : points)
+    for (std::size_t e = 0; e < 2 * point.extents.size(); ++e) {
+      const double x = edge(point, e);
+      if (e >= least.size()) {
+        least.push_back(x);
+        most.push_back(x);
+      }
+      least[e] = std::min(least[e], x);
+      most[e] = std::max(most[e], x);
+    }
+  for (std::size_t e = 0; e < most.size(); ++e)
+    most[e] -= least[e];
+  return most;
+}
+
+// Whether a line past the middle one of three points leaves more than that of an edge out.
+bool bends(const RibbonPoint& before, const RibbonPoint& point, const RibbonPoint& after,
+           std::span<const double> heights) {
+  const std::size_t edges = 2 * point.extents.size();
+  if (before.extents.size() != point.extents.size() || after.extents.size() != point.extents.size())
+    return true; // the band ends there
+  const double part = (point.number - before.number) / (after.number - before.number);
+  for (std::size_t e = 0; e < edges; ++e)
+    if (std::abs(std::lerp(edge(before, e), edge(after, e), part) - edge(point, e)) > bend * heights[e])
+      return true;
+  return false;
+}
+
 } // namespace
 
 std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::string& address,
@@ -37,17 +92,41 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
   std::vector<RibbonPoint> out;
   for (const RibbonPlace& place : places) {
     if (is_cancelled(cancel)) break;
-    FrictionBandOptions options;
-    options.start = place.start;
-    options.through_folds = options.errors = false;
-    options.cancel = cancel;
-    RibbonPoint point{place.number, {}};
-    FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);
-    if (band.found && band.whole) point.extents = std::move(band.extents);
-    out.push_back(std::move(point));
+    out.push_back(ribbon_point(mechanism, address, place, cancel));
     if (progress) progress(out.size());
   }
   add_slow_change(mechanism, address, places, cancel, out);
+  return out;
+}
+
+std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, const std::string& address,
+                                                  std::span<const RibbonPlace> places,
+                                                  std::span<const std::size_t> first,
+                                                  const std::atomic<bool>* cancel) {
+  std::map<std::size_t, RibbonPoint> known; // by place
+  std::set<std::size_t> wanted(first.begin(), first.end());
+  while (!wanted.empty() && !is_cancelled(cancel)) {
+    for (const std::size_t i : wanted) {
+      if (is_cancelled(cancel)) break;
+      known.emplace(i, ribbon_point(mechanism, address, places[i], cancel));
+    }
+    wanted.clear();
+    const std::vector<double> scale = heights(known);
+    if (known.size() < 3 || known.size() > most_points) break;
+    for (auto at = std::next(known.begin()); std::next(at) != known.end(); ++at) {
+      const auto before = std::prev(at), after = std::next(at);
+      if (!bends(before->second, at->second, after->second, scale)) continue;
+      for (const auto& [from, to] : {std::pair(before->first, at->first), std::pair(at->first, after->first)})
+        if (to - from > 1) wanted.insert(from + (to - from) / 2);
+    }
+  }
+  std::vector<RibbonPoint> out;
+  std::vector<RibbonPlace> there;
+  for (auto& [i, point] : known) {
+    out.push_back(std::move(point));
+    there.push_back(places[i]);
+  }
+  add_slow_change(mechanism, address, there, cancel, out);
   return out;
 }
 

@@ -36,6 +36,14 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
                                          const std::atomic<bool>* cancel = nullptr,
                                          const std::function<void(std::size_t done)>& progress = {});
 
+// The same at some of the places, and at those between where an edge bends or the band ends: until a line
+// between neighbours leaves out no more than a hundredth of an edge's height, as far as there are places.
+// `first`: with which it begins, ascending, both ends among them.
+std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, const std::string& address,
+                                                  std::span<const RibbonPlace> places,
+                                                  std::span<const std::size_t> first,
+                                                  const std::atomic<bool>* cancel = nullptr);
+
 // The same at all points of each branch that was followed over this number.
 std::vector<std::vector<RibbonPoint>>
 friction_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,

@@ -320,6 +320,39 @@ TEST_CASE("a speed that rises and falls slowly leads a bead round a loop") {
   }
 }
 
+TEST_CASE("points of a ribbon lie close where its edges bend") {
+  const double m = 0.5, k = 400, r0 = 0.2, limit = 4, upper = 0.26;
+  const auto on_bead = [&](double speed) {
+    Mechanism out = bead_on_rod(speed, limit);
+    out.joints[1].coordinates[0].stop = Stop{.lower = {}, .upper = upper, .stiffness = 1e9};
+    return out;
+  };
+  const auto edge = [&](double n, double sense) {
+    return std::min((k * r0 + sense * limit) / (k - m * n * n), upper);
+  };
+  std::vector<RibbonPlace> places;
+  for (int i = 0; i <= 200; ++i) {
+    const double speed = 0.12 * i;
+    places.push_back({speed, start_values(Analysis(on_bead(speed)).solve().coordinates)});
+  }
+  const std::vector<std::size_t> first{0, 50, 100, 150, 200};
+  const std::vector<RibbonPoint> ribbon =
+      friction_ribbon_at_bends(on_bead(10), "joints.spin.drive.speed", places, first);
+  CHECK(ribbon.size() < 60); // of 201
+  std::size_t after = 1;
+  for (const RibbonPlace& place : places) {
+    while (after + 1 < ribbon.size() && ribbon[after].number < place.number)
+      ++after;
+    const RibbonPoint &a = ribbon[after - 1], &b = ribbon[after];
+    const double part = (place.number - a.number) / (b.number - a.number);
+    CAPTURE(place.number, a.number, b.number);
+    const BandExtent &at_a = *find_extent(a, "slide"), &at_b = *find_extent(b, "slide");
+    CHECK_THAT(std::lerp(at_a.low, at_b.low, part), WithinAbs(edge(place.number, -1), 0.02 * (upper - 0.19)));
+    CHECK_THAT(std::lerp(at_a.high, at_b.high, part),
+               WithinAbs(edge(place.number, 1), 0.02 * (upper - 0.21)));
+  }
+}
+
 TEST_CASE("slowly pulled to and fro, two blocks stick and slip one after the other") {
   // u pulls the first block with 100 (u - u1), as a base that moves by u would, or a spring that is slack
   // earlier.
