@@ -219,9 +219,7 @@ class LoadRanges {
         components[c].push_back(value[static_cast<Eigen::Index>(c)]);
       out.component[c] = of(components[c], moment);
     }
-    const bool known = std::ranges::all_of(
-        out.component, [](const PeriodicRange& range) { return std::isfinite(range.mean); });
-    out.size = known ? size(components, moment) : PeriodicRange{unknown, unknown, unknown, unknown};
+    out.size = size(components, moment);
     return out;
   }
 
@@ -234,8 +232,6 @@ class LoadRanges {
     for (std::size_t c = 0; c < components.size(); ++c)
       for (const Vec3& value : values)
         components[c].push_back(open[c] ? 0 : value[static_cast<Eigen::Index>(c)]);
-    for (const std::vector<double>& component : components)
-      if (!comes_back(component, small(moment))) return PeriodicRange{unknown, unknown, unknown, unknown};
     return size(components, moment);
   }
 
@@ -247,7 +243,13 @@ class LoadRanges {
 
  private:
   PeriodicRange size(const std::array<std::vector<double>, 3>& components, bool moment) const {
-    return rounded(size_over_period(components), moment);
+    std::vector<double> sizes;
+    for (std::size_t i = 0; i < components[0].size(); ++i)
+      sizes.push_back(std::hypot(components[0][i], components[1][i], components[2][i]));
+    const bool finite = std::ranges::all_of(sizes, [](double v) { return std::isfinite(v); });
+    if (finite && std::ranges::all_of(components, [&](const auto& c) { return come_back(c, moment); }))
+      return rounded(size_over_period(components), moment);
+    return of(sizes, moment); // of what turns with a drive that has no part in the period it may come back
   }
   double small(bool moment) const { return 1e-9 * largest_ * (moment ? reach_ : 1); }
   PeriodicRange rounded(PeriodicRange range, bool moment) const {

@@ -6,6 +6,7 @@
 #include "engine/system/reactions.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
 
 namespace flyball {
@@ -84,30 +85,45 @@ double refined(Torques& torques, Eigen::Index motor, double sign, Eigen::VectorX
   return value;
 }
 
-// Of the grid points the one at which a parabola through the neighbours is highest.
-std::size_t best_point(const Grid& grid, Eigen::Index motor, double sign) {
-  std::size_t best = 0;
-  double highest = -std::numeric_limits<double>::infinity();
+struct Peak {
+  std::size_t point = 0;
+  double bound = 0;
+};
+
+// Grid points higher than their neighbours, by what may be there between them, the highest first: a peak
+// rises above its point by no more than twice what a parabola through the neighbours says.
+std::vector<Peak> peaks_of(const Grid& grid, Eigen::Index motor, double sign) {
+  std::vector<Peak> out;
   const auto n = static_cast<std::size_t>(grid.values);
   for (std::size_t i = 0; i < grid.torques.size(); ++i) {
     const double here = sign * grid.torques[i][motor];
-    double top = here;
-    bool peak = true;
+    Peak peak{i, here};
+    bool highest = true;
     std::size_t stride = 1;
-    for (int d = 0; d < grid.dimensions && peak; ++d, stride *= n) {
+    for (int d = 0; d < grid.dimensions && highest; ++d, stride *= n) {
       const std::size_t k = i / stride % n, base = i - k * stride;
       const double left = sign * grid.torques[base + (k + n - 1) % n * stride][motor];
       const double right = sign * grid.torques[base + (k + 1) % n * stride][motor];
-      peak = here >= left && here >= right;
+      highest = here >= left && here >= right;
       if (const double bend = 2 * here - left - right; bend > 0)
-        top += (right - left) * (right - left) / (8 * bend);
+        peak.bound += (right - left) * (right - left) / (4 * bend);
     }
-    if (peak && top > highest) {
-      highest = top;
-      best = i;
-    }
+    if (highest) out.push_back(peak);
   }
-  return best;
+  std::ranges::stable_sort(out, std::greater<>(), &Peak::bound);
+  return out;
+}
+
+// Of sign * torque. Every peak is looked at that may be higher than the highest so far: where drives take
+// many turns to return together, many are nearly alike.
+double greatest(Torques& torques, const Grid& grid, Eigen::Index motor, double sign) {
+  double value = -std::numeric_limits<double>::infinity();
+  for (const Peak& peak : peaks_of(grid, motor, sign)) {
+    if (!(peak.bound > value)) break;
+    value = std::max(value, refined(torques, motor, sign, grid.angles(peak.point), turn / grid.values,
+                                    sign * grid.torques[peak.point][motor]));
+  }
+  return value;
 }
 
 } // namespace
@@ -162,10 +178,14 @@ std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, cons
   for (const PhaseGroup& g : *groups)
     for (int turns : g.turns)
       fastest = std::max(fastest, std::abs(turns));
-  grid.values = grid.dimensions == 1 ? 32 + 16 * fastest : grid.dimensions == 2 ? 40 : 14;
+  constexpr std::size_t most_points = 30000;
+  grid.values = grid.dimensions == 1   ? 32 + 16 * fastest
+                : grid.dimensions == 2 ? std::max(40, 16 * fastest)
+                                       : std::max(14, 10 * fastest);
   std::size_t count = 1;
   for (int d = 0; d < grid.dimensions; ++d)
     count *= static_cast<std::size_t>(grid.values);
+  if (count > most_points) return out;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(motors.size()));
   for (std::size_t i = 0; i < count; ++i) {
     if (problem.cancelled()) return out;
@@ -176,12 +196,8 @@ std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, cons
     const auto motor = static_cast<Eigen::Index>(m);
     PhaseRange range;
     range.mean = sum[motor] / static_cast<double>(count);
-    for (const double sign : {1., -1.}) {
-      const std::size_t best = best_point(grid, motor, sign);
-      const double extreme = sign * refined(torques, motor, sign, grid.angles(best), turn / grid.values,
-                                            sign * grid.torques[best][motor]);
-      (sign > 0 ? range.most : range.least) = extreme;
-    }
+    range.most = greatest(torques, grid, motor, 1);
+    range.least = -greatest(torques, grid, motor, -1);
     out[m] = range;
   }
   return out;

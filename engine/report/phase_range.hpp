@@ -22,7 +22,7 @@ std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const 
                                                     const Eigen::VectorXd& q);
 
 // Of the torques of some motors in a steady state. Nothing where the drives never return, or have more than
-// three groups.
+// three groups, or two or three of so many turns that too many phases would have to be looked at.
 std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,
                                                     std::span<const int> motors, Workspace& w);
 

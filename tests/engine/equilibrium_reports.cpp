@@ -216,6 +216,27 @@ TEST_CASE("drive torques that vary have their mean and range over all phases") {
     CHECK(std::abs(t.range->most - a.mean - b.mean - a.amplitude - b.amplitude) < 1e-12);
     CHECK(std::abs(t.range->least - a.mean - b.mean + a.amplitude + b.amplitude) < 1e-12);
   }
+  SECTION("of 123 peaks nearly alike the highest") {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("a", 1, {0.1, 0, 0}), body("b", 1, {0.3, 0, 0})};
+    m.joints = {driven(revolute("p", "ground", "a", {}), 5),
+                driven(revolute("q", "a", "b", {0.2, 0, 0}), 7.3)};
+    const auto closed = [](double t) { // of p
+      return standard_gravity * (0.3 * std::cos(5 * t) + 0.1 * std::cos(12.3 * t)) -
+             0.02 * std::sin(7.3 * t) * (7.3 * 7.3 + 2 * 5 * 7.3);
+    };
+    double least = 0, most = 0;
+    for (double t = 0; t < 20 * std::numbers::pi; t += 2e-4) {
+      least = std::min(least, closed(t));
+      most = std::max(most, closed(t));
+    }
+    const Solution s = solve(m);
+    const DriveTorque& t = torque(s, "p");
+    REQUIRE(t.range);
+    CHECK(std::abs(t.range->least - least) < 1e-5);
+    CHECK(std::abs(t.range->most - most) < 1e-5);
+  }
   SECTION("a slide that never returns has none") {
     Mechanism m = dragged_arms({});
     m.bodies.push_back(body("slider", 1, {0.5, 0, 0}));

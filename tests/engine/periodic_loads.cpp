@@ -92,6 +92,26 @@ TEST_CASE("The shaft of an unbalanced rotor bears its weight and m e w^2 that tu
   }
 }
 
+TEST_CASE("The size of a load comes back that turns with a drive without a part in the period") {
+  Mechanism m;
+  m.gravity = Vec3::Zero();
+  m.bodies = {body("table", 1, {0.05, 0, 0}, {0.01, 0.01, 0.01}),
+              body("slider", 2, {0.1, 0, 0}, {0.01, 0.01, 0.01}),
+              body("rotor", 0.3, {0.13, 0.02, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {driven(revolute("turn", "ground", "table", {0, 0, 0}), 3),
+              dampened(sprung(prismatic("slide", "table", "slider", {0.1, 0, 0}, Vec3::UnitX()), 900), 8),
+              driven(revolute("shake", "slider", "rotor", {0.1, 0, 0}), 7)};
+  m.measures = {{"load", "", "reaction(turn)", "N"}};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK_THAT(s.period, WithinAbs(2 * pi / 7, 1e-12));
+  const PeriodicVector& force = load(s.reactions, "turn").force;
+  CHECK(std::isnan(force.component[0].mean)); // it turns with the table
+  const PeriodicRange& told = s.measures[0].range;
+  check_range(force.size, {told.mean, told.least, told.most}, told.most);
+}
+
 TEST_CASE("A bearing bears what accelerates the rotor in it, and its damper what the drive gives") {
   // Jeffcott's rotor on a bearing: the shaft follows the mass centre's e exp(i w t) by k, d.
   const double mass = 4, e = 1e-3, k = 1e4, d = 40, natural = std::sqrt(k / mass);
