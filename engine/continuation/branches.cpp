@@ -187,12 +187,17 @@ class Diagram {
     }
     if (found.status != Status::converged || !existence.holds) {
       const Stability none;
-      out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string unit = parameter_unit(mechanism_, address_);
-      std::optional<TurnedState> turned = find_turned(problem, start);
-      if (turned && options_.turned) return follow_turned(std::move(*turned), start);
+      const std::optional<TurnedState> turned = find_turned(problem, start);
+      out_.turned = turned && options_.turned;
+      if (out_.turned && ties_stay(turned->ties, start)) return follow_turned(*turned);
+      if (!turned) out_.status = found.status == Status::converged ? Status::no_steady_state : found.status;
       const std::string why =
-          turned
+          out_.turned
+              ? "The steady state stands turned against the drawn pose, and what is varied changes which "
+                "angles are tied to each other, as a gear's ratio does: it is not followed. A sweep "
+                "solves at each value by itself."
+          : turned
               ? "The steady state stands turned against the drawn pose, and at other values otherwise: it is "
                 "not followed."
               : failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
@@ -259,10 +264,7 @@ class Diagram {
     return find_turned_state(dense, start, follower_.workspace());
   }
 
-  void follow_turned(TurnedState state, const Eigen::VectorXd& start) {
-    out_.turned = true;
-    out_.ties_change = !ties_stay(state.ties, start);
-    if (out_.ties_change) return step_turned(std::move(state));
+  void follow_turned(const TurnedState& state) {
     out_.status = Status::converged;
     begun_ = "The steady state stands turned against the drawn pose.";
     const auto first = follower_.begin(state, from_, true);
@@ -288,76 +290,6 @@ class Diagram {
     }
     follower_.problem_at(from_);
     return stay;
-  }
-
-  // From value to value of the number, in steps in which little changes.
-  void step_turned(TurnedState state) {
-    constexpr double first = 1. / 64, longest = 1. / 16, least = 1e-9; // of the range
-    const double range = to_ - from_;
-    std::vector<ResponsePoint> points;
-    std::string end = "the end of the range";
-    MeasureSet measures;
-    const auto add = [&](double value, const TurnedState& at) {
-      const Problem drawn = follower_.problem_at(value);
-      const Parameters turned = at_angles_of(drawn.parameters, at);
-      points.push_back(response_point(
-          follower_.mechanism(), {drawn.system, turned, drawn.scaling, drawn.cancel}, at.z, at.error,
-          {options_.eigenvalues, options_.reactions, &measures}, follower_.workspace()));
-      points.back().parameter = value;
-    };
-    const auto beside = [&](double value) -> std::optional<TurnedState> {
-      const Problem drawn = follower_.problem_at(value);
-      const Problem dense{drawn.system, drawn.parameters, drawn.scaling, drawn.cancel};
-      auto next = find_turned_state_beside(dense, state, follower_.workspace());
-      if (!next) return {};
-      const Parameters turned = at_angles_of(drawn.parameters, *next);
-      const std::vector<double> phases = sample_phases(drawn.system, turned, next->z.q);
-      const Problem there{drawn.system, turned, drawn.scaling, drawn.cancel};
-      if (!check_existence(there, next->z.q, phases, follower_.workspace()).holds) return {};
-      return next;
-    };
-    const auto way = [&](const TurnedState& next) {
-      const Problem problem = follower_.problem_at(points.back().parameter);
-      Eigen::VectorXd turned = next.starts - state.starts;
-      for (std::size_t l = 0; l < problem.system.links.size(); ++l)
-        if (problem.system.links[l].type == LinkType::prismatic)
-          turned[static_cast<Eigen::Index>(l)] /= problem.parameters.length;
-      return std::max(scaled_difference(problem, state.z.q, next.z.q).lpNorm<Eigen::Infinity>(),
-                      turned.lpNorm<Eigen::Infinity>());
-    };
-    add(from_, state);
-    double at = from_, step = first * range;
-    while (at != to_ && static_cast<int>(points.size()) < options_.max_points) {
-      interruption_point();
-      report_progress(options_.progress, "following", (at - from_) / range);
-      const double value = std::abs(to_ - at) <= std::abs(step) ? to_ : at + step;
-      std::optional<TurnedState> next;
-      std::string why = "solving leads to no state beside it, as at a fold";
-      try {
-        next = beside(value);
-      } catch (const SceneError& error) {
-        why = std::string("beyond it no mechanism can be made: ") + error.what();
-      }
-      const double moved = next ? way(*next) : 0;
-      if (!next || moved > 4 * options_.largest_step) {
-        step /= 2;
-        if (std::abs(step) > least * std::abs(range)) continue;
-        end = why;
-        break;
-      }
-      state = std::move(*next);
-      at = value;
-      add(at, state);
-      if (moved < options_.largest_step)
-        step = std::copysign(std::min(1.5 * std::abs(step), longest * std::abs(range)), range);
-    }
-    if (at != to_ && static_cast<int>(points.size()) >= options_.max_points)
-      end = "the largest number of points";
-    out_.status = Status::converged;
-    out_.branches.push_back({std::move(points), std::move(end), {}, true});
-    out_.message = "1 branch, of states that stand turned against the drawn pose. As " + address_ +
-                   " changes which angles are tied to each other, folds, crossings and Hopf points were not "
-                   "looked for.";
   }
 
   // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.

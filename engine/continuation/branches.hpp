@@ -62,11 +62,9 @@ struct ResponseDiagram {
   std::vector<SpecialPoint> special;
   std::vector<double> searched; // values of the parameter at which all equilibria were looked for
   int starts = 0;               // Newton-Raphson runs of that search, which is bounded and may miss some
-  // The one connected with the drawn pose is of states that stand turned (Solution::turned).
+  // The one connected with the drawn pose is of states that stand turned (Solution::turned). It is not followed
+  // along a number that changes which angles are tied to each other, as a gear's ratio does.
   bool turned = false;
-  // Of these: the number changes which angles are tied to each other, as a gear's ratio does. They are then
-  // solved from value to value, as far as that goes, without folds, crossings and Hopf points.
-  bool ties_change = false;
   double run_time_s = 0;
 };
 

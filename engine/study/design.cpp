@@ -49,11 +49,7 @@ class Designer {
     diagram_ = follow_branches(mechanism_, address_, from_, to_, follow);
     out_.status = diagram_.status;
     out_.message = diagram_.message;
-    if (diagram_.ties_change) {
-      out_.status = Status::not_converged;
-      out_.message = "The steady state stands turned against the drawn pose, and " + address_ +
-                     " changes which angles are tied to each other: it is not looked for among such states.";
-    } else if (!diagram_.branches.empty()) {
+    if (!diagram_.branches.empty()) {
       find_range();
       prepare(diagram_.turned);
       solve_along();
