@@ -117,10 +117,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
   point.singular_loops = at_singular_loops(problem, z, w);
   Stability stability = find_stability(at, details.eigenvalues);
   if (sign_is_open(at, stability)) leave_open(stability);
-  if (point.singular_loops) { // along their tangents more moves than can (leave_out_modes() of report/)
-    stability.eigenvalues.reset();
-    if (stability.stable == false) leave_open(stability);
-  }
+  if (point.singular_loops) leave_out_modes(stability);
   point.stable = stability.stable;
   point.floquet = std::move(stability.floquet);
   point.stability_reason = stability.reason;

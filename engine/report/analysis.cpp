@@ -104,21 +104,24 @@ void keep_asked_for(const Problem& problem, int modes, Stability& stability) {
     keep_nearest(*stability.eigenvalues, static_cast<std::size_t>(modes));
 }
 
-// Along tangents of singular loops more moves than can: what grows there need not grow, and nothing swings
-// so.
-void leave_out_modes(const ErrorEstimate& error, Stability& stability, Solution& out) {
-  out.singular_loops = error.singular_loops;
-  if (!error.singular_loops) return;
-  stability.eigenvalues.reset();
-  if (stability.stable != false) return;
-  stability.stable.reset();
-  stability.reason = StabilityReason::marginal;
-}
-
 // Of the balance on the null space, scaled and equilibrated, where that is not too large.
 void add_condition(const Problem& problem, SteadyState& steady, Solution& out) {
   if (problem.system.nv == 0 || problem.system.nv > largest_for_eigenvalues) return;
   out.condition = steady.factored(by_matrices(problem)).w.dense.hessian().condition();
+}
+
+// Where the coordinates that are free were looked for.
+std::vector<AllSolutions::Bound> bounds_of(const System& system, std::span<const SearchRange> ranges) {
+  std::vector<AllSolutions::Bound> out;
+  for (std::size_t c = 0; c < system.coordinates.size(); ++c) {
+    const CoordinateInfo& info = system.coordinates[c];
+    const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
+    const Link& link = system.links[static_cast<std::size_t>(info.link)];
+    if (link.drive >= 0 && !finds_speed(link)) continue;
+    out.push_back({joint.name, info.index, coordinate_count(joint.type), info.angle, ranges[c].lower,
+                   ranges[c].upper, finds_speed(link)});
+  }
+  return out;
 }
 
 } // namespace
@@ -218,10 +221,8 @@ struct Analysis::State {
       const Link& link = system.links[static_cast<std::size_t>(torque.link)];
       const double by = parameters.links[static_cast<std::size_t>(torque.link)].start;
       if (std::abs(by) < 1e-12) continue;
-      const TreeJoint& joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)];
-      angles += (angles.empty() ? "" : ", ") +
-                coordinate_label(joint.name, link.coordinate, coordinate_count(joint.type)) + " by " +
-                rounded_text(by, 6) + (link.type == LinkType::revolute ? " rad" : " m");
+      angles += (angles.empty() ? "" : ", ") + coordinate_label(system, link) + " by " + rounded_text(by, 6) +
+                (link.type == LinkType::revolute ? " rad" : " m");
     }
     return "So that the balance stays it stands turned against the drawn pose: " + angles + ".";
   }
@@ -235,6 +236,61 @@ struct Analysis::State {
       found.links[l].speed = answer[system.links[l].q];
     }
     return found;
+  }
+
+  // Whatever is solved begins so. Throws SceneError for points that name nothing.
+  Problem prepare(const SolveOptions& options) {
+    if (turned) bind_numbers();
+    turned = settled = false;
+    for (const BodyPoint& point : options.points)
+      find_point(system, *mechanism, parameters, point);
+    return {system, parameters, scaling, options.cancel, system.kkt_form};
+  }
+
+  // Why there is no steady state.
+  void explain(const Problem& problem, const Stability& stability, Solution& out) {
+    const ReportInput input{*mechanism, problem, steady.found, steady.existence, stability};
+    out.message = failure_message(input, steady.elsewhere());
+    if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
+    out.residual = steady.history.empty() ? 0 : steady.history.back();
+    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
+    out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
+                       weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
+    if (system.torques.empty() || out.status != Status::not_converged || problem.cancelled()) return;
+    if (const std::string why = missing_speed_message(*mechanism, problem, steady.elsewhere()); !why.empty())
+      out.message = why + " " + out.message;
+  }
+
+  // To what the verdict on the steady state rests on. Returns why there are none, where they are looked for.
+  std::string add_eigenvalues(const Problem& problem, const SolveOptions& options, Stability& stability) {
+    const bool known_by_pivots = is_large(problem) && (pivots_decide(problem) || steady.found.minimum);
+    if (options.modes <= 0 && known_by_pivots) return {};
+    report_progress(options.progress, "eigenvalues");
+    std::string failure;
+    if (pivots_decide(problem))
+      failure = add_lowest_eigenvalues(problem, steady.found.z, options.modes, steady.elsewhere(), stability);
+    else if (!stability.eigenvalues) // only of a minimum the sign is found without them
+      stability = stability_of(problem, steady, true, options.modes);
+    if (options.modes > 0 && stability.eigenvalues &&
+        stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
+      stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+    return failure;
+  }
+
+  // Fills in what is told of a state that holds.
+  void conclude(const Problem& problem, SteadyState& at, Stability stability,
+                const std::string& without_modes, const SolveOptions& options, Solution& out) {
+    out.singular_loops = at.error.singular_loops;
+    if (out.singular_loops) leave_out_modes(stability);
+    report({*mechanism, problem, at.found, at.existence, stability, options.points, &measures},
+           at.error.solution + at.error.data, options.details, at.reuse(), out);
+    if (!without_modes.empty()) out.message += " " + without_modes;
+    if (turned) out.message += " " + turned_message();
+    out.turned = turned;
+    if (options.details && !system.torques.empty())
+      out.at_constant_speed =
+          turned ? turned_stability_at_constant_speed(*mechanism, problem, at.found.z, out.coordinates)
+                 : stability_at_constant_speed(*mechanism, system, at.found.z.q, out.coordinates);
   }
 
   void bind_numbers() {
@@ -311,16 +367,10 @@ Solution Analysis::solve(const SolveOptions& options) {
 
 Solution Analysis::solve_through(const SolveOptions& options) {
   State& s = *state_;
-  if (s.turned) s.bind_numbers();
-  s.turned = false;
-  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
+  const Problem problem = s.prepare(options);
   const bool warm = options.warm && s.answered && options.start.empty();
   s.start = warm ? s.answer : s.drawn;
   set_start(s.system, s.parameters, options.start, s.start);
-  for (const BodyPoint& point : options.points) // throws before anything is computed
-    find_point(s.system, *s.mechanism, s.parameters, point);
-
-  s.settled = false;
 
   report_progress(options.progress, "solving");
   const auto begin = std::chrono::steady_clock::now();
@@ -363,19 +413,8 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   out.status = steady.holds                               ? Status::converged
                : steady.found.status == Status::converged ? Status::no_steady_state
                                                           : steady.found.status;
-  if (!steady.holds && !options.explain) return out;
   if (!steady.holds) {
-    const ReportInput input{*s.mechanism, problem, steady.found, steady.existence, stability};
-    out.message = failure_message(input, steady.elsewhere());
-    if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
-    out.residual = steady.history.empty() ? 0 : steady.history.back();
-    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
-    out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
-                       weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
-    if (!s.system.torques.empty() && out.status == Status::not_converged && !problem.cancelled())
-      if (const std::string why = missing_speed_message(*s.mechanism, problem, steady.elsewhere());
-          !why.empty())
-        out.message = why + " " + out.message;
+    if (options.explain) s.explain(problem, stability, out);
     return out;
   }
   if (std::string why = undetermined_speed_message(*s.mechanism, s.system, stability.neutral); !why.empty()) {
@@ -386,34 +425,14 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.answer = steady.found.z.q;
   s.answered = s.settled = true;
   std::string without_modes;
-  const bool known_by_pivots = is_large(problem) && (pivots_decide(problem) || steady.found.minimum);
-  if (options.details && !varies && (options.modes > 0 || !known_by_pivots)) {
-    report_progress(options.progress, "eigenvalues");
-    if (pivots_decide(problem)) {
-      without_modes =
-          add_lowest_eigenvalues(problem, steady.found.z, options.modes, steady.elsewhere(), stability);
-    } else if (!stability.eigenvalues) { // only of a minimum the sign is found without them
-      stability = stability_of(problem, steady, true, options.modes);
-    }
-    keep_asked_for(problem, options.modes, stability);
-  }
+  if (options.details && !varies) without_modes = s.add_eigenvalues(problem, options, stability);
   if (open && stability.reason != StabilityReason::neutral) leave_verdict_open(steady, stability);
   if (options.details) {
     add_condition(problem, steady, out);
     s.add_rates(problem, out);
   }
-  leave_out_modes(steady.error, stability, out);
   report_progress(options.progress, "reactions");
-  const ReportInput input{*s.mechanism, problem,        steady.found, steady.existence,
-                          stability,    options.points, &s.measures};
-  report(input, steady.error.solution + steady.error.data, options.details, steady.reuse(), out);
-  if (!without_modes.empty()) out.message += " " + without_modes;
-  out.turned = s.turned;
-  if (s.turned) out.message += " " + s.turned_message();
-  if (options.details && !s.system.torques.empty())
-    out.at_constant_speed =
-        s.turned ? turned_stability_at_constant_speed(*s.mechanism, problem, steady.found.z, out.coordinates)
-                 : stability_at_constant_speed(*s.mechanism, s.system, s.answer, out.coordinates);
+  s.conclude(problem, steady, std::move(stability), without_modes, options, out);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, steady.start, steady.elsewhere(), out);
   const std::optional<std::string> unknown = unknown_coordinate(out);
@@ -444,11 +463,7 @@ AllSolutions Analysis::solve_all(const SolveOptions& options) {
 
 AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   State& s = *state_;
-  if (s.turned) s.bind_numbers();
-  s.turned = s.settled = false;
-  const Problem problem{s.system, s.parameters, s.scaling, options.cancel, s.system.kkt_form};
-  for (const BodyPoint& point : options.points)
-    find_point(s.system, *s.mechanism, s.parameters, point);
+  const Problem problem = s.prepare(options);
   SearchOptions search;
   search.seconds = options.search_time;
   search.starts = options.search_starts;
@@ -460,15 +475,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   out.starts = list.report.starts;
   out.unseen = list.report.unseen;
   out.end = rubs ? SearchEnd::settled : list.report.end;
-  for (std::size_t c = 0; c < s.system.coordinates.size(); ++c) {
-    const CoordinateInfo& info = s.system.coordinates[c];
-    const TreeJoint& joint = s.system.tree_joints[static_cast<std::size_t>(info.tree_joint)];
-    const Link& link = s.system.links[static_cast<std::size_t>(info.link)];
-    if (link.drive >= 0 && !finds_speed(link)) continue;
-    const SearchRange& r = list.report.ranges[c];
-    out.bounds.push_back({joint.name, info.index, coordinate_count(joint.type), info.angle, r.lower, r.upper,
-                          finds_speed(link)});
-  }
+  out.bounds = bounds_of(s.system, list.report.ranges);
   struct Entry {
     Potential potential;
     Solution solution;
@@ -524,14 +531,8 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();
-    leave_out_modes(steady.error, stability, entry.solution);
     if (options.details) add_condition(problem, steady, entry.solution);
-    report({*s.mechanism, problem, found, steady.existence, stability, options.points, &s.measures},
-           steady.error.solution + steady.error.data, options.details, steady.reuse(), entry.solution);
-    if (!without_modes.empty()) entry.solution.message += " " + without_modes;
-    if (options.details && !s.system.torques.empty())
-      entry.solution.at_constant_speed =
-          stability_at_constant_speed(*s.mechanism, s.system, found.z.q, entry.solution.coordinates);
+    s.conclude(problem, steady, std::move(stability), without_modes, options, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution) || unknown_coordinate(entry.solution)) continue;
     entries.push_back(std::move(entry));

@@ -175,4 +175,9 @@ void leave_open(Stability& stability) {
   stability.reason = StabilityReason::marginal;
 }
 
+void leave_out_modes(Stability& stability) {
+  stability.eigenvalues.reset();
+  if (stability.stable == false) leave_open(stability);
+}
+
 } // namespace flyball

@@ -21,4 +21,8 @@ bool sign_is_open(const FactoredState& at, const Stability& stability);
 // Takes the verdict back.
 void leave_open(Stability& stability);
 
+// Of a state at singular loops: along their tangents more moves than can, so that what grows there need not
+// grow, and nothing swings so.
+void leave_out_modes(Stability& stability);
+
 } // namespace flyball
