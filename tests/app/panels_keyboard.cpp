@@ -294,6 +294,27 @@ TEST_CASE("after a drag of a slider with the mouse Tab is the mode again") {
   CHECK(app.session.mode == Mode::build);
 }
 
+TEST_CASE("when the panel's contents change under the keys they come to no button") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  set_mode(app.session, Mode::build);
+  robot.frames(3);
+  const auto field = std::ranges::find_if(app.ui.widgets.stops, [](const KeyStop& stop) {
+    return stop.use == KeyUse::type && stop.name.starts_with("inspector/");
+  });
+  REQUIRE(field != app.ui.widgets.stops.end());
+  focus_widget(app.ui, field->name);
+  robot.frames(6);
+  REQUIRE(app.ui.keyboard.ring);
+  app.commands.run("edit.all"); // the inspector is of all parts now, and begins with what deletes them
+  robot.frames(20);
+  const std::size_t bodies = app.session.mechanism().bodies.size();
+  robot.key(' ');
+  robot.key(key_enter);
+  robot.frames(3);
+  CHECK(app.session.mechanism().bodies.size() == bodies);
+}
+
 TEST_CASE("a plot's dot goes along its curve by arrows, and plus zooms about it") {
   Typist hand;
   App& app = hand.app;

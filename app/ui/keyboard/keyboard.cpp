@@ -297,14 +297,15 @@ void follow_clicks(Ui& ui) {
   }
 }
 
-// Of a region that has gone, or of a widget that has.
+// Of a region that has gone, or of a widget that has. What the next key would press, perhaps to delete all that
+// has just been selected, is not what anybody went to.
 void find_another(Ui& ui) {
   KeyboardState& state = ui.keyboard;
   const std::vector<KeyStop>& stops = ui.widgets.stops;
   const KeyStop* nearest = nullptr;
   for (std::size_t i = 0; i < stops.size(); ++i)
     if (region_of(stops[i]) == state.region && stops[i].use != KeyUse::aside &&
-        (!nearest || i <= state.place))
+        stops[i].use != KeyUse::press && (!nearest || i <= state.place))
       nearest = &stops[i];
   if (nearest && state.opening == state.at && nearest->use == KeyUse::type) return go(ui, *nearest, true);
   if (nearest)
