@@ -255,6 +255,21 @@ TEST_CASE(
   CHECK(get_parameter(app.session.mechanism(), "parameters.n") == Approx(68.2320470519));
 }
 
+TEST_CASE("where there is little room the Campbell diagram has it, and critical speeds stand below") {
+  const PixelSize window = GENERATE(PixelSize{900, 600}, PixelSize{1100, 900});
+  Robot robot(window);
+  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
+  robot.frames(3);
+  robot.key('O');
+  robot.frames(5);
+  const WidgetRect plot = robot.widget("plot/campbell/area");
+  CHECK(plot.to.y - plot.from.y > 100);
+  const auto& widgets = robot.app.ui.widgets;
+  const auto row = widgets.find("campbell/critical/1");
+  if (row != widgets.end()) CHECK(row->second.from.y >= plot.to.y);
+  if (window.height == 900) CHECK(row != widgets.end());
+}
+
 TEST_CASE("only of the branch that is shown is it said where it has no modes") {
   // The arms of the other branch hang straight down, and are without modes at every speed.
   ModesRobot robot("governor");

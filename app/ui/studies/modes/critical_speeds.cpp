@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 
 namespace flyball {
@@ -46,9 +47,19 @@ std::string help_of(const CriticalSpeed& at, const std::string& name, const std:
 
 std::vector<CriticalRow> critical_rows(const CampbellDiagram& diagram, std::size_t branch,
                                        std::span<const std::string> names, const ShownUnit& unit) {
+  // A branch that goes through a crossing to its mirror image has each speed twice.
+  const auto same = [&](const CriticalSpeed& a, const CriticalSpeed& b) {
+    constexpr double rounding = 1e-9;
+    return a.order == b.order && a.stable == b.stable &&
+           names[static_cast<std::size_t>(a.line)] == names[static_cast<std::size_t>(b.line)] &&
+           std::abs(a.speed - b.speed) <= a.error + b.error + rounding * std::abs(a.speed) &&
+           std::abs(a.frequency - b.frequency) <= 1e-6 * a.frequency;
+  };
   std::vector<CriticalSpeed> found;
   for (const CriticalSpeed& at : diagram.critical)
-    if (at.branch == static_cast<int>(branch)) found.push_back(at);
+    if (at.branch == static_cast<int>(branch) &&
+        std::ranges::none_of(found, [&](const CriticalSpeed& known) { return same(at, known); }))
+      found.push_back(at);
   std::ranges::stable_sort(found, {}, [](const CriticalSpeed& at) { return std::tuple(at.order, at.speed); });
   std::vector<CriticalRow> rows;
   for (const CriticalSpeed& at : found) {

@@ -314,42 +314,53 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
       drawn.view.look.range[1].reset();
     }
   }
-  if (auto& diagram = campbell.diagram; diagram.running()) {
-    ImGui::SameLine(0, 14 * s);
+  auto& diagram = campbell.diagram;
+  if (diagram.running()) { // in a row of its own, where it is in sight
+    if (diagram.found && diagram.seconds() < modes_patience) return;
     if (text_button(ui, "campbell/cancel", "Cancel")) diagram.stop();
     ImGui::SameLine();
-    task_bar(ui, "campbell/progress", diagram.progress(), diagram.seconds(),
-             std::max(ImGui::GetContentRegionAvail().x, 30 * s));
+    task_bar(ui, "campbell/progress", diagram.progress(), diagram.seconds());
   } else if (!campbell.current || !campbell.on_branch) {
+    const float button = ImGui::CalcTextSize("Follow again").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SameLine(0, 14 * s);
+    if (ImGui::GetContentRegionAvail().x < button) ImGui::NewLine();
     if (text_button(ui, "campbell/again", "Follow again", true)) follow_campbell(session);
   }
 }
 
-// Beside the plot where there is room for both, or else above it. Returns the plot's width (pixels).
-float show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive) {
-  constexpr float least_plot = 360; // points
-  constexpr std::size_t most_above = 3;
-  const ImVec2 room = ImGui::GetContentRegionAvail();
-  if (!drawn.critical) return room.x;
+// Where the table of critical speeds is: beside the plot where there is room for both, else below it.
+struct CampbellPlaces {
+  ImVec2 plot;     // pixels
+  float below = 0; // pixels, of the table; 0: none there
+};
+
+CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive) {
+  constexpr float least_width = 360, least_height = 150; // points, of the plot
+  constexpr std::size_t fewest = 1, most_below = 3;      // rows
+  const ImVec2 before = ImGui::GetContentRegionAvail();
+  if (!drawn.critical) return {before};
   const std::vector<CriticalRow>& rows = *drawn.critical;
   if (rows.empty()) {
     paragraph("No critical speed in this range.", colors_of(ui).dim);
     note_widget(ui.widgets, "campbell/no_critical");
-    return room.x;
+    return {ImGui::GetContentRegionAvail()};
   }
   const float width = critical_table_width(ui), gap = 10 * ui.scale;
   const float line = ImGui::GetTextLineHeight() + 4 * ui.scale;
-  if (room.x < width + gap + least_plot * ui.scale) {
-    critical_table(session, ui, rows, drawn.unit, drive,
-                   line * static_cast<float>(1 + std::min(rows.size(), most_above)));
-    return room.x;
+  if (before.x >= width + gap + least_width * ui.scale) {
+    const ImVec2 at = ImGui::GetCursorPos();
+    ImGui::SetCursorPos({at.x + before.x - width, at.y});
+    critical_table(session, ui, rows, drawn.unit, drive, before.y);
+    ImGui::SetCursorPos(at);
+    return {{before.x - width - gap, before.y}};
   }
-  const ImVec2 at = ImGui::GetCursorPos();
-  ImGui::SetCursorPos({at.x + room.x - width, at.y});
-  critical_table(session, ui, rows, drawn.unit, drive, room.y);
-  ImGui::SetCursorPos(at);
-  return room.x - width - gap;
+  // As many rows as leave the plot its height; its circles tell the others.
+  const float space = before.y - least_height * ui.scale - ImGui::GetStyle().ItemSpacing.y;
+  const std::size_t shown = std::min(rows.size(), most_below);
+  for (std::size_t count = shown; count >= fewest; --count)
+    if (const float height = line * static_cast<float>(1 + count); height <= space)
+      return {{before.x, before.y - height - ImGui::GetStyle().ItemSpacing.y}, height};
+  return {before};
 }
 
 void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
@@ -378,10 +389,11 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
-  const float room = show_critical(session, ui, drawn, diagram.found->of.drive);
-  const PlotEvents events =
-      plot_view(session, ui, "campbell", drawn.view, drawn.plot,
-                {std::max(room, 40.f), std::max(ImGui::GetContentRegionAvail().y, 40.f)});
+  const CampbellPlaces places = show_critical(session, ui, drawn, diagram.found->of.drive);
+  const PlotEvents events = plot_view(session, ui, "campbell", drawn.view, drawn.plot,
+                                      {std::max(places.plot.x, 40.f), std::max(places.plot.y, 40.f)});
+  if (places.below > 0)
+    critical_table(session, ui, *drawn.critical, drawn.unit, diagram.found->of.drive, places.below);
   const auto set = [&](double speed) {
     later(ui, [&session, drive, speed] { change_parameter(session, drive, speed); });
   };
