@@ -2,6 +2,7 @@
 
 #include "engine/kkt/configuration_difference.hpp"
 #include "engine/kkt/tied_angles.hpp"
+#include "engine/linear/central_difference.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/search/find_equilibrium.hpp"
@@ -11,7 +12,6 @@
 #include "engine/system/residual.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -25,9 +25,6 @@ namespace {
 constexpr int most_coordinates = 60;
 constexpr double counts = 1e-6;     // of the largest effect of an angle
 constexpr double first_drift = 0.2; // of the angles, in the first of slow steps
-// Of a central difference of sixth order.
-constexpr double difference = 0x1p-7;
-constexpr std::array weights{3. / 4, -3. / 20, 1. / 60};
 
 class PhaseSearch {
  public:
@@ -143,12 +140,7 @@ class PhaseSearch {
   // d/dx effect(at + x along) at 0.
   Eigen::VectorXd slope(const Eigen::VectorXd& at, const Eigen::VectorXd& along,
                         const Eigen::VectorXd& lambda) {
-    Eigen::VectorXd out = Eigen::VectorXd::Zero(given_.system.nv + given_.system.rows);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double x = difference * static_cast<double>(i + 1);
-      out += weights[i] / difference * (effect(at + x * along, lambda) - effect(at - x * along, lambda));
-    }
-    return out;
+    return central_difference([&](double x) { return effect(at + x * along, lambda); });
   }
 
   // Along which gears and loops that are tied by their rates stay closed, too: orthonormal, by column.

@@ -1,9 +1,8 @@
 #include "engine/stability/phase_stiffness.hpp"
 
+#include "engine/linear/central_difference.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/stability/linear_motion.hpp"
-
-#include <array>
 
 namespace flyball {
 namespace {
@@ -64,16 +63,9 @@ PhaseStiffness phase_stiffness(const Problem& of, const Unknowns& z, Workspace& 
       return largest_size((force_at(l, by * unit) - drawn).cwiseProduct(scale)) > matters * size;
     };
     if (!changes(far[0]) && !changes(far[1])) continue;
-    constexpr double h = 0x1p-7; // the error is h^6 / 140 of the seventh derivative: 2e-15
-    constexpr std::array weights{3. / 4, -3. / 20, 1. / 60};
-    Eigen::VectorXd slope = Eigen::VectorXd::Zero(system.nv);
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double by = h * static_cast<double>(i + 1) * unit;
-      slope += weights[i] / (h * unit) * (force_at(l, by) - force_at(l, -by));
-    }
     out.entries.push_back(link.v);
     out.columns.conservativeResize(system.nv, out.columns.cols() + 1);
-    out.columns.rightCols<1>() = slope;
+    out.columns.rightCols<1>() = central_difference([&](double by) { return force_at(l, by); }, unit);
   }
   if (!out.entries.empty() && !matter_with_loops(problem, z, out, size, w)) return {};
   return out;
