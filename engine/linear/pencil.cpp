@@ -156,11 +156,33 @@ Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen:
   return s;
 }
 
+Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::VectorXd& made_of) {
+  constexpr double rounding = 1e-13, light = 1e-10;
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(mass.rows());
+  const double heaviest = mass.rows() > 0 ? mass.diagonal().maxCoeff() : 0;
+  bool any_light = false;
+  for (Eigen::Index i = 0; i < mass.rows(); ++i) {
+    if (!(mass(i, i) > rounding * made_of[i])) continue;
+    units[i] = std::sqrt(heaviest / mass(i, i));
+    any_light |= mass(i, i) < light * heaviest;
+  }
+  return any_light ? units : Eigen::VectorXd::Ones(mass.rows());
+}
+
 Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                               const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
+                               const Eigen::MatrixXd& stiffness, CancelFlag cancel,
+                               const Eigen::VectorXd& made_of) {
   if (mass.rows() == 0) return std::vector<Complex>();
   const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
   if (!std::isfinite(m + k + d)) return {};
+  if (made_of.size() > 0) {
+    const Eigen::VectorXd units = units_of_inertia(mass, made_of);
+    const auto measured = [&](const Eigen::MatrixXd& a) {
+      return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
+    };
+    if ((units.array() != 1).any())
+      return pencil_eigenvalues(measured(mass), measured(velocity), measured(stiffness), cancel);
+  }
   if (m == 0) {
     if (d == 0) return std::vector<Complex>();
     const auto z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);

@@ -10,13 +10,21 @@
 
 namespace flyball {
 
+// Units (n) in which each direction has as much inertia as the heaviest, all 1 where none is much lighter: a
+// light part beside a heavy one is as well known as that. `made_of` (n): what the diagonal entries of M are
+// sums of; of one that is only rounding of these nothing is known, and it keeps its unit.
+Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::VectorXd& made_of);
+
 // Finite eigenvalues (1/s, by size of the imaginary part) of the pencil s^2 M + s D + K, each (n, n) in units
 // of one kind. M may be singular in any direction (massless coordinates): directions without mass and damping
-// are condensed statically, others leave as infinite eigenvalues. Nothing where an entry is not finite, the
-// iteration does not converge, or `cancel` is set.
-std::optional<std::vector<std::complex<double>>>
-pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                   const Eigen::MatrixXd& stiffness, const std::atomic<bool>* cancel = nullptr);
+// are condensed statically, others leave as infinite eigenvalues. What is massless is asked in
+// units_of_inertia() where `made_of` is given, else beside the heaviest. Nothing where an entry is not
+// finite, the iteration does not converge, or `cancel` is set.
+std::optional<std::vector<std::complex<double>>> pencil_eigenvalues(const Eigen::MatrixXd& mass,
+                                                                    const Eigen::MatrixXd& velocity,
+                                                                    const Eigen::MatrixXd& stiffness,
+                                                                    const std::atomic<bool>* cancel = nullptr,
+                                                                    const Eigen::VectorXd& made_of = {});
 
 // The same where the orthonormal columns of `cyclic`, which K takes to nothing, are left out as positions:
 // each has an eigenvalue zero, and these are not among the result. M must be positive definite, else nothing:

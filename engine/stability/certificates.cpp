@@ -1,6 +1,7 @@
 #include "engine/stability/certificates.hpp"
 
 #include "engine/linear/large.hpp"
+#include "engine/linear/pencil.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/stability/gyroscopic_stability.hpp"
 
@@ -61,9 +62,14 @@ bool energy_keeps(const System& system, const SteadyMotion& motion) {
 // Whether directions without mass and damping tip over at once: no finite eigenvalue shows it. They do
 // where their own stiffness is negative, and where it vanishes while they are coupled with directions that
 // have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
-std::optional<bool> massless_directions_tip(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                                            const Eigen::MatrixXd& stiffness) {
-  if (mass.rows() == 0) return false;
+std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
+  if (motion.mass.rows() == 0) return false;
+  const Eigen::VectorXd units = units_of_inertia(motion.mass, motion.inertia);
+  const auto measured = [&](const Eigen::MatrixXd& a) {
+    return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
+  };
+  const Eigen::MatrixXd mass = measured(motion.mass), velocity = measured(motion.velocity),
+                        stiffness = measured(motion.stiffness);
   SymmetricEigen shape;
   if (!shape.compute((mass + mass.transpose()) / 2)) return {};
   Eigen::Index massless = 0;
@@ -139,7 +145,7 @@ Verdict by_spectrum(const FactoredState& at, const SteadyMotion& motion, std::ve
       eigenvalues.begin() + std::min(null_eigenvalues, static_cast<int>(eigenvalues.size())),
       [&](Complex s) { return !(std::abs(s) < tolerance::null_eigenvalue * largest); });
   const std::ranges::subrange moving(begin, eigenvalues.end());
-  const auto tips = massless_directions_tip(mass, velocity, stiffness);
+  const auto tips = massless_directions_tip(motion);
   if (!tips) return {};
   const bool grows = *tips || std::ranges::any_of(moving, [&](Complex s) {
     return s.real() > real_part_rounding(s, largest);

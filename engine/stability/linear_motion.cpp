@@ -105,8 +105,18 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
     out.noise = KktSystem::rounding * out.basis.cwiseAbs2().transpose() * terms;
   }
   const auto s = out.unit.asDiagonal();
-  out.mass = large::projected(s * l.mass * s, out.basis);
+  const Eigen::MatrixXd mass = s * l.mass * s;
+  out.inertia = out.basis.cwiseAbs2().transpose() * own_inertia(system, mass);
+  out.mass = large::projected(mass, out.basis);
   out.velocity = large::projected(s * l.velocity * s, out.basis);
+  return out;
+}
+
+Eigen::VectorXd own_inertia(const System& system, const Eigen::MatrixXd& mass) {
+  Eigen::VectorXd out = mass.diagonal().head(system.nv).cwiseMax(0);
+  for (const Link& link : system.links)
+    if (link.type == LinkType::spherical && link.v >= 0)
+      out.segment<3>(link.v).setConstant(out.segment<3>(link.v).maxCoeff());
   return out;
 }
 

@@ -23,13 +23,18 @@ struct ReducedMotion {
   Eigen::MatrixXd mass, velocity, stiffness; // (k, k)
   Eigen::MatrixXd basis;                     // (n, k), orthonormal
   Eigen::VectorXd unit;                      // (n), rad or m per unit of it
-  Eigen::VectorXd noise; // (k), below what size a diagonal entry of the stiffness is rounding
+  Eigen::VectorXd noise;   // (k), below what size a diagonal entry of the stiffness is rounding
+  Eigen::VectorXd inertia; // (k), what a diagonal entry of the mass is made of, see own_inertia()
   // Whether the angle of something that turns at a speed that is found matters (phase_stiffness.hpp): then it
   // is none of the cyclic ones.
   bool of_angles = false;
   double stiffness_terms = 0; // where speeds are found: the norm of K before the loops take their part of it
 };
 ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspace& w);
+
+// Of each coordinate (n) what it has of inertia by itself; `mass` (n, n) or larger. Of a ball as much as
+// about any of its axes: about one of them it may have nothing but rounding.
+Eigen::VectorXd own_inertia(const System& system, const Eigen::MatrixXd& mass);
 
 // Directions on the null space `basis` (n, k) of the constraints, orthonormal, by column: of what turns at
 // speeds that are found by a torque, or keeps its momentum. Along each the motion has an eigenvalue zero, of

@@ -49,6 +49,7 @@ std::optional<SteadyMotion> steady_motion(const Problem& problem, const Unknowns
       out.phases = std::move(*phases);
     }
     out.noise = std::move(motion.noise);
+    out.inertia = std::move(motion.inertia);
     out.mass = std::move(motion.mass);
     out.velocity = std::move(motion.velocity);
     out.stiffness = std::move(motion.stiffness);
@@ -60,19 +61,20 @@ std::optional<SteadyMotion> steady_motion(const Problem& problem, const Unknowns
   static_cast<LinearPencil&>(out) = std::move(*reduced);
   out.phases = out.directions.transpose() * cyclic_directions(system, motion.basis, false);
   out.noise = out.directions.cwiseAbs2().transpose() * motion.noise;
+  out.inertia = out.directions.cwiseAbs2().transpose() * motion.inertia;
   return out;
 }
 
 std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const SteadyMotion& motion) {
   if (motion.phases.cols() == 0)
-    return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
+    return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel, motion.inertia);
   // On a tree an entry of M is as exact as its bodies' own numbers; a basis of loops mixes them.
   const double massless = problem.system.rows == 0 ? 1e-26 : 1e-13;
   auto out = eigenvalues_without_cyclic(motion.mass, motion.velocity, motion.stiffness, motion.phases,
                                         massless, problem.cancel);
   if (out) return out;
   // Something has no mass: all of them, and those nearest to zero left out.
-  out = pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel);
+  out = pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel, motion.inertia);
   for (Eigen::Index i = 0; out && i < motion.phases.cols(); ++i)
     if (!out->empty()) out->erase(std::ranges::min_element(*out, {}, [](Complex x) { return std::abs(x); }));
   return out;

@@ -11,8 +11,9 @@ namespace flyball {
 
 // On the null space of the constraints.
 struct SteadyMotion : LinearPencil {
-  Eigen::MatrixXd phases; // orthonormal, by column: of what torques drive, along which nothing changes
-  Eigen::VectorXd noise;  // below what size a diagonal entry of the stiffness is rounding
+  Eigen::MatrixXd phases;  // orthonormal, by column: of what torques drive, along which nothing changes
+  Eigen::VectorXd noise;   // below what size a diagonal entry of the stiffness is rounding
+  Eigen::VectorXd inertia; // what a diagonal entry of the mass is made of
 };
 
 // Of a dense problem that is evaluated and factored at z in the workspace, with its best multipliers. Nothing

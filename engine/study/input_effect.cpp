@@ -1,5 +1,8 @@
 #include "engine/study/input_effect.hpp"
 
+#include "engine/linear/pencil.hpp"
+#include "engine/stability/linear_motion.hpp"
+
 #include <algorithm>
 
 namespace flyball {
@@ -69,16 +72,23 @@ MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
   stiffness = reduced(l_.stiffness);
   const Eigen::Index k = mass.rows();
   if (k == 0) return;
-  if (!shape_.compute((mass + mass.transpose()) / 2)) throw Refusal{"The inertias overflow."};
+  inertia = space_.basis().cwiseAbs2().transpose() * own_inertia(model.system, l_.mass);
+  units_ = units_of_inertia(mass, inertia);
+  const Eigen::MatrixXd symmetric = (mass + mass.transpose()) / 2;
+  if (!shape_.compute(units_.asDiagonal() * symmetric * units_.asDiagonal()))
+    throw Refusal{"The inertias overflow."};
   while (without_mass < k && !(shape_.values()[without_mass] > massless * shape_.values()[k - 1]))
     ++without_mass;
+  if (without_mass == 0 && !factors_.compute(symmetric)) throw Refusal{"The inertias are too far apart."};
 }
 
 Eigen::VectorXd MotionAt::accelerate(const Eigen::VectorXd& rhs) const {
   if (rhs.size() == 0) return rhs;
+  if (without_mass == 0) return factors_.solve(rhs);
   const auto vectors = shape_.vectors().rightCols(mass.rows() - without_mass);
   const auto values = shape_.values().tail(mass.rows() - without_mass);
-  return vectors * (vectors.transpose() * rhs).cwiseQuotient(values);
+  const Eigen::VectorXd along = vectors.transpose() * units_.cwiseProduct(rhs);
+  return units_.cwiseProduct(vectors * along.cwiseQuotient(values));
 }
 
 InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd& rows,
@@ -106,7 +116,8 @@ InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd
   out.b0 = -(basis.transpose() * (out.force + l_.stiffness.topLeftCorner(n_, n_) * out.closing));
   out.b1 =
       -(basis.transpose() * (carried(out.drive_rates) + l_.velocity.topLeftCorner(n_, n_) * out.closing));
-  if (!((shape_.vectors().leftCols(without_mass).transpose() * out.b1).norm() <= consistent * out.b1.norm()))
+  const Eigen::VectorXd acts = out.b1.size() > 0 ? units_.cwiseProduct(out.b1) : out.b1;
+  if (!((shape_.vectors().leftCols(without_mass).transpose() * acts).norm() <= consistent * acts.norm()))
     throw Refusal{"its rate moves dampers of parts without mass"};
   out.shift = accelerate(out.b1);
   return out;

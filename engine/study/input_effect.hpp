@@ -49,7 +49,8 @@ class MotionAt {
                             const Eigen::VectorXd* force) const;
 
   Eigen::MatrixXd mass, velocity, stiffness; // (k, k), on the basis
-  Eigen::Index without_mass = 0;             // directions of these
+  Eigen::VectorXd inertia;       // (k): what a diagonal entry of the mass is made of (own_inertia())
+  Eigen::Index without_mass = 0; // directions of these
   MotionOfAll at;
 
  private:
@@ -67,7 +68,9 @@ class MotionAt {
   Linearization l_;            // scaled
   Eigen::MatrixXd constraint_; // scaled, (rows, all)
   ConstraintSpace space_;
-  SymmetricEigen shape_; // of the mass
+  Eigen::VectorXd units_; // of inertia (pencil.hpp)
+  SymmetricEigen shape_;  // of the mass in these
+  Cholesky factors_;      // of the mass, where nothing is without
 };
 
 } // namespace flyball

@@ -95,6 +95,7 @@ class Builder {
     Eigen::MatrixXd force, momentum;                              // (k, m): b0 and b1
     double stiffness_size = 0, momentum_size = 0, speed_size = 0; // momentum: of M at that speed
     Eigen::VectorXd held, inertia; // (k): what a radian or part of the reach takes of each
+    Eigen::VectorXd made_of;       // (k): see MotionAt::inertia
   };
 
   void check(const Solution& steady) const {
@@ -307,6 +308,7 @@ class Builder {
     out.mass = from.transpose() * motion.mass * from;
     out.velocity = from.transpose() * motion.velocity * from;
     out.stiffness = from.transpose() * motion.stiffness * from;
+    out.made_of = from.cwiseAbs2().transpose() * motion.inertia;
     std::vector<InputEffect> effects;
     out.b0.resize(k, inputs);
     out.shift.resize(k, inputs);
@@ -599,7 +601,7 @@ class Builder {
         if (!matrix->allFinite()) throw Refusal{"The numbers are too far apart for a linear model."};
     const auto found = out.explicit_form
                            ? poles(*out.explicit_form)
-                           : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel);
+                           : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel, m.made_of);
     if (!found) throw Refusal{"The poles are not found: the numbers are too far apart."};
     out.poles = *found;
     out.gain = static_gain(best_form(out));

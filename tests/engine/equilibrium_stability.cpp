@@ -582,3 +582,26 @@ TEST_CASE("a free slide with a damper hides no slow motion that grows") {
       check_eigenvalues(s, {rate, -rate, 0, -damping, {0, omega}, {0, -omega}}, 1e-6);
     }
 }
+
+TEST_CASE("a bead on a heavy block is not taken for massless") {
+  // On the block's spring the bead swings by itself: y'' = -(k / m - w^2) y + c / m y'.
+  for (const double mass : {1e-7, 1e-9, 1e-12}) {
+    CAPTURE(mass);
+    Mechanism m;
+    m.gravity = Vec3::Zero();
+    m.bodies = {body("shaft", 1, {}, {1, 1, 1}), body("block", 1e4, {0.1, 0, 0}),
+                body("bead", mass, {0.2, 0, 0})};
+    m.joints = {driven(revolute("spin", "ground", "shaft", {}, Vec3::UnitZ()), 2),
+                dampened(sprung(prismatic("x", "shaft", "block", {0.1, 0, 0}, Vec3::UnitX()), 4e6), 2e4),
+                sprung(prismatic("y", "block", "bead", {0.2, 0, 0}, Vec3::UnitX()), 100 * mass)};
+    m.joints[2].coordinates[0].damping_force = 0;
+    m.joints[2].formulas = {
+        {"damping_force", std::to_string(-mass / 2 * 1e15) + "e-15 N*tanh(rate/(1 m/s))"}};
+    const Solution solution = solve(m);
+    REQUIRE(solution.status == Status::converged);
+    CHECK(solution.stable == false);
+    REQUIRE(solution.eigenvalues);
+    REQUIRE(solution.eigenvalues->size() == 4);
+    CHECK(std::abs(solution.eigenvalues->front() - Complex(0.25, std::sqrt(96 - 0.25 * 0.25))) < 1e-8);
+  }
+}
