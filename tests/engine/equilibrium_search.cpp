@@ -87,6 +87,29 @@ TEST_CASE("a steady state that the way from the start misses is found before sol
   CHECK(plain.status == Status::no_steady_state);
 }
 
+TEST_CASE("a gyrocompass points north at the Earth's rate", "[search]") {
+  // Along it the potential, C w^2 / 2 for the most part, changes by 1e-8 of itself.
+  const double latitude = 0.7, drawn = 3, c = 0.01, a = 0.006;
+  for (const double rate : {1e-2, 7.292e-5}) {
+    CAPTURE(rate);
+    Mechanism m;
+    m.gravity = Vec3::Zero();
+    m.bodies = {body("earth", 1, {}, {1, 1, 1}), body("gimbal", 0.1, {}, {1e-3, 1e-3, 1e-3}),
+                body("rotor", 1, {}, {a, a, a})};
+    const double x = std::cos(drawn), z = std::sin(drawn);
+    m.bodies[2].inertia = {a + (c - a) * x * x, a, a + (c - a) * z * z, 0, (c - a) * x * z, 0};
+    m.joints = {
+        driven(revolute("turns", "ground", "earth", {}, {std::cos(latitude), std::sin(latitude), 0}), rate),
+        dampened(revolute("vertical", "earth", "gimbal", {}, {0, 1, 0}), 1e-4),
+        driven(revolute("spins", "gimbal", "rotor", {}, {x, 0, z}), 2500)};
+    const Solution s = solve(m);
+    CAPTURE(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == true);
+    CHECK(std::abs(s.coordinates[1].value - drawn) < 1e-6);
+  }
+}
+
 TEST_CASE("a refusal says what was tried", "[search]") {
   Mechanism leaning = conical(0.5, 0.2, 5, 0.2);
   leaning.gravity = standard_gravity * Vec3(0, -std::cos(0.3), std::sin(0.3));
