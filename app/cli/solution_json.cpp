@@ -1,5 +1,6 @@
 #include "app/cli/solution_json.hpp"
 
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 
 #include <cmath>
@@ -72,76 +73,66 @@ Json warnings_json(const std::vector<SceneError>& warnings) {
   return out;
 }
 
-Json to_json(const Mechanism& mechanism, const Solution& s) {
-  const bool converged = s.status == Status::converged;
-  Json out;
-  out["status"] = word(s.status);
-  out["message"] = s.message;
-  for (const char* key : {"coordinates", "multipliers"})
-    out[key] = converged ? Json::object() : Json(nullptr);
-  out["residual"] = number_json(s.residual);
-  out["error_estimate"] = converged ? Json::object() : Json(nullptr);
-  out["iterations"] = s.iterations;
-  out["history"] = Json::array();
-  for (double h : s.history)
-    out["history"].push_back(number_json(h));
-  out["net"] = s.fallback ? Json(word(*s.fallback)) : Json(nullptr);
-  out["run_time_s"] = s.run_time_s;
-  out["stable"] = s.stable ? Json(*s.stable) : Json(nullptr);
-  out["stability_reason"] = s.stability_reason ? Json(word(*s.stability_reason)) : Json(nullptr);
-  for (const char* key :
-       {"potential", "eigenvalues", "floquet", "at_constant_speed", "speeds", "speed_errors", "neutral",
-        "drive_torques", "drive_torque_ranges", "reactions", "bearings", "poses", "points", "measures",
-        "sensitivities", "measure_sensitivities", "condition"})
-    out[key] = nullptr;
-  out["unheld"] = Json::array();
-  for (const UnheldCoordinate& c : s.unheld)
-    out["unheld"].push_back(c.count == 1 ? c.joint : c.joint + "." + std::to_string(c.index));
-  if (!converged) return out;
+namespace {
 
-  if (s.potential) out["potential"] = number_json(*s.potential);
-  out["coordinates"] = coordinates_json(s.coordinates);
-  for (const CoordinateSolution& c : s.coordinates) {
-    if (c.driven) continue;
-    put(out["error_estimate"], c.joint, c.index, c.count, number_json(c.error));
-  }
-  for (const JointMultipliers& m : s.multipliers) {
-    out["multipliers"][m.joint] = Json::array();
+Json flag_json(std::optional<bool> value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json reason_json(std::optional<StabilityReason> value) {
+  return value ? Json(word(*value)) : Json(nullptr);
+}
+
+Json errors_json(const std::vector<CoordinateSolution>& coordinates) {
+  Json out = Json::object();
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven) put(out, c.joint, c.index, c.count, number_json(c.error));
+  return out;
+}
+
+Json speed_errors_json(const std::vector<CoordinateSolution>& coordinates) {
+  Json out = Json::object();
+  for (const CoordinateSolution& c : coordinates)
+    if (c.speed) put(out, c.joint, c.index, c.count, number_json(c.speed_error));
+  return out;
+}
+
+Json multipliers_json(const std::vector<JointMultipliers>& multipliers) {
+  Json out = Json::object();
+  for (const JointMultipliers& m : multipliers) {
+    out[m.joint] = Json::array();
     for (double value : m.values)
-      out["multipliers"][m.joint].push_back(number_json(value));
+      out[m.joint].push_back(number_json(value));
   }
-  if (s.eigenvalues) out["eigenvalues"] = eigenvalues_json(*s.eigenvalues);
-  if (s.floquet) out["floquet"] = floquet_json(*s.floquet);
-  if (const auto& at = s.at_constant_speed) {
-    out["at_constant_speed"] = {
-        {"stable", at->stable ? Json(*at->stable) : Json(nullptr)},
-        {"stability_reason", at->stability_reason ? Json(word(*at->stability_reason)) : Json(nullptr)},
-        {"eigenvalues", at->eigenvalues ? eigenvalues_json(*at->eigenvalues) : Json(nullptr)}};
-  }
-  out["speeds"] = speeds_json(s.coordinates);
-  out["speed_errors"] = Json::object();
-  for (const CoordinateSolution& c : s.coordinates)
-    if (c.speed) put(out["speed_errors"], c.joint, c.index, c.count, number_json(c.speed_error));
-  out["neutral"] = s.neutral;
-  out["drive_torques"] = Json::object();
-  for (const DriveTorque& d : s.drive_torques)
+  return out;
+}
+
+Json at_constant_speed_json(const AtConstantSpeed& at) {
+  return {{"stable", flag_json(at.stable)},
+          {"stability_reason", reason_json(at.stability_reason)},
+          {"eigenvalues", at.eigenvalues ? eigenvalues_json(*at.eigenvalues) : Json(nullptr)}};
+}
+
+Json torque_range_json(const std::optional<PhaseRange>& range) {
+  if (!range) return {{"mean", nullptr}, {"min", nullptr}, {"max", nullptr}};
+  return {{"mean", number_json(range->mean)},
+          {"min", number_json(range->least)},
+          {"max", number_json(range->most)}};
+}
+
+void add_drives(const std::vector<DriveTorque>& drives, Json& out) {
+  out["drive_torques"] = out["drive_torque_ranges"] = Json::object();
+  for (const DriveTorque& d : drives) {
     put(out["drive_torques"], d.joint, d.index, d.count, number_json(d.value));
-  for (const DriveTorque& d : s.drive_torques)
+    if (d.varying) put(out["drive_torque_ranges"], d.joint, d.index, d.count, torque_range_json(d.range));
     if (d.given)
       put(out["drives_by_torque"], d.joint, d.index, d.count,
           {{"torque", number_json(d.given->torque)}, {"load", number_json(d.given->load)}});
-  if (!s.frictions.empty()) out["rests_on_friction"] = frictions_json(s.frictions);
-  out["drive_torque_ranges"] = Json::object();
-  for (const DriveTorque& d : s.drive_torques)
-    if (d.varying) {
-      Json range = {{"mean", nullptr}, {"min", nullptr}, {"max", nullptr}};
-      if (d.range)
-        range = {{"mean", number_json(d.range->mean)},
-                 {"min", number_json(d.range->least)},
-                 {"max", number_json(d.range->most)}};
-      put(out["drive_torque_ranges"], d.joint, d.index, d.count, std::move(range));
-    }
-  out["reactions"] = Json::object();
+  }
+}
+
+Json reactions_json(const Solution& s) {
+  Json out = Json::object();
   for (const Reaction& r : s.reactions) {
     Json entry = {{"force", array(r.force)}, {"torque", array(r.torque)}};
     if (r.varying) entry["varying"] = true;
@@ -152,7 +143,7 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
       entry["unique_part"] = {{"force", array(r.open.force.unique_part(r.force))},
                               {"torque", array(r.open.torque.unique_part(r.torque))}};
     }
-    out["reactions"][r.joint] = std::move(entry);
+    out[r.joint] = std::move(entry);
   }
   for (const GearReaction& g : s.gears) {
     Json entry = {{"force", array(g.force)},
@@ -161,39 +152,99 @@ Json to_json(const Mechanism& mechanism, const Solution& s) {
                   {"b", number_json(g.b)}};
     if (g.varying) entry["varying"] = true;
     if (g.nonunique) entry["nonunique"] = true;
-    out["reactions"][g.joint] = std::move(entry);
+    out[g.joint] = std::move(entry);
   }
-  out["bearings"] = Json::object();
-  for (const BearingForce& b : s.bearings) {
+  return out;
+}
+
+Json bearings_json(const std::vector<BearingForce>& bearings) {
+  Json out = Json::object();
+  for (const BearingForce& b : bearings) {
     Json entry = {{"force", array(b.force)}, {"torque", array(b.torque)}};
     if (b.varying) entry["varying"] = true;
-    out["bearings"][b.bearing] = std::move(entry);
+    out[b.bearing] = std::move(entry);
   }
-  out["poses"] = Json::object();
-  for (std::size_t b = 0; b < s.poses.size(); ++b) {
-    const Quat& q = s.poses[b].rotation;
-    out["poses"][mechanism.bodies[b].name] = {
-        {"position", array(s.poses[b].position)},
+  return out;
+}
+
+Json poses_json(const Mechanism& mechanism, const std::vector<Pose>& poses) {
+  Json out = Json::object();
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    const Quat& q = poses[b].rotation;
+    out[mechanism.bodies[b].name] = {
+        {"position", array(poses[b].position)},
         {"rotation", {number_json(q.w()), number_json(q.x()), number_json(q.y()), number_json(q.z())}}};
   }
-  out["points"] = Json::object();
-  for (const PointSolution& p : s.points)
-    out["points"][point_label(p.point)] = to_json(p.motion);
-  out["measures"] = measures_json(s.measures);
-  out["measure_sensitivities"] = Json::object();
+  return out;
+}
+
+Json points_json(const std::vector<PointSolution>& points) {
+  Json out = Json::object();
+  for (const PointSolution& p : points)
+    out[point_label(p.point)] = to_json(p.motion);
+  return out;
+}
+
+void add_sensitivities(const Solution& s, Json& out) {
+  out["measure_sensitivities"] = out["sensitivities"] = Json::object();
   for (const Sensitivity& x : s.sensitivities) {
-    if (x.measures.empty()) continue;
-    Json& rates = out["measure_sensitivities"][x.address] = Json::object();
-    for (std::size_t i = 0; i < x.measures.size(); ++i)
-      rates[s.measures[i].name] = number_json(x.measures[i]);
-  }
-  out["sensitivities"] = Json::object();
-  for (const Sensitivity& x : s.sensitivities) {
-    out["sensitivities"][x.address] = Json::object();
+    Json& rates = out["sensitivities"][x.address] = Json::object();
     for (const Sensitivity::Rate& r : x.rates)
-      put(out["sensitivities"][x.address], r.speed ? r.joint + ".speed" : r.joint, r.index, r.count,
-          number_json(r.value));
+      put(rates, r.speed ? r.joint + ".speed" : r.joint, r.index, r.count, number_json(r.value));
+    if (x.measures.empty()) continue;
+    Json& of_measures = out["measure_sensitivities"][x.address] = Json::object();
+    for (std::size_t i = 0; i < x.measures.size(); ++i)
+      of_measures[s.measures[i].name] = number_json(x.measures[i]);
   }
+}
+
+} // namespace
+
+Json to_json(const Mechanism& mechanism, const Solution& s) {
+  const bool converged = s.status == Status::converged;
+  Json out;
+  out["status"] = word(s.status);
+  out["message"] = s.message;
+  for (const char* key : {"coordinates", "multipliers"})
+    out[key] = nullptr;
+  out["residual"] = number_json(s.residual);
+  out["error_estimate"] = nullptr;
+  out["iterations"] = s.iterations;
+  out["history"] = Json::array();
+  for (double h : s.history)
+    out["history"].push_back(number_json(h));
+  out["net"] = s.fallback ? Json(word(*s.fallback)) : Json(nullptr);
+  out["run_time_s"] = s.run_time_s;
+  out["stable"] = flag_json(s.stable);
+  out["stability_reason"] = reason_json(s.stability_reason);
+  for (const char* key :
+       {"potential", "eigenvalues", "floquet", "at_constant_speed", "speeds", "speed_errors", "neutral",
+        "drive_torques", "drive_torque_ranges", "reactions", "bearings", "poses", "points", "measures",
+        "sensitivities", "measure_sensitivities", "condition"})
+    out[key] = nullptr;
+  out["unheld"] = Json::array();
+  for (const UnheldCoordinate& c : s.unheld)
+    out["unheld"].push_back(coordinate_label(c));
+  if (!converged) return out;
+
+  if (s.potential) out["potential"] = number_json(*s.potential);
+  out["coordinates"] = coordinates_json(s.coordinates);
+  out["error_estimate"] = errors_json(s.coordinates);
+  out["multipliers"] = multipliers_json(s.multipliers);
+  if (s.eigenvalues) out["eigenvalues"] = eigenvalues_json(*s.eigenvalues);
+  if (s.floquet) out["floquet"] = floquet_json(*s.floquet);
+  if (s.at_constant_speed) out["at_constant_speed"] = at_constant_speed_json(*s.at_constant_speed);
+  out["speeds"] = speeds_json(s.coordinates);
+  out["speed_errors"] = speed_errors_json(s.coordinates);
+  out["neutral"] = s.neutral;
+  add_drives(s.drive_torques, out);
+  if (!s.frictions.empty()) out["rests_on_friction"] = frictions_json(s.frictions);
+  out["reactions"] = reactions_json(s);
+  out["bearings"] = bearings_json(s.bearings);
+  out["poses"] = poses_json(mechanism, s.poses);
+  out["points"] = points_json(s.points);
+  out["measures"] = measures_json(s.measures);
+  add_sensitivities(s, out);
   if (s.condition) out["condition"] = number_json(*s.condition);
   return out;
 }
