@@ -179,6 +179,15 @@ std::string message(const OtherStates& others, Status first) {
          " poses that balance at the drawn phase, found from " + runs + ", holds at every phase." + more;
 }
 
+std::string rests_on_friction(const Solution& solution, std::string_view asked) {
+  std::vector<std::string> all;
+  for (const FrictionForce& friction : solution.frictions)
+    all.push_back(coordinate_label(friction) + (friction.slips ? " slips" : " is held"));
+  return "The steady state rests on dry friction: " +
+         word_list(std::vector<std::string_view>(all.begin(), all.end()), "and") + ". " + std::string(asked) +
+         " only of states that need none.";
+}
+
 std::string message(const AllSolutions& all) {
   const auto on_friction =
       std::ranges::count_if(all.equilibria, [](const Solution& s) { return !s.frictions.empty(); });

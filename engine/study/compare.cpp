@@ -8,6 +8,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/search/steady_state.hpp"
 #include "engine/search/turned_balance.hpp"
@@ -417,7 +418,8 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   solve.cancel = options.cancel;
   const Solution steady = Analysis(mechanism).solve(solve);
   out.status = steady.frictions.empty() ? steady.status : Status::no_steady_state;
-  out.message = steady.message;
+  out.message = steady.frictions.empty() ? steady.message
+                                         : rests_on_friction(steady, "Ways of finding it are compared");
   if (time.watch.over()) broken_off();
   if (out.status != Status::converged || !out.complete) return;
   Direct direct(mechanism, options.cancel);

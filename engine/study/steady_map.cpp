@@ -9,6 +9,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turned_measures.hpp"
 #include "engine/search/turned_rates.hpp"
@@ -125,6 +126,7 @@ std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std
   if (first.status != Status::converged) return std::nullopt;
   if (!first.frictions.empty()) { // rates of what rests on it are none
     first.status = Status::no_steady_state;
+    first.message = rests_on_friction(first, "How it changes with numbers is found");
     return std::nullopt;
   }
   if (first.turned) return begin_turned();

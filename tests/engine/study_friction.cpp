@@ -3,9 +3,11 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/study/compare.hpp"
 #include "engine/study/friction_report.hpp"
 #include "engine/study/friction_ribbon.hpp"
 #include "engine/study/slow_change.hpp"
+#include "engine/study/steady_map.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
 #include "tests/support/scenes.hpp"
@@ -64,6 +66,14 @@ Mechanism two_blocks(double base, double u1, double u2, std::optional<double> sp
       (speed ? "base" : "ground") + R"(", "b1"], "points": [)" + at(base - 1) + ", " + at(u1) +
       R"(], "stiffness": 100, "free_length": 1}, {"name": "link", "type": "spring", "bodies": ["b1", "b2"], "points": [)" +
       at(u1) + ", " + at(1 + u2) + R"(], "stiffness": 50, "free_length": 1}]})");
+}
+
+// 18 N of 21.6 N, in gravity of 10 m/s^2.
+Mechanism block_on_a_slope() {
+  return read_scene(R"({"flyball": 1, "name": "Slope", "gravity": [0, -10, 0],
+    "bodies": [{"name": "block", "mass": 3, "position": [0, 0, 0]}],
+    "joints": [{"name": "slope", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
+      "axis": [0.8, 0.6, 0], "friction": {"mu": 0.9, "preload": 24}}]})");
 }
 
 } // namespace
@@ -555,6 +565,19 @@ TEST_CASE("a gear bears what torques and springs beyond it give where friction h
   CHECK_THAT(*s.frictions.at(0).value, WithinRel(5 * 9.81 - at_spin * per_turn, 1e-12));
 }
 
+TEST_CASE("what is not asked of states that rest on friction says so") {
+  const Mechanism m = block_on_a_slope();
+  const std::string rests = "The steady state rests on dry friction: slope is held. ";
+  const Comparison compared = compare(m);
+  CHECK(compared.status == Status::no_steady_state);
+  CHECK(compared.message == rests + "Ways of finding it are compared only of states that need none.");
+  const std::vector<FreeNumber> free{{"bodies.block.mass", 1, 5}};
+  SteadyMap map(m, free, {}, nullptr);
+  Solution first;
+  CHECK_FALSE(map.begin({}, first));
+  CHECK(first.message == rests + "How it changes with numbers is found only of states that need none.");
+}
+
 TEST_CASE("friction that cannot be is refused") {
   const auto mistake = [](const std::string& friction, const std::string& extra = "") {
     try {
@@ -580,10 +603,7 @@ TEST_CASE("friction that cannot be is refused") {
 }
 
 TEST_CASE("a block that friction alone holds") {
-  const Mechanism m = read_scene(R"({"flyball": 1, "name": "Slope", "gravity": [0, -10, 0],
-    "bodies": [{"name": "block", "mass": 3, "position": [0, 0, 0]}],
-    "joints": [{"name": "slope", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
-      "axis": [0.8, 0.6, 0], "friction": {"mu": 0.9, "preload": 24}}]})");
+  const Mechanism m = block_on_a_slope();
   const FrictionReport report = report_friction(m, Analysis(m).solve());
   CHECK_THAT(report.drawn.takes.value(), WithinRel(3 * 10 * 0.6 / (0.9 * 24), 1e-12));
   CHECK_FALSE(report.band.found);
