@@ -17,13 +17,83 @@ std::string force_text(double value, double largest, const NumberStyle& numbers)
   return value_text(value, largest * 1e-6, {6, numbers.noise, numbers.run_times});
 }
 
-// Five digits of each component; what is round-off beside the largest of all is zero.
-std::string vector_text(const Vec3& v, double largest, const OpenDirections& open = {}) {
+// A component of a vector; what is round-off beside the largest of all is zero.
+std::string component_text(double value, double largest, int digits) {
+  return std::abs(value) <= 1e-9 * largest ? "0" : short_text(value, digits);
+}
+
+std::string vector_text(const Vec3& v, double largest, int digits) {
   std::string text;
   for (int i = 0; i < 3; ++i)
-    text += std::string(i ? "  " : "") + (open.component(i) ? "≈" : "") +
-            (std::abs(v[i]) <= 1e-9 * largest ? "0" : short_text(v[i], 5));
+    text += std::string(i ? "  " : "") + "xyz"[i] + " " + component_text(v[i], largest, digits);
   return text;
+}
+
+// Three columns of digits, right below their heads, as wide as the panel leaves behind the names.
+struct VectorColumns {
+  float label = 0, each = 0, unit = 0; // pixels
+
+  explicit VectorColumns(const Ui& ui) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    unit = ImGui::CalcTextSize("N m").x + 5 * ui.scale;
+    label = std::clamp(0.25f * room, 60 * ui.scale, 140 * ui.scale);
+    each = std::max((room - label - unit) / 3, 30 * ui.scale);
+  }
+  // As many digits as there is room for.
+  std::string fitting(const Ui& ui, double value, double largest, const std::string& before) const {
+    constexpr int most = 9, fewest = 3;
+    const ImFont* font = ui.fonts.digits;
+    std::string text;
+    for (int digits = most; digits >= fewest; --digits) {
+      text = before + component_text(value, largest, digits);
+      if (font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x <= each - 8 * ui.scale) break;
+    }
+    return text;
+  }
+  void cell(const Ui& ui, float start, int column, const std::string& text, const ImVec4& color) const {
+    const ImFont* font = ui.fonts.digits;
+    const float width = font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float right = start + label + static_cast<float>(column + 1) * each;
+    ImGui::GetWindowDrawList()->AddText(ui.fonts.digits, font->FontSize,
+                                        {std::round(right - width), at.y + digits_drop(ui)}, packed(color),
+                                        text.c_str());
+  }
+};
+
+void vector_heads(const Ui& ui, const VectorColumns& columns) {
+  const float start = ImGui::GetCursorScreenPos().x;
+  for (int i = 0; i < 3; ++i)
+    columns.cell(ui, start, i, std::string(1, "xyz"[i]), colors_of(ui).dim);
+  ImGui::Dummy({0, ImGui::GetTextLineHeight()});
+}
+
+// With all digits, the size and what else there is to say over the row.
+void vector_row(const Ui& ui, const VectorColumns& columns, const std::string& label, const Vec3& v,
+                double largest, const char* unit, const std::string& help, const OpenDirections& open = {}) {
+  const UiColors& colors = colors_of(ui);
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float height = ImGui::GetTextLineHeight();
+  std::string copied;
+  for (int i = 0; i < 3; ++i) {
+    columns.cell(ui, from.x, i, columns.fitting(ui, v[i], largest, open.component(i) ? "≈" : ""),
+                 colors.text);
+    copied += component_text(v[i], largest, 12) + "\t";
+  }
+  const float unit_at = from.x + columns.label + 3 * columns.each + 5 * ui.scale;
+  ImGui::GetWindowDrawList()->AddText({unit_at, from.y}, packed(colors.dim), unit);
+  ImGui::BeginGroup();
+  ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
+  clipped_text(label, columns.label - 4 * ui.scale);
+  ImGui::PopStyleColor();
+  ImGui::SetCursorScreenPos(from);
+  ImGui::Dummy({columns.label + 3 * columns.each + columns.unit, height});
+  ImGui::EndGroup();
+  offer_copy(copied + unit);
+  std::string told = vector_text(v, largest, 12) + " " + unit + "\nSize " +
+                     short_text(v.stableNorm() <= 1e-9 * largest ? 0 : v.stableNorm(), 12) + " " + unit;
+  if (!help.empty()) told += "\n" + help;
+  help_on_hover(told.c_str());
 }
 
 // Help over a vector of which the loops leave something open; empty where they do not.
@@ -32,7 +102,7 @@ std::string open_help(const Vec3& v, double largest, const OpenDirections& open)
   std::string text = "The loops hold more than they need; of many possible ones the smallest.";
   if (open.along_axes() && !(open.component(0) && open.component(1) && open.component(2)))
     text += "\nComponents without ≈ are unique.";
-  if (!open.along_axes()) text += "\nIts unique part: " + vector_text(open.unique_part(v), largest) + ".";
+  if (!open.along_axes()) text += "\nIts unique part: " + vector_text(open.unique_part(v), largest, 6) + ".";
   return text;
 }
 
@@ -102,16 +172,18 @@ void gear_reactions(const Session& session, const Ui& ui, double force, double t
 }
 
 // What bearings exert on their second bodies.
-void bearing_forces(const Session& session, const Ui& ui, double force, double torque) {
+void bearing_forces(const Session& session, const Ui& ui, const VectorColumns& columns, double force,
+                    double torque) {
   const std::vector<BearingForce>& all = session.answer.solution.bearings;
   const bool torques = torque > 1e-9 * force;
   const std::size_t rows = torques ? 2 : 1;
   visible_rows(rows * all.size(), [&](std::size_t i) {
     const BearingForce& b = all[i / rows];
-    if (i % rows == 1) return row(ui, "", vector_text(b.torque, torque), "N m", "About the bearing's point.");
-    row(ui, b.bearing + (b.varying ? " (varies)" : ""), vector_text(b.force, force), "N",
-        b.varying ? "The bearing on its second body. Changes as the drives turn; at the drawn phase."
-                  : "The bearing on its second body.");
+    if (i % rows == 1)
+      return vector_row(ui, columns, "", b.torque, torque, "N m", "About the bearing's point.");
+    vector_row(ui, columns, b.bearing + (b.varying ? " (varies)" : ""), b.force, force, "N",
+               b.varying ? "The bearing on its second body. Changes as the drives turn; at the drawn phase."
+                         : "The bearing on its second body.");
   });
 }
 
@@ -119,9 +191,10 @@ void reactions(const Session& session, Ui& ui, ResultSections& open) {
   const Solution& solution = session.answer.solution;
   if (solution.reactions.empty() && solution.bearings.empty()) return;
   if (!section(ui, "results/reactions", "Reactions", open.reactions)) return;
-  paragraph(solution.reactions_nonunique ? "Parent on child: x, y, z of the world. The loops hold more than "
-                                           "they need; of what is marked ≈ these are the smallest that do it."
-                                         : "Parent on child: x, y, z of the world.",
+  paragraph(solution.reactions_nonunique
+                ? "Parent on child, along the world's axes. The loops hold more than "
+                  "they need; of what is marked ≈ these are the smallest that do it."
+                : "Parent on child, along the world's axes.",
             colors_of(ui).dim);
   double force = 0, torque = 0;
   for (const Reaction& r : solution.reactions) {
@@ -135,21 +208,22 @@ void reactions(const Session& session, Ui& ui, ResultSections& open) {
   // Torques of a mechanism that has none are round-off of its forces.
   const bool torques = torque > 1e-9 * force;
   const std::size_t rows = torques ? 2 : 1;
+  const VectorColumns columns(ui);
+  vector_heads(ui, columns);
+  note_widget(ui.widgets, "results/reactions/heads");
   visible_rows(rows * solution.reactions.size(), [&](std::size_t i) {
     const Reaction& r = solution.reactions[i / rows];
-    std::string help;
-    if (i % rows == 1) {
-      help = open_help(r.torque, torque, r.open.torque);
-      return row(ui, "", vector_text(r.torque, torque, r.open.torque), "N m",
-                 help.empty() ? nullptr : help.c_str());
-    }
-    help = r.varying ? "Changes as the drives turn; at the drawn phase." : "";
+    if (i % rows == 1)
+      return vector_row(ui, columns, "", r.torque, torque, "N m", open_help(r.torque, torque, r.open.torque),
+                        r.open.torque);
+    std::string help = r.varying ? "Changes as the drives turn; at the drawn phase." : "";
     if (const std::string more = open_help(r.force, force, r.open.force); !more.empty())
       help += (help.empty() ? "" : "\n") + more;
-    row(ui, r.joint + (r.varying ? " (varies)" : ""), vector_text(r.force, force, r.open.force), "N",
-        help.empty() ? nullptr : help.c_str());
+    vector_row(ui, columns, r.joint + (r.varying ? " (varies)" : ""), r.force, force, "N", help,
+               r.open.force);
+    note_widget(ui.widgets, "results/reaction/" + r.joint, KeyUse::none);
   });
-  bearing_forces(session, ui, force, torque);
+  bearing_forces(session, ui, columns, force, torque);
   gear_reactions(session, ui, force, torque);
 }
 

@@ -143,7 +143,19 @@ void row(const Ui& ui, const std::string& label, const std::string& value, const
     text_in(ui.fonts.text, colors.dim, unit);
   }
   ImGui::EndGroup();
+  offer_copy(unit && *unit ? value + " " + unit : value);
   help_on_hover(help);
+}
+
+void offer_copy(const std::string& text) {
+  if (text.empty()) return;
+  ImGui::PushID(static_cast<int>(ImGui::GetItemRectMin().y)); // one below the other
+  if (ImGui::BeginPopupContextItem("copy")) {
+    const std::string words = text.find('\t') == std::string::npos ? "Copy " + text : "Copy";
+    if (ImGui::MenuItem(words.c_str())) ImGui::SetClipboardText(text.c_str());
+    ImGui::EndPopup();
+  }
+  ImGui::PopID();
 }
 
 std::string name_list(const std::vector<std::string>& names) {

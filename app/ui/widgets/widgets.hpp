@@ -33,9 +33,11 @@ void right_digits(Ui& ui, const std::string& text, const ImVec4& color);
 // How much lower digits must begin than words to stand on the same line (pixels).
 float digits_drop(const Ui& ui);
 // "label            value unit": the value in digits, ending `margin` pixels from the right. Help appears
-// over the row.
+// over the row, a right click copies value and unit.
 void row(const Ui& ui, const std::string& label, const std::string& value, const char* unit,
          const char* help = nullptr, float margin = 0);
+// A right click on the last item offers to copy the text, in which tabs part columns.
+void offer_copy(const std::string& text);
 // Draws those of so many rows of one height that are in sight.
 template <class Draw>
 void visible_rows(std::size_t count, const Draw& draw) {
