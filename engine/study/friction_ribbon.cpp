@@ -13,7 +13,7 @@
 namespace flyball {
 namespace {
 
-constexpr double bend = 0.01;            // see friction_ribbon_at_bends()
+constexpr double line_error = 0.01;      // see friction_ribbon_at_bends()
 constexpr std::size_t most_points = 200; // of it
 
 // Lower ones first.
@@ -79,7 +79,7 @@ bool bends(const RibbonPoint& before, const RibbonPoint& point, const RibbonPoin
     return true; // the band ends there
   const double part = (point.number - before.number) / (after.number - before.number);
   for (std::size_t e = 0; e < edges; ++e)
-    if (std::abs(std::lerp(edge(before, e), edge(after, e), part) - edge(point, e)) > bend * heights[e])
+    if (std::abs(std::lerp(edge(before, e), edge(after, e), part) - edge(point, e)) > line_error * heights[e])
       return true;
   return false;
 }
