@@ -85,7 +85,7 @@ TEST_CASE("a right click copies a result, and of a reaction all its components")
     const ImVec2 at(row.from.x + 10, row.center().y);
     robot.click(at, 1);
     robot.frames(2);
-    robot.click({at.x + 20, at.y + 16}); // the menu's only entry
+    robot.click(ImVec2{at.x + 20, at.y + 16}); // the menu's only entry
     robot.frames(2);
     return std::string(ImGui::GetClipboardText());
   };
