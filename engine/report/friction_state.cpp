@@ -1,24 +1,15 @@
 #include "engine/report/friction_state.hpp"
 
-#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/body_groups.hpp"
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/frictions.hpp"
-#include "engine/mechanism/gear_ratio.hpp"
 #include "engine/mechanism/gear_train.hpp"
-#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/report/holding.hpp"
-#include "engine/report/standstill.hpp"
-#include "engine/system/elastic_force.hpp"
+#include "engine/report/friction_attempt.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
 
 namespace flyball {
 namespace {
@@ -39,24 +30,6 @@ bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
   return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
 }
 
-// The least and the largest of the drives' speeds, rad/s or m/s, of those that turn; 1 where none does.
-struct DriveSpeeds {
-  double least = 1, most = 1;
-};
-DriveSpeeds drive_speeds(const Mechanism& mechanism) {
-  std::vector<double> all;
-  for (const Joint& joint : mechanism.joints)
-    for (const Coordinate& c : joint.coordinates)
-      if (c.drive && c.drive->speed != 0) all.push_back(std::abs(c.drive->speed));
-  if (all.empty()) return {};
-  const auto [least, most] = std::ranges::minmax(all);
-  return {least, most};
-}
-
-bool is_slipping(Part part) {
-  return part == Part::slips_forwards || part == Part::slips_backwards;
-}
-
 bool any_slips(const FrictionParts& parts) {
   return std::ranges::any_of(parts, is_slipping);
 }
@@ -70,379 +43,6 @@ bool closes_a_loop(const Mechanism& mechanism, int joint) {
       groups.join(other.bodies);
   return !groups.join(mechanism.joints[place(joint)].bodies);
 }
-
-// The friction of each coordinate played by its part.
-class Attempt {
- public:
-  // `holding`: what holding takes, where all hold and springs and stops of their own help. `implied`: of
-  // those that slip the ones whose rate follows from the drives, by coordinate with friction; empty: none.
-  Attempt(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
-          std::vector<Part> parts, const Holding* holding = nullptr, std::vector<bool> implied = {})
-      : mechanism_(mechanism), frictions_(frictions), parts_(std::move(parts)), holding_(holding),
-        implied_(std::move(implied)) {
-    implied_.resize(parts_.size(), false);
-  }
-
-  // Nothing where there is no such state.
-  std::optional<StateOnFriction> solve(const SolveOptions& options) const {
-    for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held()))
-      if (auto out = solve_with(at_rest, options)) return out;
-    return std::nullopt;
-  }
-
-  // With its coordinates driven as their parts say, and drives by torque that have come to rest.
-  Standstill driven(std::span<const CoordinateReference> at_rest = {}) const {
-    std::vector<Standing> standing;
-    for (const CoordinateReference& at : held())
-      standing.push_back({at, coordinate_of(mechanism_, at).drawn});
-    Standstill still = stand_still(mechanism_, standing, {}, at_rest);
-    Mechanism& out = still.mechanism;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (!slips(i)) continue;
-      Joint& joint = joint_of(out, frictions_[i]);
-      Coordinate& c = coordinate_of(out, frictions_[i]);
-      c.friction.reset();
-      if (implied_[i])
-        put_as_damper(i, joint, c);
-      else
-        let_slip(i, out);
-    }
-    for (const NamedMeasure& measure : mechanism_.measures) {
-      out.measures.push_back(measure);
-      try {
-        const MeasurePlan known(out);
-      } catch (const SceneError&) { // of the spring of a joint that stands still, say
-        out.measures.pop_back();
-      }
-    }
-    return still;
-  }
-
- private:
-  std::optional<StateOnFriction> solve_with(std::span<const CoordinateReference> at_rest,
-                                            const SolveOptions& options) const try {
-    const Standstill still = driven(at_rest);
-    StateOnFriction out{Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, {}};
-    SolveOptions inner = options;
-    inner.friction = inner.warm = false;
-    inner.details = true; // what holding takes
-    inner.explain = false;
-    std::erase_if(inner.start, [&](const auto& named) {
-      return plays(named.first) || is_speed_at_rest(mechanism_, still, named.first);
-    });
-    out.solution = out.analysis.solve(inner);
-    if (out.solution.status != Status::converged || !tell(still, out)) return std::nullopt;
-    return out;
-  } catch (const SceneError&) { // drives that close a loop, say
-    return std::nullopt;
-  }
-
-  std::vector<CoordinateReference> held() const {
-    std::vector<CoordinateReference> out;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (parts_[i] == Part::holds) out.push_back(frictions_[i]);
-    return out;
-  }
-
-  bool slips(std::size_t i) const { return is_slipping(parts_[i]); }
-
-  // The limit as a torque of its own, or of a coordinate that has one as a load more; all that gears turn
-  // with it begins the way it slips.
-  void let_slip(std::size_t which, Mechanism& out) const {
-    const CoordinateReference at = frictions_[which];
-    const double way = parts_[which] == Part::slips_forwards ? 1 : -1;
-    double speed = drive_speeds(mechanism_).most;
-    for (const GearedCoordinate& geared : gear_train(mechanism_, at)) {
-      std::optional<Drive>& drive = coordinate_of(out, geared.at).drive;
-      if (!drive || !finds_speed(*drive)) continue;
-      speed = std::abs(drive->speed / geared.ratio);
-      drive->speed = std::copysign(drive->speed, way * geared.ratio);
-    }
-    Joint& joint = joint_of(out, at);
-    Coordinate& c = coordinate_of(out, at);
-    if (c.drive) return add_load(joint, at.coordinate, -slipping_force(which));
-    joint.cut = false;
-    c.drive = Drive{.speed = way * speed, .torque = slipping_force(which), .load = 0};
-  }
-
-  void add_load(Joint& joint, int i, double load) const {
-    const std::string key = coordinate_key(joint, place(i), "drive") + ".load";
-    if (const Formula* law = drive_law(mechanism_, joint, i, "load")) {
-      Formula& now = joint.formulas[place(static_cast<int>(law - joint.formulas.data()))];
-      now.text = "(" + now.text + ")+(" + number_text(load) + (is_angle(joint.type, i) ? " N m)" : " N)");
-      return;
-    }
-    std::erase_if(joint.formulas, [&](const Formula& each) { return each.key == key; });
-    std::optional<double>& number = joint.coordinates[place(i)].drive->load;
-    number = number.value_or(0) + load;
-  }
-
-  // rad/s or m/s: of what slips so slowly a rate that the drives give is not told from none.
-  double slowest() const { return 1e-3 * drive_speeds(mechanism_).least; }
-
-  // The limit against the rate, beside what dampers of its own give: a joint with a damper may close a loop.
-  // From a tenth of the slowest rate on that is the limit to the last digit.
-  void put_as_damper(std::size_t which, Joint& joint, Coordinate& c) const {
-    const int i = frictions_[which].coordinate;
-    const bool angle = is_angle(joint.type, i);
-    const std::string force = angle ? " N m" : " N", rate = angle ? " rad/s" : " m/s";
-    const double limit = friction_limit(friction_at(mechanism_, frictions_[which]));
-    std::string text =
-        number_text(limit) + force + "*tanh(rate/(" + number_text(slowest() / 200) + rate + "))";
-    const std::string key = coordinate_key(joint, place(i), "damping_force");
-    if (const Formula* law = damper_law(joint, i)) {
-      text += " + (" + law->text + ")";
-      std::erase_if(joint.formulas, [&](const Formula& each) { return each.key == key; });
-    } else if (c.damping != 0) {
-      text += " + " + number_text(c.damping) + force + "/(1" + rate + ")*rate";
-    }
-    joint.formulas.push_back({key, text});
-    c.damping = 0;
-    c.damping_force = 0;
-  }
-  // Positive where it slips backwards.
-  double slipping_force(std::size_t i) const {
-    const double limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-    return parts_[i] == Part::slips_forwards ? -limit : limit;
-  }
-
-  bool plays(const std::string& name) const {
-    const CoordinateReference named = find_coordinate(mechanism_, name);
-    for (std::size_t i = 0; i < frictions_.size(); ++i)
-      if (parts_[i] != Part::none && frictions_[i] == named) return true;
-    return false;
-  }
-
-  // Less what others give along the coordinate.
-  static double largest(const DriveTorque& drive, double others) {
-    if (!drive.range) return drive.value - others;
-    const double least = drive.range->least - others, most = drive.range->most - others;
-    return std::abs(most) > std::abs(least) ? most : least;
-  }
-
-  // What a spring of a coordinate gives along it as drawn.
-  double of_spring(CoordinateReference at) const {
-    const Coordinate& c = coordinate_of(mechanism_, at);
-    if (!c.spring) return 0;
-    return -elastic_force(mechanism_, joint_of(mechanism_, at), at.coordinate, c.drawn - c.spring->free)
-                .force;
-  }
-
-  // What springs of geared coordinates give along a held one as drawn: they are on driven coordinates, which
-  // no balance has. Nothing where there are stops, too.
-  std::optional<double> of_geared_springs(CoordinateReference held) const {
-    double sum = 0;
-    for (const GearedCoordinate& geared : gear_train(mechanism_, held)) {
-      if (coordinate_of(mechanism_, geared.at).stop) return std::nullopt;
-      sum += geared.ratio * of_spring(geared.at);
-    }
-    return sum;
-  }
-
-  // Gears bear what torques and springs beyond them, seen from what is held, give: no balance has these.
-  // False where a torque is not known.
-  bool add_to_gears(const Standstill& still, Solution& s) const {
-    for (GearReaction& r : s.gears) {
-      const Joint& gear = *std::ranges::find(mechanism_.joints, r.joint, &Joint::name);
-      const CoordinateReference a = find_coordinate(mechanism_, gear.joints[0]),
-                                b = find_coordinate(mechanism_, gear.joints[1]);
-      const std::vector<GearedCoordinate> at_a = gear_train(mechanism_, a, &gear),
-                                          at_b = gear_train(mechanism_, b, &gear);
-      const auto holds = [&](const GearedCoordinate& x) {
-        return std::ranges::any_of(held(), [&](CoordinateReference other) { return other == x.at; });
-      };
-      const bool from_a = std::ranges::any_of(at_a, holds), from_b = std::ranges::any_of(at_b, holds);
-      r.nonunique = r.nonunique || (from_a && from_b); // each holds any share
-      if (r.nonunique || from_a == from_b) continue;
-      double beyond = 0; // along the farther end
-      for (const GearedCoordinate& x : from_a ? at_b : at_a) {
-        beyond += x.ratio * of_spring(x.at);
-        for (const TorqueAtRest& torque : still.carried) {
-          if (torque.at != x.at) continue;
-          const std::optional<std::array<double, 2>> value = values_at_rest(torque, s.measures);
-          if (!value) return false;
-          beyond += x.ratio * ((*value)[0] - (*value)[1]);
-        }
-      }
-      const double ratio = gear_ratio(gear); // of the rate of b over that of a
-      const double before = r.b;
-      r.b -= from_a ? beyond : -beyond / ratio;
-      r.a = -ratio * r.b;
-      const Vec3 axis = turned(joint_of(mechanism_, b), s) * joint_of(mechanism_, b).axis.normalized();
-      (r.angle_b ? r.torque : r.force) += (r.b - before) * axis;
-    }
-    return true;
-  }
-
-  // Whether it stands still as a fixed joint: see Standstill.
-  bool is_fixed(const Mechanism& changed, std::size_t i) const {
-    const std::size_t j = place(frictions_[i].joint);
-    return changed.joints[j].type == JointType::fixed && mechanism_.joints[j].type != JointType::fixed;
-  }
-
-  // Coordinates of such joints, in the scene's order.
-  void add_fixed(const Mechanism& changed, Solution& s) const {
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      if (parts_[i] != Part::holds || !is_fixed(changed, i)) continue;
-      const int j = frictions_[i].joint;
-      const Joint& joint = mechanism_.joints[place(j)];
-      CoordinateSolution held;
-      held.joint = joint.name;
-      held.angle = is_angle(joint.type, 0);
-      held.value = joint.coordinates[0].drawn;
-      const auto after = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& c) {
-        return find_coordinate(mechanism_, coordinate_label(c)).joint > j;
-      });
-      s.coordinates.insert(after, std::move(held));
-    }
-  }
-
-  // A joint's parent from the drawn pose.
-  Mat3 turned(const Joint& joint, const Solution& s) const {
-    const auto parent = std::ranges::find(mechanism_.bodies, joint.bodies[0], &Body::name);
-    if (parent == mechanism_.bodies.end()) return Mat3::Identity();
-    return (s.poses[place(static_cast<int>(parent - mechanism_.bodies.begin()))].rotation *
-            parent->rotation.normalized().conjugate())
-        .toRotationMatrix();
-  }
-
-  // What holds one. Nothing where that changes as the drives turn.
-  std::optional<double> of_fixed(const Joint& joint, const Solution& s) const {
-    const auto reaction = std::ranges::find(s.reactions, joint.name, &Reaction::joint);
-    if (reaction == s.reactions.end() || reaction->varying) return {};
-    return holding_force(joint, *reaction, turned(joint, s));
-  }
-
-  // Puts what was found of drives into the words of friction. False where it is not found what they give.
-  bool tell(const Standstill& still, StateOnFriction& out) const {
-    const Mechanism& changed = still.mechanism;
-    Solution& s = out.solution;
-    add_fixed(changed, s);
-    out.margins.assign(parts_.size(), std::numeric_limits<double>::infinity());
-    out.goes = true;
-    bool slipping = false;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Joint& joint = joint_of(mechanism_, frictions_[i]);
-      const auto is_it = [&](const auto& x) {
-        return x.joint == joint.name && x.index == frictions_[i].coordinate;
-      };
-      const auto c = std::ranges::find_if(s.coordinates, is_it);
-      if (parts_[i] == Part::none) { // what goes on has friction against it
-        if (c != s.coordinates.end() && c->speed && std::abs(*c->speed) > c->speed_error) return false;
-        continue;
-      }
-      const auto drive = std::ranges::find_if(s.drive_torques, is_it);
-      if (c == s.coordinates.end()) return false;
-      FrictionForce& force = s.frictions.emplace_back();
-      force.joint = joint.name;
-      force.index = c->index;
-      force.count = c->count;
-      force.angle = c->angle;
-      force.limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-      force.slips = slips(i);
-      if (force.slips) {
-        slipping = true;
-        force.value = slipping_force(i);
-        if (!c->speed) return false;
-        out.margins[i] = parts_[i] == Part::slips_forwards ? *c->speed : -*c->speed;
-        if (implied_[i] && std::abs(*c->speed) < slowest()) out.margins[i] = -slowest(); // not told from rest
-        out.goes = out.goes && out.margins[i] > c->speed_error;
-      } else {
-        c->driven = false;
-        c->error = 0;
-        if (holding_) {
-          force.value = holding_->joints[i].force;
-          out.margins[i] = 1 - *holding_->takes;
-        } else {
-          const std::optional<double> carried = carried_torque(still, frictions_[i], s.measures);
-          if (!carried) return false;
-          if (is_fixed(changed, i)) {
-            force.value = of_fixed(joint, s);
-            if (!force.value) return false;
-            *force.value -= *carried;
-          } else {
-            const std::optional<double> springs = of_geared_springs(frictions_[i]);
-            if (!springs || drive == s.drive_torques.end() || drive->nonunique ||
-                (drive->varying && !drive->range))
-              return false;
-            force.value = largest(*drive, *carried + *springs);
-          }
-          out.margins[i] = force.limit > 0     ? 1 - std::abs(*force.value) / force.limit
-                           : *force.value == 0 ? 0
-                                               : -std::numeric_limits<double>::infinity();
-        }
-        out.goes = out.goes && out.margins[i] >= 0;
-      }
-      if (drive == s.drive_torques.end()) continue;
-      if (force.slips && coordinate_of(mechanism_, frictions_[i]).drive) { // its load without the friction
-        drive->value -= slipping_force(i);
-        if (drive->given) drive->given->load += slipping_force(i);
-      } else {
-        s.drive_torques.erase(drive);
-      }
-    }
-    if (!add_to_gears(still, s) || !tell_drives_at_rest(still, s)) return false;
-    for (CoordinateSolution& c : s.coordinates) // what closes a loop with those that are held stands
-      if (c.dependent && c.speed && std::abs(*c.speed) <= c.speed_error) {
-        c.driven = false;
-        c.speed.reset();
-      }
-    if (slipping) s.at_constant_speed.reset(); // which prescribes the rates of what slips, too
-    order_measures(s);
-    return true;
-  }
-
-  // Of drives by torque that stand still.
-  bool tell_drives_at_rest(const Standstill& still, Solution& s) const {
-    for (const auto* list : {&still.carried, &still.resting})
-      for (const TorqueAtRest& torque : *list) {
-        const std::optional<std::array<double, 2>> value = values_at_rest(torque, s.measures);
-        if (!value) return false;
-        const Joint& joint = joint_of(mechanism_, torque.at);
-        const auto c = std::ranges::find_if(s.coordinates, [&](const CoordinateSolution& x) {
-          return x.joint == joint.name && x.index == torque.at.coordinate;
-        });
-        if (c == s.coordinates.end()) return false;
-        if (list == &still.carried) {
-          c->driven = true;
-          c->speed = 0;
-          c->speed_error = 0;
-          c->speed_scale = std::abs(coordinate_of(mechanism_, torque.at).drive->speed);
-        }
-        DriveTorque drive;
-        drive.joint = joint.name;
-        drive.index = c->index;
-        drive.count = c->count;
-        drive.angle = c->angle;
-        drive.value = (*value)[0] - (*value)[1];
-        drive.given = DriveTorque::Given{(*value)[0], (*value)[1]};
-        const auto after = std::ranges::find_if(s.drive_torques, [&](const DriveTorque& x) {
-          return joint_index(mechanism_, x.joint) > torque.at.joint;
-        });
-        s.drive_torques.insert(after, std::move(drive));
-      }
-    return true;
-  }
-
-  // The scene's, in its order; those that could not be asked for without a value.
-  void order_measures(Solution& s) const {
-    std::vector<MeasureSolution> all;
-    for (const NamedMeasure& measure : mechanism_.measures) {
-      const auto found = std::ranges::find(s.measures, measure.name, &MeasureSolution::name);
-      if (found != s.measures.end())
-        all.push_back(std::move(*found));
-      else
-        all.push_back({measure.name, measure.unit, {}, {}, "Not told of a joint that friction holds."});
-    }
-    s.measures = std::move(all);
-  }
-
-  const Mechanism& mechanism_;
-  const std::vector<CoordinateReference>& frictions_;
-  std::vector<Part> parts_;
-  const Holding* holding_;
-  std::vector<bool> implied_;
-};
 
 std::string names_of(const std::vector<FrictionForce>& frictions, bool slipping) {
   std::vector<std::string> names;
@@ -473,7 +73,7 @@ std::optional<StateOnFriction> hold_as_drawn(const Mechanism& mechanism,
                                              const FrictionParts& parts, const Holding& holding,
                                              const SolveOptions& options) {
   if (!holding.takes) return std::nullopt;
-  auto state = Attempt(mechanism, frictions, parts, &holding).solve(options);
+  auto state = attempt_parts(mechanism, frictions, parts, options, &holding);
   if (state)
     add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) +
                             " as drawn: that takes " + rounded_text(100 * *holding.takes, 3) +
@@ -508,7 +108,7 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
       std::vector<bool> implied(parts.size(), false);
       for (std::size_t k = 0; k < may_close.size(); ++k)
         implied[may_close[k]] = (set >> k & 1) != 0;
-      auto state = Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).solve(now);
+      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied));
       if (state && (state->goes || !first)) first = std::move(state);
       if (first && first->goes) return first;
     }
@@ -574,7 +174,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
       std::ranges::all_of(holding.independent, [&](std::size_t i) { return parts[i] == Part::holds; });
   if (all_hold) return hold_as_drawn(mechanism, frictions, parts, holding, inner);
   inner.search = inner.newton_only || inner.nearest ? 0 : balance_search;
-  auto state = Attempt(mechanism, frictions, parts).solve(inner);
+  auto state = attempt_parts(mechanism, frictions, parts, inner);
   if (state)
     add_message(*state, "Friction holds " + names_of(state->solution.frictions, false) + " as drawn.");
   return state;
@@ -637,7 +237,7 @@ std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {
     if (!any_slips(parts) || std::ranges::count(parts, Part::slips_backwards) > 0) continue;
     try {
       for (const CoordinateSolution& c :
-           Analysis(Attempt(mechanism, frictions, parts).driven().mechanism).summary().coordinates)
+           Analysis(driven_by_parts(mechanism, frictions, parts)).summary().coordinates)
         if (c.speed && std::ranges::find(out, coordinate_label(c)) == out.end())
           out.push_back(coordinate_label(c));
     } catch (const SceneError&) { // drives that close a loop, say

@@ -1,0 +1,28 @@
+// One attempt at a steady state that rests on dry friction (friction_state.hpp): the friction of each
+// coordinate plays a given part, and the mechanism with what it holds standing and what slips driven is
+// solved.
+#pragma once
+
+#include "engine/report/friction_state.hpp"
+#include "engine/report/holding.hpp"
+
+namespace flyball {
+
+inline bool is_slipping(FrictionPart part) {
+  return part == FrictionPart::slips_forwards || part == FrictionPart::slips_backwards;
+}
+
+// Nothing where there is no such state. `frictions`: find_frictions(). `holding`: what holding takes, where
+// all hold and springs and stops of their own help. `implied`: of those that slip the ones whose rate follows
+// from the drives, by coordinate with friction; empty: none.
+std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
+                                             const std::vector<CoordinateReference>& frictions,
+                                             const FrictionParts& parts, const SolveOptions& options,
+                                             const Holding* holding = nullptr,
+                                             std::vector<bool> implied = {});
+
+// The mechanism that is solved then. Throws SceneError.
+Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
+                          const FrictionParts& parts);
+
+} // namespace flyball
