@@ -25,9 +25,9 @@ void search_states(Session& session) {
 }
 
 void update_states(Session& session) {
-  if (session.study.open != StudyKind::states) return;
   StatesStudy& states = session.study.states;
   states.take("The search was stopped.");
+  if (session.study.open != StudyKind::states) return;
   if (session.mode != Mode::explore) return;
   const bool again =
       states.quick() && !states.running() && *states.asked != SharedMechanism{session.document.shared()};

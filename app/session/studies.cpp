@@ -14,7 +14,8 @@ void open_study(Session& session, StudyKind study) {
   if (study != StudyKind::none) set_mode(session, Mode::explore);
   // The motion goes with its panel.
   if (session.study.open == StudyKind::motion && study != StudyKind::motion) show_motion(session, false);
-  if (study != StudyKind::states) session.study.states = {};
+  // A search goes on behind another study's tab, and what it found is there when one comes back.
+  if (study == StudyKind::none) session.study.states = {};
   if (study != StudyKind::modes) close_modes(session);
   if (study != StudyKind::map) close_map(session);
   if (study != StudyKind::response) close_response(session);

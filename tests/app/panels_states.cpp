@@ -39,6 +39,14 @@ TEST_CASE("nothing is searched before it is asked for, and a closed list is gone
   robot.frames(2);
   REQUIRE(robot.app.session.study.states.found);
   CHECK_FALSE(robot.app.session.study.states.found->result.equilibria.empty());
+  const auto found = robot.app.session.study.states.found;
+  REQUIRE(found);
+  open_study(robot.app.session, StudyKind::response); // behind another tab it stays
+  robot.frames(2);
+  CHECK(robot.app.session.study.states.found == found);
+  open_study(robot.app.session, StudyKind::states);
+  robot.frames(2);
+  CHECK(robot.app.session.study.states.found == found);
   robot.click("study/close");
   CHECK_FALSE(robot.app.session.study.states.asked);
   CHECK_FALSE(robot.app.session.study.states.found);
