@@ -1,16 +1,12 @@
 #include "engine/periodic/periodic_state.hpp"
 
-#include "engine/dynamics/joined.hpp"
 #include "engine/linear/interruption.hpp"
-#include "engine/linear/spectral.hpp"
-#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/periodic/cycle_guess.hpp"
-#include "engine/periodic/open_loads.hpp"
-#include "engine/periodic/orbit_ranges.hpp"
+#include "engine/periodic/drive_period.hpp"
+#include "engine/periodic/measured_orbit.hpp"
 #include "engine/periodic/shooting.hpp"
 #include "engine/stability/floquet.hpp"
-#include "engine/system/common_period.hpp"
 #include "engine/system/dampers.hpp"
 
 #include <algorithm>
@@ -33,56 +29,9 @@ constexpr double furthest = 64;       // times as far is the last guess of a lim
 constexpr int pulling_periods = 32;   // in which a push on and on is to outweigh what dies out
 constexpr int frozen_segments = 8;    // of a guess that stands as drawn
 constexpr double pumping = 1.5;       // times as far after twice as many periods: what is pumped up goes on
-constexpr int samples_a_turn = 64, least_samples = 256, most_samples = 16384;
-constexpr double fine_enough = 1e-6; // of the largest rates: half of the samples tell the same
-constexpr double gains = 4;          // times: what less is gained by twice the samples are kinks
-constexpr double coarse_gaps = 10, coarse_steps = 100; // times the tolerance, of what tells the errors
 
 double tolerance_of(const Flow& flow) {
   return flow.is_stiff() ? 1e-10 : 1e-12;
-}
-
-// The drives that turn, with the period that they have in common, or why they have none.
-struct DrivePeriod {
-  std::vector<double> speeds; // rad/s
-  std::vector<std::string> names;
-  double period = 0, fastest = 0; // s; rad/s
-  std::string trouble;            // a sentence
-};
-
-void find_common_period(DrivePeriod& drives) {
-  drives.period = common_period(drives.speeds, followed_turns).value_or(0);
-  drives.trouble.clear();
-  if (drives.period > 0) return;
-  const std::vector<std::string_view> names(drives.names.begin(), drives.names.end());
-  drives.trouble = "The speeds of " + word_list(names, "and") + " have no common period of at most " +
-                   std::to_string(followed_turns) +
-                   " turns: their motion is quasi-periodic and never comes back.";
-}
-
-DrivePeriod drive_period(const MotionModel& model) {
-  DrivePeriod out;
-  for (const DrivenCoordinate& d : model.system.drives) {
-    const auto l = static_cast<std::size_t>(d.link);
-    const Link& link = model.system.links[l];
-    const double speed = model.parameters.links[l].speed;
-    if (speed == 0) continue;
-    out.names.push_back(coordinate_label(model.system, link));
-    if (link.type != LinkType::revolute) {
-      out.trouble = out.names.back() + " slides on and on: no motion with it comes back.";
-      out.speeds.clear();
-      return out;
-    }
-    out.speeds.push_back(speed);
-    out.fastest = std::max(out.fastest, std::abs(speed));
-  }
-  if (!out.speeds.empty())
-    find_common_period(out);
-  else if (std::ranges::none_of(model.system.torques, [](const DriveTorqueElement& drive) {
-             return !drive.keeps_momentum && !drive.implied;
-           }))
-    out.trouble = "Nothing is driven at a speed or by a torque, so that there is no period to look for.";
-  return out;
 }
 
 struct Candidate {
@@ -147,7 +96,7 @@ class Search {
       DrivePeriod rest = drives_;
       rest.speeds.erase(rest.speeds.begin() + static_cast<std::ptrdiff_t>(i));
       rest.names.erase(rest.names.begin() + static_cast<std::ptrdiff_t>(i));
-      find_common_period(rest);
+      rest.find_common();
       const auto start = rest.trouble.empty() && rest.period != drives_.period ? flow_.drawn() : std::nullopt;
       if (start && goes_alike_without(flow_, *start, rest.period, drives_.speeds[i]))
         drives_ = std::move(rest);
@@ -482,7 +431,7 @@ class Search {
         out.floquet.growth.push_back(std::log(std::abs(mu)) / c.orbit.period);
     const FlowState& start = c.orbit.nodes.front().base();
     out.start = name_state(flow_.model(), 0, start.q, start.u);
-    if (!measure(c, out)) {
+    if (!measure_orbit(flow_, c.orbit, c.how, rate(), out)) {
       out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();
       return;
     }
@@ -497,88 +446,6 @@ class Search {
     out.evaluations = flow_.evaluations();
     out.status = PeriodicStatus::found;
     out.message = words(c, out);
-  }
-
-  // At first, by the turns of the fastest drive.
-  int samples(const Candidate& c) const {
-    const int turns =
-        std::max(1, static_cast<int>(std::lround(rate() * c.orbit.period / (2 * std::numbers::pi))));
-    int n = least_samples;
-    while (n < std::min(samples_a_turn * turns, most_samples))
-      n *= 2;
-    return n;
-  }
-
-  // A period of the orbit, segment by segment, for an unstable one would be left.
-  Run recorded(const Orbit& orbit, int samples, double tolerance) {
-    const auto m = static_cast<int>(orbit.nodes.size());
-    const int each = 2 * ((samples + 2 * m - 1) / (2 * m)); // even, so that every second one counts as well
-    Run whole;
-    for (const StateChart& node : orbit.nodes) {
-      const Run part = flow_.record(node.base(), orbit.period / m, each, tolerance);
-      if (part.time.empty()) return {};
-      whole = whole.time.empty() ? part : joined(whole, whole.time.size() - 1, part);
-    }
-    return whole;
-  }
-
-  // The largest error of the rates' ranges that the samples leave, as a part of the fastest.
-  double uncertainty(const PeriodicState& told) const {
-    double out = 0;
-    for (const bool angle : {false, true}) {
-      double fastest = 0, error = 0;
-      for (const PeriodicCoordinate& c : told.coordinates) {
-        if (c.angle != angle || !std::isfinite(c.rate.error)) continue;
-        fastest = std::max({fastest, std::abs(c.rate.least), std::abs(c.rate.most)});
-        error = std::max(error, c.rate.error);
-      }
-      // Rounding has no scale to be compared with.
-      const double unit = angle ? 1 : flow_.model().parameters.length;
-      if (fastest > 1e-9 * unit) out = std::max(out, error / fastest);
-    }
-    return out;
-  }
-
-  // Ranges, with the errors that the periodic motion of coarser steps tells.
-  bool measure(const Candidate& c, PeriodicState& out) {
-    const auto other = orbit_beside(flow_, c.orbit, c.how, coarse_gaps);
-    std::shared_ptr<Run> run;
-    PeriodicState told;
-    double unsure = std::numeric_limits<double>::infinity();
-    int count = samples(c);
-    for (;; count *= 2) { // what moves faster than the drives takes more
-      run = std::make_shared<Run>(recorded(c.orbit, count, c.how.tolerance));
-      if (run->time.empty()) return false;
-      told = {};
-      fill_ranges(*run, told);
-      const double before = std::exchange(unsure, uncertainty(told));
-      if (unsure <= fine_enough || unsure > before / gains || 2 * count > most_samples) break;
-    }
-    out.coordinates = std::move(told.coordinates);
-    out.drive_torques = std::move(told.drive_torques);
-    out.reactions = std::move(told.reactions);
-    out.bearings = std::move(told.bearings);
-    out.gears = std::move(told.gears);
-    out.springs = std::move(told.springs);
-    out.measures = std::move(told.measures);
-    mark_open_loads(*run, out);
-    fill_unique_sizes(*run, out, out);
-    PeriodicState beside;
-    if (other) {
-      out.period_error = std::abs(other->period - c.orbit.period);
-      const Run also = recorded(*other, count, coarse_steps * c.how.tolerance);
-      if (!also.time.empty()) {
-        fill_ranges(also, beside);
-        fill_unique_sizes(also, out, beside);
-      }
-    }
-    const bool known = beside.coordinates.size() == out.coordinates.size() &&
-                       beside.drive_torques.size() == out.drive_torques.size();
-    compare_ranges(known ? &beside : nullptr, out);
-    for (PeriodicCoordinate& coordinate : out.coordinates)
-      coordinate.range.error += c.orbit.residual * (coordinate.angle ? 1 : flow_.model().parameters.length);
-    out.motion = std::move(run);
-    return true;
   }
 
   std::string words(const Candidate& c, const PeriodicState& out) const {
