@@ -6,7 +6,9 @@
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <filesystem>
@@ -132,6 +134,36 @@ TEST_CASE("A pipe is written directly") {
   reader.join();
   CHECK(received == "through the pipe");
   CHECK(fs::is_fifo(pipe));
+}
+
+TEST_CASE("A pipe that does not block is waited for") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  for (const int end : ends)
+    REQUIRE(::fcntl(end, F_SETFL, O_NONBLOCK) == 0);
+  const std::string sent(1'000'000, 'x'); // more than it holds
+  std::thread writer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    write_bytes("/dev/fd/" + std::to_string(ends[1]), sent);
+    ::close(ends[1]);
+  });
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const std::string received = read_bytes("/dev/fd/" + std::to_string(ends[0]));
+  writer.join();
+  ::close(ends[0]);
+  CHECK(received == sent);
+}
+
+TEST_CASE("The longest names that a file system takes can be written") {
+  const Folder folder;
+  for (const std::string letter : {"x", "\u00e4"}) {
+    std::string name = "n";
+    while (name.size() + letter.size() <= 255)
+      name += letter;
+    write_bytes(folder / name, "there");
+    CHECK(read_bytes(folder / name) == "there");
+  }
+  CHECK(folder.count() == 2);
 }
 
 TEST_CASE("Standard output goes on where it was, also when it is a file") {

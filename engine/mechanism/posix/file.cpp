@@ -64,6 +64,15 @@ int own_descriptor(const fs::path& file, int standard) {
                    "expected at most " + std::to_string(largest_file / 1'000'000) + " MB, and there is more");
 }
 
+// Whether to go on after a call that failed: a signal came between, or the descriptor does not block, as who
+// started the program may have set it, and is now ready.
+bool try_again(int fd, short ready) {
+  if (errno != EAGAIN) return errno == EINTR;
+  pollfd it{.fd = fd, .events = ready, .revents = 0};
+  ::poll(&it, 1, -1);
+  return true;
+}
+
 // Until the end, waiting for more at most `patience` seconds at a time.
 std::string read_all(const fs::path& file, int fd, std::optional<double> patience) {
   std::string bytes;
@@ -81,7 +90,7 @@ std::string read_all(const fs::path& file, int fd, std::optional<double> patienc
     const ssize_t count = ::read(fd, buffer.data(), buffer.size());
     if (count > 0) bytes.append(buffer.data(), static_cast<std::size_t>(count));
     if (count == 0) return bytes;
-    if (count < 0 && errno != EINTR && errno != EAGAIN) fail(file, "read", errno);
+    if (count < 0 && !try_again(fd, POLLIN)) fail(file, "read", errno);
     if (bytes.size() > largest_file) fail_too_large(file);
   }
 }
@@ -90,7 +99,7 @@ void write_all(const fs::path& file, int fd, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(fd, bytes.data(), bytes.size());
     if (count >= 0) bytes.remove_prefix(static_cast<std::size_t>(count));
-    if (count < 0 && errno != EINTR) fail(file, "write", errno);
+    if (count < 0 && !try_again(fd, POLLOUT)) fail(file, "write", errno);
   }
 }
 

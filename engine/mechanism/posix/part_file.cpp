@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/error.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <csignal>
@@ -25,8 +26,13 @@ namespace fs = std::filesystem;
 constexpr std::string_view ending = ".part";
 
 std::string part_name(const fs::path& target, int attempt) {
-  return "." + target.filename().string() + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) +
-         std::string(ending);
+  constexpr std::size_t most = 200; // of the 255 bytes that file systems give a name
+  std::string name = target.filename().string();
+  std::size_t end = std::min(name.size(), most);
+  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80)
+    --end; // not within a character
+  name.resize(end);
+  return "." + name + "." + std::to_string(::getpid()) + "-" + std::to_string(attempt) + std::string(ending);
 }
 
 // The process that a name says it is of, or 0 for a name that is not of our making.
