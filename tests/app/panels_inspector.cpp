@@ -257,7 +257,7 @@ TEST_CASE("several parts are given one number") {
   hand.click("outline/bodies/ball2");
   hand.hold(false, false);
   REQUIRE(hand.app.session.selection().parts.size() == 2);
-  hand.one_step([&] { hand.fill("inspector/all/mass", "3"); });
+  hand.one_step([&] { hand.fill("inspector/mass", "3"); });
   CHECK(hand.body("ball1").mass == 3);
   CHECK(hand.body("ball2").mass == 3);
   CHECK(hand.body("spindle").mass == 200);

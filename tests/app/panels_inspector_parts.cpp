@@ -387,3 +387,143 @@ TEST_CASE("a bearing is edited: bodies, axes, matrices of two rows or six, with 
   undo(hand.app.session);
   CHECK(bearing().bearing_damping.size() == 4);
 }
+
+namespace {
+
+// Three shoes that slide out from a drum, of which only the first two have springs, as stiff as one another.
+Mechanism three_shoes() {
+  Mechanism m;
+  m.name = "Shoes";
+  m.bodies = {body("drum", 1)};
+  m.joints = {driven(revolute("turn", "ground", "drum", {0, 0, 0}, {0, 0, 1}), 60)};
+  for (const char* shoe : {"a", "b", "c"}) {
+    m.bodies.push_back(body(shoe, 0.1));
+    m.joints.push_back(prismatic(std::string("slide_") + shoe, "drum", shoe, {0.04, 0, 0}, {1, 0, 0}));
+  }
+  m.joints[1] = sprung(m.joints[1], 1000, 0.01);
+  m.joints[2] = sprung(m.joints[2], 1000, 0.02);
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("several joints are edited as one, with a word where they differ") {
+  Hand hand;
+  open_document(hand.app.session, Document(three_shoes()));
+  hand.frames(2);
+  const auto pick = [&](std::initializer_list<const char*> names) {
+    Selection chosen;
+    for (const char* name : names)
+      chosen.add({PartKind::joint, name});
+    select(hand.app.session, chosen);
+    hand.frames(2);
+  };
+  const auto of = [&](const char* name) -> const Coordinate& { return hand.joint(name).coordinates[0]; };
+
+  pick({"slide_a", "slide_b"});
+  CHECK_FALSE(hand.app.ui.widgets.contains("inspector/name"));
+  CHECK_FALSE(hand.app.ui.widgets.contains("inspector/move"));
+  hand.one_step([&] { hand.fill("inspector/spring/stiffness", "2 N/mm"); });
+  CHECK(hand.last_step() == "Set spring stiffness of slide_b, and 1 more");
+  CHECK(of("slide_a").spring->stiffness == 2000);
+  CHECK(of("slide_b").spring->stiffness == 2000);
+  CHECK(of("slide_a").spring->free == 0.01);
+  CHECK(of("slide_b").spring->free == 0.02);
+
+  SECTION("a field of various numbers is empty, and left so changes nothing") {
+    hand.press_widget("inspector/spring/free");
+    CHECK(hand.app.ui.fields.typing.text.empty());
+    hand.key(key_escape);
+    CHECK(of("slide_a").spring->free == 0.01);
+    hand.one_step([&] { hand.fill("inspector/spring/free", "=0.03 m"); });
+    CHECK(of("slide_a").spring->free == 0.03);
+    CHECK(of("slide_b").spring->free == 0.03);
+    CHECK(hand.joint("slide_a").formulas == hand.joint("slide_b").formulas);
+    hand.one_step([&] { hand.fill("inspector/spring/free", "4 mm"); });
+    CHECK(of("slide_a").spring->free == 0.004);
+    CHECK(hand.joint("slide_a").formulas.empty());
+    CHECK(hand.joint("slide_b").formulas.empty());
+  }
+  SECTION("a number that is named is one parameter of them all") {
+    hand.reveal("inspector/spring/stiffness");
+    hand.click(hand.widget("inspector/spring/stiffness").center(), 1);
+    hand.one_step([&] { hand.click("inspector/spring/stiffness/name it"); });
+    REQUIRE(hand.mechanism().parameters.size() == 1);
+    hand.one_step(
+        [&] { set_number(hand.app.session, "parameters." + hand.mechanism().parameters[0].name, 500); });
+    CHECK(of("slide_a").spring->stiffness == 500);
+    CHECK(of("slide_b").spring->stiffness == 500);
+  }
+  SECTION("what some have is given to all, what all have is taken off them") {
+    pick({"slide_a", "slide_b", "slide_c"});
+    CHECK_FALSE(hand.app.ui.widgets.contains("inspector/spring/stiffness"));
+    hand.one_step([&] { hand.press_widget("inspector/spring"); });
+    REQUIRE(of("slide_c").spring);
+    CHECK(of("slide_a").spring->stiffness == 2000); // which had one
+    hand.one_step([&] { hand.fill("inspector/spring/stiffness", "300"); });
+    hand.one_step([&] { hand.press_widget("inspector/friction"); });
+    hand.one_step([&] { hand.fill("inspector/friction/limit", "2"); });
+    hand.one_step([&] { hand.press_widget("inspector/stop"); });
+    hand.one_step([&] { hand.fill("inspector/stop/upper", "10 mm"); });
+    for (const char* name : {"slide_a", "slide_b", "slide_c"}) {
+      CHECK(of(name).spring->stiffness == 300);
+      CHECK(of(name).friction->limit == 2.);
+      CHECK(of(name).stop->upper == 0.01);
+    }
+    hand.one_step([&] { hand.press_widget("inspector/spring"); });
+    for (const char* name : {"slide_a", "slide_b", "slide_c"})
+      CHECK_FALSE(of(name).spring);
+    hand.press_widget("inspector/drive"); // not beside a stop
+    CHECK_FALSE(of("slide_a").drive);
+    hand.one_step([&] { hand.choose_from("inspector/type", "cylindrical"); });
+    CHECK(hand.joint("slide_a").type == JointType::cylindrical);
+    CHECK(hand.joint("slide_c").type == JointType::cylindrical);
+  }
+  SECTION("of various types those of the last one picked are edited") {
+    pick({"slide_a", "turn", "slide_b"});
+    hand.one_step([&] { hand.fill("inspector/spring/stiffness", "7"); });
+    CHECK(of("slide_a").spring->stiffness == 7);
+    CHECK(of("slide_b").spring->stiffness == 7);
+    CHECK_FALSE(of("turn").spring);
+    pick({"slide_a", "turn"});
+    CHECK_FALSE(hand.app.ui.widgets.contains("inspector/drive"));
+  }
+  SECTION("of one alone, nothing is of others afterwards") {
+    pick({"slide_a"});
+    hand.one_step([&] { hand.fill("inspector/spring/stiffness", "5"); });
+    CHECK(of("slide_b").spring->stiffness == 2000);
+  }
+}
+
+TEST_CASE("several springs and bodies have their numbers together") {
+  Hand hand;
+  Mechanism m = three_shoes();
+  for (const char* shoe : {"a", "b"})
+    m.forces.push_back(
+        point_spring(std::string("spring_") + shoe, "drum", shoe, {0, 0, 0}, {0.04, 0, 0}, 100));
+  for (const char* shoe : {"a", "b"}) {
+    Shape ball;
+    ball.type = ShapeType::sphere;
+    ball.radius = 0.01;
+    m.bodies[static_cast<std::size_t>(body_index(m, shoe))].shapes = {ball};
+  }
+  open_document(hand.app.session, Document(m));
+  hand.frames(2);
+  select(hand.app.session, {{{PartKind::force, "spring_a"}, {PartKind::force, "spring_b"}}});
+  hand.frames(2);
+  hand.one_step([&] { hand.fill("inspector/damping", "3"); });
+  CHECK(hand.force("spring_a").damping == 3);
+  CHECK(hand.force("spring_b").damping == 3);
+  hand.one_step([&] { hand.choose_from("inspector/bodies/1", "c"); });
+  CHECK(hand.force("spring_a").bodies[1] == "c");
+  CHECK(hand.force("spring_b").bodies[1] == "c");
+
+  select(hand.app.session, {{{PartKind::body, "a"}, {PartKind::body, "b"}}});
+  hand.frames(2);
+  hand.one_step([&] { hand.fill("inspector/shapes/0/radius", "20 mm"); });
+  CHECK(hand.body("a").shapes[0].radius == 0.02);
+  CHECK(hand.body("b").shapes[0].radius == 0.02);
+  hand.one_step([&] { hand.press_widget("inspector/by density"); });
+  CHECK(hand.body("a").density);
+  CHECK(hand.body("b").density);
+}

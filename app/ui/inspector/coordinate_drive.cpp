@@ -22,6 +22,7 @@ void set_driven(Session& session, Ui& ui, const std::string& joint, int coordina
     const auto i = static_cast<std::size_t>(coordinate);
     if (i >= same.coordinates.size()) return;
     Coordinate& c = same.coordinates[i];
+    if (driven == c.drive.has_value()) return; // of several, one that is so already
     if (driven)
       c.drive.emplace().speed = is_angle(same.type, coordinate) ? turned : m_per_s;
     else

@@ -108,13 +108,13 @@ void inertia_rows(Session& session, Ui& ui, const Body& body) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     if (i == 3 && !inspector_section(session, ui, "inspector/products", "Products of inertia", has_products))
       return;
-    quantity_row(session, ui, (i < 3 ? "Inertia " : "Product ") + std::string(keys[i]),
-                 {.name = std::string("inspector/inertia/") + keys[i],
-                  .value = body.inertia[i],
-                  .unit = "kg m^2",
-                  .help = helps[i],
-                  .least = i < 3 ? Least::zero : Least::any,
-                  .address = "bodies." + body.name + ".inertia." + std::to_string(i)});
+    number_row(session, ui, (i < 3 ? "Inertia " : "Product ") + std::string(keys[i]),
+               {.name = std::string("inspector/inertia/") + keys[i],
+                .value = body.inertia[i],
+                .unit = "kg m^2",
+                .help = helps[i],
+                .least = i < 3 ? Least::zero : Least::any,
+                .address = "bodies." + body.name + ".inertia." + std::to_string(i)});
   }
 }
 
@@ -128,28 +128,34 @@ double shown_density(const InspectorState& inspector, const Body& body, double d
 
 // Of a body that weighs what its shapes do.
 void density_rows(Session& session, Ui& ui, const Body& body) {
-  quantity_row(session, ui, "Density",
-               {.name = "inspector/density",
-                .value = *body.density,
-                .unit = "kg/m^3",
-                .help = "Mass, mass centre and inertia follow from it and the shapes.",
-                .least = Least::above_zero,
-                .address = "bodies." + body.name + ".density"});
+  number_row(session, ui, "Density",
+             {.name = "inspector/density",
+              .value = *body.density,
+              .unit = "kg/m^3",
+              .help = "Mass, mass centre and inertia follow from it and the shapes.",
+              .least = Least::above_zero,
+              .address = "bodies." + body.name + ".density"});
+  if (is_of_several(ui)) return;
   row(ui, "Mass", short_text(body.mass, 9), "kg", "Follows from the density and the shapes.");
 }
 
 // Whether mass, mass centre and inertia are to follow.
 void density_tick(Session& session, Ui& ui, const Body& body) {
-  if (check_row(ui, "inspector/by density", "By density", body.density.has_value(),
-                "Mass, mass centre and inertia follow from a density and the shapes, whatever moves these."))
-    edit_body(session, ui, body.density ? "Take the density off" : "Mass by density", body.name,
-              [](Body& same) {
-                same.density = same.density ? std::nullopt : density_of(same);
-                std::erase_if(same.formulas, [](const Formula& formula) {
-                  return formula.key == "density" || formula.key == "mass" ||
-                         formula.key.starts_with("position") || formula.key.starts_with("inertia");
-                });
-              });
+  const std::vector<const Body*> others = others_edited(session, ui, body);
+  const auto by_density = [](const Body* each) { return each->density.has_value(); };
+  const bool on = body.density && std::ranges::all_of(others, by_density),
+             mixed = !on && (body.density || std::ranges::any_of(others, by_density));
+  if (check_row(ui, "inspector/by density", "By density", on,
+                "Mass, mass centre and inertia follow from a density and the shapes, whatever moves these.",
+                nullptr, mixed))
+    edit_body(session, ui, on ? "Take the density off" : "Mass by density", body.name, [on](Body& same) {
+      if (same.density.has_value() != on) return; // of several, one that is so already
+      same.density = on ? std::nullopt : density_of(same);
+      std::erase_if(same.formulas, [](const Formula& formula) {
+        return formula.key == "density" || formula.key == "mass" || formula.key.starts_with("position") ||
+               formula.key.starts_with("inertia");
+      });
+    });
 }
 
 void density_row(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
@@ -225,8 +231,16 @@ void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Bod
                                      : "Mass; zero is allowed.",
                      .least = Least::zero,
                      .address = "bodies." + body.name + ".mass"};
-  mass.set = [&session, &inspector, name = body.name, follows](double value) {
-    inspector.given_masses[name] = {true, 0};
+  const std::vector<std::string> names = edited_with(ui, {PartKind::body, body.name});
+  mass.set = [&session, &inspector, name = body.name, names, follows](double value) {
+    for (const std::string& each : names)
+      inspector.given_masses[each] = {true, 0};
+    if (names.size() > 1)
+      return edit(session, "Set mass of " + name + and_more(names.size() - 1),
+                  [&](Mechanism& mechanism, Selection&) {
+                    for (Body& each : mechanism.bodies)
+                      if (std::ranges::count(names, each.name) > 0) give_mass(inspector, each, value);
+                  });
     // Without mass a point is like a solid; it stays a point.
     if (!follows && value == 0) inspector.independent = {PartKind::body, name};
     if (!follows) return set_number(session, "bodies." + name + ".mass", value);
@@ -235,9 +249,10 @@ void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Bod
         if (same.name == name) give_mass(inspector, same, value);
     });
   };
-  quantity_row(session, ui, "Mass", mass);
-  density_row(session, ui, inspector, body);
+  number_row(session, ui, "Mass", mass);
+  if (!is_of_several(ui)) density_row(session, ui, inspector, body);
   inertia_rows(session, ui, body);
+  if (is_of_several(ui)) return density_tick(session, ui, body);
   if (!density_of(body)) return;
   const Part part{PartKind::body, body.name};
   if (check_row(
@@ -286,6 +301,10 @@ void bearing_drive_row(Session& session, Ui& ui, const std::string& body) {
 }
 
 void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool, const Body& body) {
+  if (is_of_several(ui)) {
+    mass_section(session, ui, inspector, body);
+    return shapes_section(session, ui, inspector, body);
+  }
   name_row(session, ui, {PartKind::body, body.name});
   text_row(session, ui, "inspector/description", "Note", body.description,
            "A note for whoever reads the scene.", [&session, &ui, name = body.name](const std::string& text) {

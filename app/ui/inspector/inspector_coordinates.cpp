@@ -30,6 +30,26 @@ struct CoordinateRows {
   Ui& ui;
   const Joint& joint;
   int i;
+  std::vector<const Joint*> others{}; // that are edited with it
+
+  // Of how many of them it is so: of all, or of some.
+  bool all_have(bool (*has)(const Coordinate&)) const {
+    return has(coordinate()) && std::ranges::all_of(others, [&](const Joint* each) {
+             return has(each->coordinates[static_cast<std::size_t>(i)]);
+           });
+  }
+  bool some_have(bool (*has)(const Coordinate&)) const {
+    return has(coordinate()) || std::ranges::any_of(others, [&](const Joint* each) {
+             return has(each->coordinates[static_cast<std::size_t>(i)]);
+           });
+  }
+  // Why the first of them that cannot be given something cannot.
+  const char* refused_of_any(const char* (CoordinateRows::*refused)() const) const {
+    const char* why = (this->*refused)();
+    for (auto other = others.begin(); !why && other != others.end(); ++other)
+      why = (CoordinateRows{session, ui, **other, i}.*refused)();
+    return why;
+  }
 
   const Coordinate& coordinate() const { return joint.coordinates[static_cast<std::size_t>(i)]; }
   bool angle() const { return is_angle(joint.type, i); }
@@ -73,14 +93,23 @@ struct CoordinateRows {
       ImGui::SetCursorPosY(ImGui::GetCursorPosY() - std::round(3 * ui.scale));
   }
 
-  // A tick; `removed` and `added` edit the coordinate.
-  void tick(const std::string& word, const char* label, const char* what, bool on, const char* help,
-            const char* refused, const std::function<void(Coordinate&)>& removed,
+  // A tick; `removed` and `added` edit the coordinate. Where some have it, all are given it.
+  void tick(const std::string& word, const char* label, const char* what, bool (*has)(const Coordinate&),
+            const char* help, const char* (CoordinateRows::*refused)() const,
+            const std::function<void(Coordinate&)>& removed,
             const std::function<void(Coordinate&)>& added) const {
-    if (!check_row(ui, widget(key(word)), label, on, help, on ? nullptr : refused)) return;
+    const bool on = all_have(has);
+    if (!check_row(ui, widget(key(word)), label, on, help, on ? nullptr : refused_of_any(refused),
+                   !on && some_have(has)))
+      return;
     const std::string step =
         (on ? "Remove " : "Add ") + std::string(what) + (on ? " of " : " to ") + joint.name;
-    change(step, on ? removed : added);
+    change(step, [on, has, removed, added](Coordinate& c) {
+      if (on)
+        removed(c);
+      else if (!has(c))
+        added(c);
+    });
   }
 
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
@@ -91,15 +120,15 @@ struct CoordinateRows {
   void number(const std::string& label, const std::string& address, double value, const std::string& unit,
               const char* help, const std::string& law, Least least = Least::any,
               const std::function<void()>& reset = {}) const {
-    quantity_row(session, ui, label,
-                 {.name = widget(address),
-                  .value = value,
-                  .unit = unit,
-                  .help = help,
-                  .least = least,
-                  .address = "joints." + joint.name + "." + address,
-                  .law = law},
-                 reset);
+    number_row(session, ui, label,
+               {.name = widget(address),
+                .value = value,
+                .unit = unit,
+                .help = help,
+                .least = least,
+                .address = "joints." + joint.name + "." + address,
+                .law = law},
+               reset);
   }
   // Of an expression of the state the value that it has there, where that is known; else the expression
   // stands in its place.
@@ -171,14 +200,14 @@ struct CoordinateRows {
   }
 
   void drive() const {
-    const bool on = coordinate().drive.has_value();
+    const bool on = all_have(is_driven);
     if (check_row(ui, widget(key("drive")), "Drive", on, "Moves the coordinate at a constant speed.",
-                  on ? nullptr : drive_refused(joint, i)))
+                  on ? nullptr : refused_of_any(&CoordinateRows::no_drive), !on && some_have(is_driven)))
       set_driven(session, ui, joint.name, i, !on);
   }
 
   void drive_numbers() const {
-    if (!coordinate().drive) return;
+    if (!all_have(is_driven)) return;
     const Drive& drive = *coordinate().drive;
     by_torque(drive.torque.has_value());
     if (!drive.torque) left_to_itself(drive.keeps == DriveKeeps::momentum);
@@ -211,7 +240,7 @@ struct CoordinateRows {
                    nullptr))
       return;
     change((on ? "Prescribe the speed of " : "Find the speed of ") + joint.name, [on](Coordinate& c) {
-      if (!c.drive) return;
+      if (!c.drive || c.drive->torque.has_value() != on) return;
       c.drive->torque = on ? std::nullopt : std::optional(0.);
       c.drive->load = c.drive->torque;
       c.drive->keeps = DriveKeeps::speed;
@@ -232,6 +261,12 @@ struct CoordinateRows {
   }
 
   // Why nothing that has to settle may act on it; null where it may.
+  static bool is_driven(const Coordinate& c) { return c.drive.has_value(); }
+  static bool has_spring(const Coordinate& c) { return c.spring.has_value(); }
+  static bool has_stop(const Coordinate& c) { return c.stop.has_value(); }
+  static bool has_friction(const Coordinate& c) { return c.friction.has_value(); }
+
+  const char* no_drive() const { return drive_refused(joint, i); }
   const char* driven() const {
     if (coordinate().drive) return "Not on a driven coordinate: its torque or force would never settle.";
     const CoordinateSolution* found = solution();
@@ -244,8 +279,8 @@ struct CoordinateRows {
 
   void spring() const {
     tick(
-        "spring", "Spring", "spring", coordinate().spring.has_value(), "Pulls the coordinate to a value.",
-        driven(), [](Coordinate& c) { c.spring.reset(); },
+        "spring", "Spring", "spring", has_spring, "Pulls the coordinate to a value.", &CoordinateRows::driven,
+        [](Coordinate& c) { c.spring.reset(); },
         [stiffness = beginning().stiffness](Coordinate& c) {
           c.spring.emplace();
           c.spring->stiffness = stiffness;
@@ -254,7 +289,7 @@ struct CoordinateRows {
   }
 
   void spring_numbers() const {
-    if (!coordinate().spring) return;
+    if (!all_have(has_spring)) return;
     const CoordinateSpring& spring = *coordinate().spring;
     if (spring.force)
       number_or_law(
@@ -275,13 +310,16 @@ struct CoordinateRows {
                         : "The coordinate's value at which the spring exerts nothing.");
   }
 
+  const char* no_damper() const {
+    return coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
+               ? "Not on what keeps its momentum: it would take it."
+               : nullptr;
+  }
+
   void damper() const {
     tick(
-        "damper", "Damper", "damper", is_damped(coordinate()),
-        "Resists the coordinate's motion; the steady state is the same.",
-        coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
-            ? "Not on what keeps its momentum: it would take it."
-            : nullptr,
+        "damper", "Damper", "damper", [](const Coordinate& c) { return is_damped(c); },
+        "Resists the coordinate's motion; the steady state is the same.", &CoordinateRows::no_damper,
         [](Coordinate& c) {
           c.damping = 0;
           c.damping_force.reset();
@@ -324,7 +362,7 @@ struct CoordinateRows {
     row_label(ui, label, "No limit on this side.");
     if (text_button(ui, widget(address) + "/add", "Add a limit"))
       change(std::string("Add ") + word + " stop to " + joint.name, [which, usual](Coordinate& c) {
-        if (c.stop) (*c.stop).*which = c.drawn + usual;
+        if (c.stop && !((*c.stop).*which)) (*c.stop).*which = c.drawn + usual;
       });
     help_on_hover("A limit on this side too.");
   }
@@ -332,8 +370,8 @@ struct CoordinateRows {
   void stop() const {
     const Beginning& b = beginning();
     tick(
-        "stop", "Stop", "stop", coordinate().stop.has_value(),
-        "A stiff one-sided spring that acts beyond a limit.", driven(), [](Coordinate& c) { c.stop.reset(); },
+        "stop", "Stop", "stop", has_stop, "A stiff one-sided spring that acts beyond a limit.",
+        &CoordinateRows::driven, [](Coordinate& c) { c.stop.reset(); },
         [b](Coordinate& c) {
           c.stop.emplace();
           c.stop->lower = c.drawn - b.stop_reach;
@@ -343,7 +381,7 @@ struct CoordinateRows {
   }
 
   void stop_numbers() const {
-    if (!coordinate().stop) return;
+    if (!all_have(has_stop)) return;
     const Beginning& b = beginning();
     limit("Stop from", "lower", coordinate().stop->lower, &Stop::lower, -b.stop_reach);
     limit("Stop to", "upper", coordinate().stop->upper, &Stop::upper, b.stop_reach);
@@ -370,9 +408,9 @@ struct CoordinateRows {
 
   void friction() const {
     tick(
-        "friction", "Friction", "friction", coordinate().friction.has_value(),
+        "friction", "Friction", "friction", has_friction,
         "Dry friction: holds the coordinate at rest up to a limit, so that the steady state is a band.",
-        friction_refused(), [](Coordinate& c) { c.friction.reset(); },
+        &CoordinateRows::friction_refused, [](Coordinate& c) { c.friction.reset(); },
         [limit = beginning().friction](Coordinate& c) { c.friction.emplace().limit = limit; });
   }
 
@@ -383,7 +421,7 @@ struct CoordinateRows {
       return;
     change((on ? "Give the friction of " : "Find the friction by preload of ") + joint.name,
            [on, turns = angle()](Coordinate& c) {
-             if (!c.friction) return;
+             if (!c.friction || c.friction->limit.has_value() == on) return;
              Friction& f = *c.friction;
              const double limit = friction_limit(f);
              f.limit = f.mu = f.preload = f.radius = std::nullopt;
@@ -398,7 +436,7 @@ struct CoordinateRows {
   }
 
   void friction_numbers() const {
-    if (!coordinate().friction) return;
+    if (!all_have(has_friction)) return;
     const Friction& f = *coordinate().friction;
     by_preload(!f.limit);
     const std::string address = key("friction") + ".";
@@ -420,10 +458,10 @@ struct CoordinateRows {
   }
 
   void all() const {
-    settled();
+    if (others.empty()) settled();
     number("Drawn as", key("coordinate"), coordinate().drawn, value_unit(),
            "What the coordinate is called in the drawn pose; a label, it moves nothing.");
-    move_to();
+    if (others.empty()) move_to();
     // All that can act in one line, which stays where it is; below it the numbers of what does act.
     drive();
     beside_last("Spring");
@@ -452,8 +490,12 @@ struct CoordinateRows {
 void coordinate_sections(Session& session, Ui& ui, const Joint& joint) {
   const auto count = static_cast<int>(joint.coordinates.size());
   if (count != coordinate_count(joint.type)) return; // a mistake, told elsewhere
+  const std::vector<const Joint*> others = others_edited(session, ui, joint);
+  if (std::ranges::any_of(
+          others, [&](const Joint* each) { return each->coordinates.size() != joint.coordinates.size(); }))
+    return;
   for (int i = 0; i < count; ++i) {
-    const CoordinateRows rows{session, ui, joint, i};
+    const CoordinateRows rows{session, ui, joint, i, others};
     const std::string section = "inspector/coordinate " + std::to_string(i);
     if (inspector_section(session, ui, section, coordinate_title(joint.type, i),
                           count <= 2 || rows.acted_on()))

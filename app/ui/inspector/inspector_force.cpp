@@ -34,70 +34,69 @@ void spring_rows(Session& session, Ui& ui, const Force& force) {
     end_point_rows(session, ui, part, force.points, end);
   }
   if (force.force)
-    quantity_row(session, ui, "Force",
-                 {.name = "inspector/force",
-                  .value = *force.force,
-                  .unit = "N",
-                  .help =
-                      "That pulls its ends together: a number, or an expression of the deflection such as "
-                      "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
-                      "[5 mm, 40 N]).",
-                  .address = address_of(force, "force"),
-                  .law = law_text(spring_law(force))},
-                 [&session, &ui, name = force.name] {
-                   edit_force(session, ui, "Stiffness of " + name, name, [](Force& same) {
-                     same.force.reset();
-                     same.stiffness = usual_stiffness;
-                   });
+    number_row(session, ui, "Force",
+               {.name = "inspector/force",
+                .value = *force.force,
+                .unit = "N",
+                .help = "That pulls its ends together: a number, or an expression of the deflection such as "
+                        "=2000 N/m*deflection + 1e6 N/m^3*deflection^3 or =table(deflection, [0 mm, 0 N], "
+                        "[5 mm, 40 N]).",
+                .address = address_of(force, "force"),
+                .law = law_text(spring_law(force))},
+               [&session, &ui, name = force.name] {
+                 edit_force(session, ui, "Stiffness of " + name, name, [](Force& same) {
+                   same.force.reset();
+                   same.stiffness = usual_stiffness;
                  });
+               });
   else
-    quantity_row(session, ui, "Stiffness",
-                 {.name = "inspector/stiffness",
-                  .value = force.stiffness,
-                  .unit = "N/m",
-                  .help = "Force by how far it is stretched; zero for a damper alone. An expression of the "
-                          "deflection is the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).",
-                  .address = address_of(force, "stiffness")});
+    number_row(session, ui, "Stiffness",
+               {.name = "inspector/stiffness",
+                .value = force.stiffness,
+                .unit = "N/m",
+                .help = "Force by how far it is stretched; zero for a damper alone. An expression of the "
+                        "deflection is the whole force, as =table(deflection, [0 mm, 0 N], [5 mm, 40 N]).",
+                .address = address_of(force, "stiffness")});
   std::function<void()> reset;
   if (force.free_length)
     reset = [&session, &ui, name = force.name] {
       edit_force(session, ui, "Length of " + name + " as drawn", name,
                  [](Force& same) { same.free_length.reset(); });
     };
-  quantity_row(session, ui, "Free length",
-               {.name = "inspector/free_length",
-                .value = force.free_length.value_or(drawn_distance(force.points)),
-                .unit = "m",
-                .help = "The length at which the spring is slack.",
-                .least = Least::zero,
-                .address = address_of(force, "free_length"),
-                .standard = !force.free_length},
-               reset);
+  number_row(session, ui, "Free length",
+             {.name = "inspector/free_length",
+              .value = force.free_length.value_or(drawn_distance(force.points)),
+              .unit = "m",
+              .help = "The length at which the spring is slack.",
+              .least = Least::zero,
+              .address = address_of(force, "free_length"),
+              .standard = !force.free_length},
+             reset);
   if (force.damping_force)
-    return quantity_row(session, ui, "Damping force",
-                        {.name = "inspector/damping_force",
-                         .value = *force.damping_force,
-                         .unit = "N",
-                         .help = "Against the rate of its length, an expression of it such as =40 "
-                                 "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
-                                 "m/s, 90 N]).",
-                         .address = address_of(force, "damping_force"),
-                         .law = law_text(damper_law(force))},
-                        [&session, &ui, name = force.name] {
-                          edit_force(session, ui, "Damping of " + name, name, [](Force& same) {
-                            same.damping_force.reset();
-                            same.damping = usual_damping;
-                          });
+    return number_row(session, ui, "Damping force",
+                      {.name = "inspector/damping_force",
+                       .value = *force.damping_force,
+                       .unit = "N",
+                       .help = "Against the rate of its length, an expression of it such as =40 "
+                               "N*tanh(rate/(0.1 m/s)) or =table(rate, [-1 m/s, -30 N], [0 m/s, 0 N], [1 "
+                               "m/s, 90 N]).",
+                       .address = address_of(force, "damping_force"),
+                       .law = law_text(damper_law(force))},
+                      [&session, &ui, name = force.name] {
+                        edit_force(session, ui, "Damping of " + name, name, [](Force& same) {
+                          same.damping_force.reset();
+                          same.damping = usual_damping;
                         });
-  quantity_row(session, ui, "Damping",
-               {.name = "inspector/damping",
-                .value = force.damping,
-                .unit = "N s/m",
-                .help =
-                    "Force by the speed at which its length changes. An expression of the rate is the whole "
-                    "force, as =40 N*tanh(rate/(0.1 m/s)).",
-                .least = Least::zero,
-                .address = address_of(force, "damping")});
+                      });
+  number_row(session, ui, "Damping",
+             {.name = "inspector/damping",
+              .value = force.damping,
+              .unit = "N s/m",
+              .help =
+                  "Force by the speed at which its length changes. An expression of the rate is the whole "
+                  "force, as =40 N*tanh(rate/(0.1 m/s)).",
+              .least = Least::zero,
+              .address = address_of(force, "damping")});
 }
 
 // One number each, by what moves and what feels it.
@@ -106,14 +105,15 @@ void matrix_rows(Session& session, Ui& ui, const Force& force, const std::string
                  BearingMatrix Force::*member) {
   const std::string title = key == "stiffness" ? "Stiffness" : "Damping";
   if (check_row(ui, "inspector/" + key, title, !matrix.empty(), "A matrix by rows, in the bearing's axes."))
-    edit_force(session, ui, title + " of " + force.name, force.name, [member, usual](Force& same) {
-      const std::size_t size = bearing_size(same) == 6 ? 6 : 2;
-      BearingMatrix& entries = same.*member;
-      const bool had = !entries.empty();
-      entries.assign(had ? 0 : size * size, 0);
-      for (std::size_t i = 0; i < entries.size() && i / size < 2; i += size + 1)
-        entries[i] = usual;
-    });
+    edit_force(session, ui, title + " of " + force.name, force.name,
+               [member, usual, had = !matrix.empty()](Force& same) {
+                 const std::size_t size = bearing_size(same) == 6 ? 6 : 2;
+                 BearingMatrix& entries = same.*member;
+                 if (entries.empty() == had) return; // of several, one that is so already
+                 entries.assign(had ? 0 : size * size, 0);
+                 for (std::size_t i = 0; i < entries.size() && i / size < 2; i += size + 1)
+                   entries[i] = usual;
+               });
   const std::size_t size = matrix.size() > 4 ? 6 : 2;
   const auto field = [&](std::size_t row, std::size_t column) {
     return QuantityField{
@@ -126,8 +126,12 @@ void matrix_rows(Session& session, Ui& ui, const Force& force, const std::string
   constexpr std::array<const char*, 6> names{"x", "y", "z", "turn x", "turn y", "turn z"};
   if (matrix.size() == 4)
     for (std::size_t i = 0; i < 4; ++i)
-      quantity_row(session, ui, std::string(names[i / 2]) + " by " + names[i % 2], field(i / 2, i % 2));
+      number_row(session, ui, std::string(names[i / 2]) + " by " + names[i % 2], field(i / 2, i % 2));
   if (matrix.size() != 36) return;
+  const auto matrix_entry = [&](std::size_t row, std::size_t column, float width) {
+    QuantityField entry = field(row, column);
+    if (edit_together(session, ui, entry)) quantity_field(session, ui, entry, width);
+  };
   // Three columns at a time: six would have no room for their numbers.
   const float label = 52 * ui.scale, gap = 4 * ui.scale;
   for (const std::size_t first : {std::size_t{0}, std::size_t{3}}) {
@@ -142,7 +146,7 @@ void matrix_rows(Session& session, Ui& ui, const Force& force, const std::string
         if (row == 0)
           ImGui::TextColored(colors_of(ui).dim, "%s", names[first + k]);
         else
-          quantity_field(session, ui, field(row - 1, first + k), width);
+          matrix_entry(row - 1, first + k, width);
       }
     }
   }
@@ -153,7 +157,7 @@ void bearing_rows(Session& session, Ui& ui, const Force& force) {
   for (std::size_t end = 0; end < 2; ++end)
     body_end_row(session, ui, part, force.bodies, end, end == 0 ? "In" : "Holds",
                  end == 0 ? bearing_in_help : bearing_holds_help);
-  bearing_drive_row(session, ui, held_by(force));
+  if (!is_of_several(ui)) bearing_drive_row(session, ui, held_by(force));
   vector_rows(session, ui, "Point",
               {.name = "inspector/at",
                .value = force.at.value_or(Vec3::Zero()),
@@ -185,7 +189,8 @@ void bearing_rows(Session& session, Ui& ui, const Force& force) {
   if (const auto chosen = choice_row(ui, "inspector/rows", "Matrices", sizes, full ? 1 : 0,
                                      "Of the shifts along x and y; or of three shifts and three turns.");
       chosen && (*chosen == 1) != full)
-    edit_force(session, ui, "Rows of " + force.name, force.name, [](Force& same) {
+    edit_force(session, ui, "Rows of " + force.name, force.name, [full](Force& same) {
+      if ((bearing_size(same) == 6) != full) return; // of several, one that is so already
       for (BearingMatrix* matrix : {&same.bearing_stiffness, &same.bearing_damping}) {
         if (matrix->empty()) continue;
         const std::size_t from = matrix->size() > 4 ? 6 : 2, to = 8 - from;
@@ -232,28 +237,31 @@ void vector_field(Session& session, Ui& ui, const Force& force) {
                                                         : "Components along the body's axes.",
                .address = address_of(force, "vector")});
   constexpr std::array<std::string_view, 2> frames{"world", "body"};
-  const auto chosen = choice_row(ui, "inspector/frame", "Axes", frames, static_cast<std::size_t>(force.frame),
-                                 "World: it keeps its direction; body: it turns with the body.");
+  const auto chosen =
+      choice_row(ui, "inspector/frame", "Axes", frames, static_cast<std::size_t>(force.frame),
+                 "World: it keeps its direction; body: it turns with the body.",
+                 std::ranges::any_of(others_edited(session, ui, force),
+                                     [&](const Force* each) { return each->frame != force.frame; }));
   if (chosen)
     edit_force(session, ui, "Axes of " + force.name, force.name,
                [frame = static_cast<ForceFrame>(*chosen)](Force& same) { same.frame = frame; });
 }
 
 void drag_rows(Session& session, Ui& ui, const Force& force) {
-  quantity_row(session, ui, "Linear",
-               {.name = "inspector/linear",
-                .value = force.linear,
-                .unit = "N s/m",
-                .help = "Force by the speed through the air.",
-                .least = Least::zero,
-                .address = address_of(force, "linear")});
-  quantity_row(session, ui, "Quadratic",
-               {.name = "inspector/quadratic",
-                .value = force.quadratic,
-                .unit = "N s^2/m^2",
-                .help = "Force by the square of the speed through the air.",
-                .least = Least::zero,
-                .address = address_of(force, "quadratic")});
+  number_row(session, ui, "Linear",
+             {.name = "inspector/linear",
+              .value = force.linear,
+              .unit = "N s/m",
+              .help = "Force by the speed through the air.",
+              .least = Least::zero,
+              .address = address_of(force, "linear")});
+  number_row(session, ui, "Quadratic",
+             {.name = "inspector/quadratic",
+              .value = force.quadratic,
+              .unit = "N s^2/m^2",
+              .help = "Force by the square of the speed through the air.",
+              .least = Least::zero,
+              .address = address_of(force, "quadratic")});
 }
 
 enum class VaneForm { plate, blade, airfoil };
@@ -286,23 +294,23 @@ void coefficient_row(Session& session, Ui& ui, const Force& vane, const std::str
                      const std::string& key, const std::optional<double>& coefficient, const Formula* law,
                      const char* help) {
   if (!coefficient) return; // zero, as the file leaves it out
-  quantity_row(session, ui, label,
-               {.name = "inspector/" + key,
-                .value = *coefficient,
-                .unit = "",
-                .help = help,
-                .address = address_of(vane, key),
-                .law = law_text(law)});
+  number_row(session, ui, label,
+             {.name = "inspector/" + key,
+              .value = *coefficient,
+              .unit = "",
+              .help = help,
+              .address = address_of(vane, key),
+              .law = law_text(law)});
 }
 
 void vane_rows(Session& session, Ui& ui, const Force& vane) {
-  quantity_row(session, ui, "Area",
-               {.name = "inspector/area",
-                .value = vane.area,
-                .unit = "m^2",
-                .help = "Of one side.",
-                .least = Least::zero,
-                .address = address_of(vane, "area")});
+  number_row(session, ui, "Area",
+             {.name = "inspector/area",
+              .value = vane.area,
+              .unit = "m^2",
+              .help = "Of one side.",
+              .least = Least::zero,
+              .address = address_of(vane, "area")});
   vector_rows(session, ui, "Normal",
               {.name = "inspector/normal",
                .value = vane.normal,
@@ -312,7 +320,9 @@ void vane_rows(Session& session, Ui& ui, const Force& vane) {
   const auto chosen =
       choice_row(ui, "inspector/form", "Form", forms, static_cast<std::size_t>(form_of(vane)),
                  "On a blade flow along its span does nothing; a plate is alike all round. An airfoil is a "
-                 "blade with lift and drag by the direction of the flow.");
+                 "blade with lift and drag by the direction of the flow.",
+                 std::ranges::any_of(others_edited(session, ui, vane),
+                                     [&](const Force* each) { return form_of(*each) != form_of(vane); }));
   if (chosen)
     edit_force(session, ui, "Form of " + vane.name, vane.name,
                [form = static_cast<VaneForm>(*chosen)](Force& same) { set_form(same, form); });
@@ -332,38 +342,45 @@ void vane_rows(Session& session, Ui& ui, const Force& vane) {
                     "Of the force along the flow, such as =0.01 + 1.2*sin(incidence)^2; zero or more.");
     return;
   }
-  quantity_row(session, ui, "cn (normal)",
-               {.name = "inspector/cn",
-                .value = vane.cn,
-                .unit = "",
-                .help = "Coefficient of the force square to the plate, times the sine of the angle of "
-                        "attack; a plate in a "
-                        "stream 1.2, a thin blade up to 2 pi.",
-                .least = Least::zero,
-                .address = address_of(vane, "cn")});
-  quantity_row(session, ui, "cd (drag)",
-               {.name = "inspector/cd",
-                .value = vane.cd,
-                .unit = "",
-                .help = "Coefficient of the force along the flow that is there at any angle.",
-                .least = Least::zero,
-                .address = address_of(vane, "cd")});
+  number_row(session, ui, "cn (normal)",
+             {.name = "inspector/cn",
+              .value = vane.cn,
+              .unit = "",
+              .help = "Coefficient of the force square to the plate, times the sine of the angle of "
+                      "attack; a plate in a "
+                      "stream 1.2, a thin blade up to 2 pi.",
+              .least = Least::zero,
+              .address = address_of(vane, "cn")});
+  number_row(session, ui, "cd (drag)",
+             {.name = "inspector/cd",
+              .value = vane.cd,
+              .unit = "",
+              .help = "Coefficient of the force along the flow that is there at any angle.",
+              .least = Least::zero,
+              .address = address_of(vane, "cd")});
 }
 
 } // namespace
 
 void force_inspector(Session& session, Ui& ui, const Force& force) {
-  name_row(session, ui, {PartKind::force, force.name});
-  text_row(
-      session, ui, "inspector/description", "Note", force.description, "A note for whoever reads the scene.",
-      [&session, &ui, name = force.name](const std::string& text) {
-        edit_force(session, ui, "Describe " + name, name, [text](Force& same) { same.description = text; });
-      });
+  const std::vector<const Force*> others = others_edited(session, ui, force);
+  if (others.empty()) {
+    name_row(session, ui, {PartKind::force, force.name});
+    text_row(
+        session, ui, "inspector/description", "Note", force.description,
+        "A note for whoever reads the scene.", [&session, &ui, name = force.name](const std::string& text) {
+          edit_force(session, ui, "Describe " + name, name, [text](Force& same) { same.description = text; });
+        });
+  }
   if (force.type == ForceType::spring) return spring_rows(session, ui, force);
   if (force.type == ForceType::bearing) return bearing_rows(session, ui, force);
   const std::vector<std::string> choices = body_choices(session.mechanism(), false);
-  if (const auto chosen =
-          name_choice_row(ui, "inspector/body", "Body", choices, force.body, "The body it acts on."))
+  if (const auto chosen = name_choice_row(
+          ui, "inspector/body", "Body", choices,
+          std::ranges::all_of(others, [&](const Force* each) { return each->body == force.body; })
+              ? force.body
+              : "various",
+          "The body it acts on."))
     edit_force(session, ui, "Body of " + force.name, force.name,
                [chosen = *chosen](Force& same) { same.body = chosen; });
   point_rows(session, ui, force);

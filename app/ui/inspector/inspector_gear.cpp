@@ -50,9 +50,10 @@ void kind_row(Session& session, Ui& ui, const Joint& gear) {
                  "What ties the two coordinates; another kind has the same ratio, by numbers of its own.");
   if (chosen)
     edit_later(session, ui, "Kind of " + gear.name,
-               [name = gear.name, kind = kinds[*chosen]](Mechanism& m, Selection&) {
-                 const int j = joint_index(m, name);
-                 if (j >= 0) change_gear_kind(m, m.joints[static_cast<std::size_t>(j)], kind);
+               [names = edited_with(ui, {PartKind::joint, gear.name}), kind = kinds[*chosen]](Mechanism& m,
+                                                                                              Selection&) {
+                 for (Joint& each : m.joints)
+                   if (std::ranges::count(names, each.name) > 0) change_gear_kind(m, each, kind);
                });
 }
 
@@ -60,33 +61,38 @@ void belt_rows(Session& session, Ui& ui, const Joint& belt) {
   constexpr std::array<const char*, 2> labels{"Radius a", "Radius b"}, keys{"radii.0", "radii.1"},
       helps{"Of the wheel on joint a.", "Of the wheel on joint b."};
   for (std::size_t end = 0; end < 2; ++end)
-    quantity_row(session, ui, labels[end],
-                 {.name = "inspector/radii/" + std::to_string(end),
-                  .value = belt.radii[end],
-                  .unit = "m",
-                  .help = helps[end],
-                  .least = Least::above_zero,
-                  .address = gear_address(belt, keys[end])});
-  if (check_row(ui, "inspector/crossed", "Crossed", belt.crossed,
-                "Whether the belt is crossed, so that the coordinates turn against each other."))
+    number_row(session, ui, labels[end],
+               {.name = "inspector/radii/" + std::to_string(end),
+                .value = belt.radii[end],
+                .unit = "m",
+                .help = helps[end],
+                .least = Least::above_zero,
+                .address = gear_address(belt, keys[end])});
+  const std::vector<const Joint*> others = others_edited(session, ui, belt);
+  const auto is_crossed = [](const Joint* each) { return each->crossed; };
+  const bool crossed = belt.crossed && std::ranges::all_of(others, is_crossed),
+             mixed = !crossed && (belt.crossed || std::ranges::any_of(others, is_crossed));
+  if (check_row(ui, "inspector/crossed", "Crossed", crossed,
+                "Whether the belt is crossed, so that the coordinates turn against each other.", nullptr,
+                mixed))
     edit_joint(session, ui, "Cross " + belt.name, belt.name,
-               [](Joint& same) { same.crossed = !same.crossed; });
+               [crossed = !crossed](Joint& same) { same.crossed = crossed; });
 }
 
 void ratio_rows(Session& session, Ui& ui, const Joint& gear, const std::string& unit) {
   switch (gear.kind) {
   case GearKind::belt: return belt_rows(session, ui, gear);
   case GearKind::rack:
-    return quantity_row(session, ui, "Radius",
-                        {.name = "inspector/radius",
-                         .value = gear.radii[0],
-                         .unit = "m",
-                         .help =
-                             "Pitch radius of the pinion, below zero on its other side: the rack moves by it "
-                             "as the pinion turns by a radian.",
-                         .address = gear_address(gear, "radius")});
+    return number_row(session, ui, "Radius",
+                      {.name = "inspector/radius",
+                       .value = gear.radii[0],
+                       .unit = "m",
+                       .help =
+                           "Pitch radius of the pinion, below zero on its other side: the rack moves by it "
+                           "as the pinion turns by a radian.",
+                       .address = gear_address(gear, "radius")});
   case GearKind::screw:
-    return quantity_row(
+    return number_row(
         session, ui, "Lead",
         {.name = "inspector/lead",
          .value = gear.lead,
@@ -95,19 +101,19 @@ void ratio_rows(Session& session, Ui& ui, const Joint& gear, const std::string& 
          .address = gear_address(gear, "lead")});
   case GearKind::gear: break;
   }
-  quantity_row(session, ui, "Ratio",
-               {.name = "inspector/ratio",
-                .value = gear.ratio,
-                .unit = unit,
-                .help = "How far b moves while a moves by one; negative where they turn against each other.",
-                .address = gear_address(gear, "ratio")});
+  number_row(session, ui, "Ratio",
+             {.name = "inspector/ratio",
+              .value = gear.ratio,
+              .unit = unit,
+              .help = "How far b moves while a moves by one; negative where they turn against each other.",
+              .address = gear_address(gear, "ratio")});
 }
 
 } // namespace
 
 void gear_rows(Session& session, Ui& ui, const Joint& gear) {
   kind_row(session, ui, gear);
-  end_rows(session, ui, gear);
+  if (!is_of_several(ui)) end_rows(session, ui, gear);
   const auto unit_of = [&](std::size_t end) -> std::string {
     const auto [other, i] = find_coordinate(session.mechanism(), gear.joints[end]);
     if (other < 0) return "";
@@ -121,14 +127,15 @@ void gear_rows(Session& session, Ui& ui, const Joint& gear) {
       edit_joint(session, ui, "Offset of " + name + " as drawn", name,
                  [](Joint& same) { same.offset.reset(); });
     };
-  quantity_row(session, ui, "Offset",
-               {.name = "inspector/offset",
-                .value = gear.offset.value_or(drawn_offset(session.mechanism(), gear)),
-                .unit = b,
-                .help = "Where b stands while a is zero.",
-                .address = gear_address(gear, "offset"),
-                .standard = !gear.offset},
-               reset);
+  number_row(session, ui, "Offset",
+             {.name = "inspector/offset",
+              .value = gear.offset.value_or(drawn_offset(session.mechanism(), gear)),
+              .unit = b,
+              .help = "Where b stands while a is zero.",
+              .address = gear_address(gear, "offset"),
+              .standard = !gear.offset},
+             reset);
+  if (is_of_several(ui)) return;
   const Command& backlash = command("edit.backlash");
   if (text_button(ui, "inspector/edit.backlash", backlash.title))
     later(ui, [&session] { give_backlash_to_selected(session); });

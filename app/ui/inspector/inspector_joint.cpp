@@ -29,9 +29,12 @@ void type_row(Session& session, Ui& ui, const Joint& joint) {
       choice_row(ui, "inspector/type", "Type", words, present,
                  "What the joint leaves free; drives, springs and stops stay where they fit.");
   if (!chosen) return;
-  edit_later(session, ui, "Make " + joint.name + " " + std::string(words[*chosen]),
-             [name = joint.name, type = types[*chosen]](Mechanism& mechanism, Selection&) {
-               change_joint_type(mechanism, name, type);
+  const std::size_t others = others_edited(session, ui, joint).size();
+  edit_later(session, ui, "Make " + joint.name + " " + std::string(words[*chosen]) + and_more(others),
+             [names = edited_with(ui, {PartKind::joint, joint.name}),
+              type = types[*chosen]](Mechanism& mechanism, Selection&) {
+               for (const std::string& name : names)
+                 change_joint_type(mechanism, name, type);
              });
 }
 
@@ -39,11 +42,13 @@ void type_row(Session& session, Ui& ui, const Joint& joint) {
 void direction_buttons(Session& session, Ui& ui, const Joint& joint, Vec3 Joint::*axis,
                        const std::string& widget) {
   row_label(ui, "");
+  const std::vector<const Joint*> others = others_edited(session, ui, joint);
   const float gap = 3 * ui.scale;
   for (int i = 0; i < 3; ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (i > 0) ImGui::SameLine(0, gap);
-    const bool along = (joint.*axis) == Vec3(Vec3::Unit(i));
+    const auto lies_along = [axis, i](const Joint* each) { return each->*axis == Vec3(Vec3::Unit(i)); };
+    const bool along = lies_along(&joint) && std::ranges::all_of(others, lies_along);
     if (text_button(ui, widget + "/along/" + axis_letters[at], axis_letters[at], along))
       edit_joint(session, ui, "Turn axis of " + joint.name, joint.name,
                  [axis, i](Joint& same) { same.*axis = Vec3::Unit(i); });
@@ -102,6 +107,7 @@ bool has_loops(const Mechanism& mechanism) {
 // Only where there are loops is there anything to cut.
 void cut_row(Session& session, Ui& ui, const Joint& joint) {
   const SystemSummary& summary = session.answer.summary;
+  if (is_of_several(ui)) return;
   const bool can = joint.type != JointType::free && joint.type != JointType::distance;
   if (!can || (!joint.cut && !has_loops(session.mechanism()))) return;
   constexpr std::array<std::string_view, 3> options{"automatic", "cut here", "not cut here"};
@@ -122,6 +128,7 @@ void cut_row(Session& session, Ui& ui, const Joint& joint) {
 namespace {
 
 void note_row(Session& session, Ui& ui, const Joint& joint) {
+  if (is_of_several(ui)) return;
   text_row(
       session, ui, "inspector/description", "Note", joint.description, "A note for whoever reads the scene.",
       [&session, &ui, name = joint.name](const std::string& text) {
@@ -133,7 +140,7 @@ void note_row(Session& session, Ui& ui, const Joint& joint) {
 
 void joint_inspector(Session& session, Ui& ui, const Joint& joint) {
   const Part part{PartKind::joint, joint.name};
-  name_row(session, ui, part);
+  if (!is_of_several(ui)) name_row(session, ui, part);
   if (joint.type == JointType::gear) {
     note_row(session, ui, joint);
     return gear_rows(session, ui, joint);
@@ -171,15 +178,15 @@ void distance_rows(Session& session, Ui& ui, const Joint& joint) {
       edit_joint(session, ui, "Length of " + name + " as drawn", name,
                  [](Joint& same) { same.length.reset(); });
     };
-  quantity_row(session, ui, "Length",
-               {.name = "inspector/length",
-                .value = joint.length.value_or(drawn_distance(joint.points)),
-                .unit = "m",
-                .help = "The distance that is kept between the two points.",
-                .least = Least::above_zero,
-                .address = address_of(joint, "length"),
-                .standard = !joint.length},
-               reset);
+  number_row(session, ui, "Length",
+             {.name = "inspector/length",
+              .value = joint.length.value_or(drawn_distance(joint.points)),
+              .unit = "m",
+              .help = "The distance that is kept between the two points.",
+              .least = Least::above_zero,
+              .address = address_of(joint, "length"),
+              .standard = !joint.length},
+             reset);
 }
 
 } // namespace flyball

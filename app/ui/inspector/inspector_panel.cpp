@@ -13,15 +13,18 @@ namespace flyball {
 
 namespace {
 
+std::string word_for(const Mechanism& mechanism, PartId id) {
+  const auto i = static_cast<std::size_t>(id.index);
+  if (id.kind == PartKind::joint) return joint_noun(mechanism.joints[i]);
+  if (id.kind == PartKind::force) return std::string(type_name(mechanism.forces[i].type));
+  return "body";
+}
+
 std::string title_of(const Session& session) {
   const Selection& selection = session.selection();
   if (selection.empty()) return "Scene";
   if (selection.parts.size() > 1) return std::to_string(selection.parts.size()) + " parts";
-  const PartId id = find_part(session.mechanism(), selection.parts.front());
-  const auto i = static_cast<std::size_t>(id.index);
-  std::string word = "body";
-  if (id.kind == PartKind::joint) word = joint_noun(session.mechanism().joints[i]);
-  if (id.kind == PartKind::force) word = type_name(session.mechanism().forces[i].type);
+  std::string word = word_for(session.mechanism(), find_part(session.mechanism(), selection.parts.front()));
   word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
   return word;
 }
@@ -46,7 +49,7 @@ void inspector_contents(Session& session, Ui& ui, InspectorState& state, ToolSta
                         const CommandRunner& commands) {
   const Selection& selection = session.selection();
   if (selection.empty()) return scene_inspector(session, ui, tool);
-  if (selection.parts.size() > 1) return several_inspector(session, ui, state, commands);
+  if (selection.parts.size() > 1) return several_inspector(session, ui, state, tool, commands);
   const Mechanism& mechanism = session.mechanism();
   const PartId id = find_part(mechanism, selection.parts.front());
   const auto i = static_cast<std::size_t>(id.index);
@@ -57,11 +60,17 @@ void inspector_contents(Session& session, Ui& ui, InspectorState& state, ToolSta
 
 } // namespace
 
+std::string several_words(const Mechanism& mechanism, PartId part, std::size_t count) {
+  const std::string word = word_for(mechanism, part);
+  return std::to_string(count) + " " + (part.kind == PartKind::body ? "bodies" : word + "s");
+}
+
 void InspectorPanel::draw(Session& session, Ui& ui, ToolState& tool, const CommandRunner& commands,
                           const PanelRect& rect) {
   begin_panel("inspector", rect);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {6 * ui.scale, ImGui::GetStyle().FramePadding.y});
+  ui.fields.together.clear();
   panel_title(session, ui, commands);
   inspector_contents(session, ui, state_, tool, commands);
   ImGui::PopStyleVar(2);

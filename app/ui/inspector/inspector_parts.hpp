@@ -14,7 +14,11 @@ void scene_inspector(Session& session, Ui& ui, ToolState& tool);
 void body_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool, const Body& body);
 void joint_inspector(Session& session, Ui& ui, const Joint& joint);
 void force_inspector(Session& session, Ui& ui, const Force& force);
-void several_inspector(Session& session, Ui& ui, InspectorState& inspector, const CommandRunner& commands);
+// The inspector of the last one picked, for all of its kind and type.
+void several_inspector(Session& session, Ui& ui, InspectorState& inspector, ToolState& tool,
+                       const CommandRunner& commands);
+// "3 prismatic joints", of the type of this part.
+std::string several_words(const Mechanism& mechanism, PartId part, std::size_t count);
 
 // Parts of them.
 void named_sections(Session& session, Ui& ui, ToolState& tool);

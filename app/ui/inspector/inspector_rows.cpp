@@ -1,12 +1,15 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/document/rename.hpp"
 #include "app/render/icons.hpp"
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/widgets/number_menu.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
 
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -110,25 +113,101 @@ void edit_later(Session& session, Ui& ui, const std::string& step,
   });
 }
 
+std::vector<std::string> edited_with(const Ui& ui, const Part& part) {
+  std::vector<std::string> names{part.name};
+  const std::vector<Part>& together = ui.fields.together;
+  if (!together.empty() && together.front() == part)
+    for (auto other = together.begin() + 1; other != together.end(); ++other)
+      names.push_back(other->name);
+  return names;
+}
+
+bool is_of_several(const Ui& ui) {
+  return !ui.fields.together.empty();
+}
+
+namespace {
+
+template <class PartType>
+std::vector<const PartType*> others_among(const std::vector<PartType>& list, const Ui& ui, PartKind kind,
+                                          const std::string& name) {
+  const std::vector<std::string> names = edited_with(ui, {kind, name});
+  std::vector<const PartType*> others;
+  for (auto other = names.begin() + 1; other != names.end(); ++other)
+    if (const auto found = std::ranges::find(list, *other, &PartType::name); found != list.end())
+      others.push_back(&*found);
+  return others;
+}
+
+template <class PartType>
+void edit_each(Session& session, Ui& ui, const std::string& step, const Part& part,
+               std::vector<PartType> Mechanism::*list, std::function<void(PartType&)> change) {
+  const std::vector<std::string> names = edited_with(ui, part);
+  edit_later(session, ui, step + and_more(names.size() - 1),
+             [names, list, change = std::move(change)](Mechanism& mechanism, Selection&) {
+               for (const std::string& name : names)
+                 change_named(mechanism.*list, name, change);
+             });
+}
+
+} // namespace
+
+std::vector<const Body*> others_edited(const Session& session, const Ui& ui, const Body& body) {
+  return others_among(session.mechanism().bodies, ui, PartKind::body, body.name);
+}
+
+std::vector<const Joint*> others_edited(const Session& session, const Ui& ui, const Joint& joint) {
+  return others_among(session.mechanism().joints, ui, PartKind::joint, joint.name);
+}
+
+std::vector<const Force*> others_edited(const Session& session, const Ui& ui, const Force& force) {
+  return others_among(session.mechanism().forces, ui, PartKind::force, force.name);
+}
+
 void edit_body(Session& session, Ui& ui, const std::string& step, const std::string& name,
                std::function<void(Body&)> change) {
-  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
-    change_named(mechanism.bodies, name, change);
-  });
+  edit_each(session, ui, step, {PartKind::body, name}, &Mechanism::bodies, std::move(change));
 }
 
 void edit_joint(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Joint&)> change) {
-  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
-    change_named(mechanism.joints, name, change);
-  });
+  edit_each(session, ui, step, {PartKind::joint, name}, &Mechanism::joints, std::move(change));
 }
 
 void edit_force(Session& session, Ui& ui, const std::string& step, const std::string& name,
                 std::function<void(Force&)> change) {
-  edit_later(session, ui, step, [name, change = std::move(change)](Mechanism& mechanism, Selection&) {
-    change_named(mechanism.forces, name, change);
-  });
+  edit_each(session, ui, step, {PartKind::force, name}, &Mechanism::forces, std::move(change));
+}
+
+bool edit_together(const Session& session, const Ui& ui, QuantityField& field) {
+  if (!is_of_several(ui)) return true;
+  const Part& first = ui.fields.together.front();
+  const std::string list = first.kind == PartKind::body    ? "bodies."
+                           : first.kind == PartKind::joint ? "joints."
+                                                           : "forces.";
+  const std::string& place = place_of(field);
+  const std::string part = list + first.name + ".";
+  if (!place.starts_with(part)) return false;
+  const Mechanism& mechanism = session.mechanism();
+  try {
+    const double value = expressed_value(mechanism, place);
+    const std::optional<std::string> expression = expression_at(mechanism, place);
+    for (auto other = ui.fields.together.begin() + 1; other != ui.fields.together.end(); ++other) {
+      const std::string its = list + other->name + "." + place.substr(part.size());
+      if (expressed_value(mechanism, its) != value || expression_at(mechanism, its) != expression)
+        field.various = "various";
+      field.also.push_back(its);
+    }
+  } catch (const SceneError&) {
+    return false; // not all of them have it
+  }
+  if (!field.various.empty()) field.law.clear();
+  return true;
+}
+
+void number_row(Session& session, Ui& ui, const std::string& label, QuantityField field,
+                const std::function<void()>& reset) {
+  if (edit_together(session, ui, field)) quantity_row(session, ui, label, field, reset);
 }
 
 void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism) {
@@ -227,14 +306,15 @@ void text_row(Session& session, Ui& ui, const std::string& name, const std::stri
 
 std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
-                                      const char* help) {
+                                      const char* help, bool various) {
   std::optional<std::size_t> other;
-  if (!begin_choice(ui, name, label, std::string(options[chosen]), help)) return other;
+  if (!begin_choice(ui, name, label, various ? "various" : std::string(options[chosen]), help)) return other;
   for (std::size_t i = 0; i < options.size(); ++i) {
     const std::string option(options[i]);
-    if (ImGui::Selectable(option.c_str(), i == chosen) && i != chosen) other = i;
+    const bool present = i == chosen && !various;
+    if (ImGui::Selectable(option.c_str(), present) && !present) other = i;
     note_widget(ui.widgets, name + "/" + option);
-    if (i == chosen) mark_chosen(ui.widgets);
+    if (present) mark_chosen(ui.widgets);
   }
   ImGui::EndCombo();
   return other;
@@ -315,7 +395,7 @@ std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, co
 }
 
 bool check_row(Ui& ui, const std::string& name, const std::string& label, bool on, const char* help,
-               const char* refused) {
+               const char* refused, bool mixed) {
   bool now = on;
   const float row_height = ImGui::GetFrameHeight();
   ImGui::BeginDisabled(refused != nullptr);
@@ -326,7 +406,9 @@ bool check_row(Ui& ui, const std::string& name, const std::string& label, bool o
   const float spare = std::max(row_height - ImGui::GetFrameHeight(), 0.f);
   ImGui::BeginGroup();
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + spare / 2);
+  ImGui::PushItemFlag(ImGuiItemFlags_MixedValue, mixed);
   const bool clicked = ImGui::Checkbox(label.c_str(), &now);
+  ImGui::PopItemFlag();
   note_stop(ui.widgets, name);
   const float used = ImGui::GetItemRectSize().x;
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y);
@@ -354,7 +436,7 @@ void vector_rows(Session& session, Ui& ui, const std::string& label, const Vecto
     if (!field.address.empty()) number.address = field.address + "." + std::to_string(i);
     if (!field.expression.empty()) number.expression = field.expression + "." + std::to_string(i);
     if (field.set) number.set = [set = field.set, i](double value) { set(i, value); };
-    quantity_row(session, ui, i == 0 ? label : "", number, i == 0 ? reset : std::function<void()>());
+    number_row(session, ui, i == 0 ? label : "", std::move(number), i == 0 ? reset : std::function<void()>());
   }
 }
 
@@ -366,15 +448,36 @@ std::vector<std::string> body_choices(const Mechanism& mechanism, bool ground) {
   return names;
 }
 
+namespace {
+
+// Whether an end of the parts that are edited together is on different bodies.
+template <class List>
+bool differ_at(const List& list, const Ui& ui, const Part& part, std::size_t end) {
+  const std::vector<std::string> names = edited_with(ui, part);
+  const std::string* first = nullptr;
+  for (const std::string& name : names)
+    for (const auto& each : list)
+      if (each.name == name && !first)
+        first = &each.bodies[end];
+      else if (each.name == name && each.bodies[end] != *first)
+        return true;
+  return false;
+}
+
+} // namespace
+
 void body_end_row(Session& session, Ui& ui, const Part& part, const std::array<std::string, 2>& bodies,
                   std::size_t end, const char* label, const char* help) {
   const std::vector<std::string> choices = body_choices(session.mechanism(), true);
   const std::string name = "inspector/bodies/" + std::to_string(end);
+  const bool various = part.kind == PartKind::joint ? differ_at(session.mechanism().joints, ui, part, end)
+                                                    : differ_at(session.mechanism().forces, ui, part, end);
   if (!help)
     help = end == 0 ? "The first body: what coordinates and reactions are counted from."
                     : "The second body, which a positive coordinate moves.";
-  if (const auto chosen = name_choice_row(ui, name, label, choices, bodies[end], help)) {
-    if (*chosen == bodies[1 - end]) // two ends on one body have no meaning
+  if (const auto chosen =
+          name_choice_row(ui, name, label, choices, various ? "various" : bodies[end], help)) {
+    if (!is_of_several(ui) && *chosen == bodies[1 - end]) // two ends on one body have no meaning
       swap_bodies(session, ui, part);
     else
       change_bodies(session, ui, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });

@@ -12,7 +12,18 @@
 
 namespace flyball {
 
-// Edits the part of that name, wherever it is by then; nothing where it is gone.
+// The parts that are edited with one: those that are drawn together where it is the first of them, see
+// FieldState; else itself.
+std::vector<std::string> edited_with(const Ui& ui, const Part& part);
+// Those of them beside itself, of the mechanism as it is.
+std::vector<const Body*> others_edited(const Session& session, const Ui& ui, const Body& body);
+std::vector<const Joint*> others_edited(const Session& session, const Ui& ui, const Joint& joint);
+std::vector<const Force*> others_edited(const Session& session, const Ui& ui, const Force& force);
+// Whether several are.
+bool is_of_several(const Ui& ui);
+
+// Edits the part of that name and those that are edited with it, wherever they are by then; nothing where
+// they are gone.
 void edit_body(Session& session, Ui& ui, const std::string& step, const std::string& name,
                std::function<void(Body&)> change);
 void edit_joint(Session& session, Ui& ui, const std::string& step, const std::string& name,
@@ -23,6 +34,13 @@ void edit_later(Session& session, Ui& ui, const std::string& step,
                 std::function<void(Mechanism&, Selection&)> change);
 // Takes out sliders of numbers that `before` had and `mechanism` has not.
 void drop_lost_sliders(const Mechanism& before, Mechanism& mechanism);
+
+// A number of the part that is drawn: what is typed is given to all that are edited with it, and "various"
+// stands where they differ. Nothing is drawn where one of them has no such number.
+void number_row(Session& session, Ui& ui, const std::string& label, QuantityField field,
+                const std::function<void()>& reset = {});
+// The same of a field that is drawn by itself; false where there is nothing to be drawn.
+bool edit_together(const Session& session, const Ui& ui, QuantityField& field);
 
 // A part of an inspector that opens and closes, and remembers it.
 bool inspector_section(const Session& session, Ui& ui, const std::string& name, const char* title, bool open);
@@ -35,10 +53,10 @@ void name_row(Session& session, Ui& ui, const Part& part);
 bool name_field(Session& session, Ui& ui, const std::string& widget, const Part& part, float width);
 void text_row(Session& session, Ui& ui, const std::string& name, const std::string& label,
               const std::string& text, const char* help, const std::function<void(const std::string&)>& take);
-// One of several words; the new one where another was chosen.
+// One of several words; the new one where another was chosen, any where the parts have `various` ones.
 std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
-                                      const char* help);
+                                      const char* help, bool various = false);
 // One of many names, searchable where there are very many.
 std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                            std::span<const std::string> options, const std::string& chosen,
@@ -48,9 +66,10 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
 std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                              const std::function<std::vector<std::string>()>& addresses,
                                              const std::string& chosen, const char* help);
-// A tick; `refused` says why it cannot be set. Returns whether it was clicked.
+// A tick, or a bar where it is `mixed` among several parts; `refused` says why it cannot be set. Returns
+// whether it was clicked.
 bool check_row(Ui& ui, const std::string& name, const std::string& label, bool on, const char* help,
-               const char* refused = nullptr);
+               const char* refused = nullptr, bool mixed = false);
 // Three numbers, each its own row.
 struct VectorField {
   std::string name; // of the widgets: "inspector/at" has "inspector/at/x"

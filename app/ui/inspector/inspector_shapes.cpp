@@ -43,13 +43,15 @@ void mass_follows(const InspectorState& inspector, const std::string& name, cons
     take_again(inspector, next.bodies[static_cast<std::size_t>(to)], *density);
 }
 
-// Edits one shape; the mass follows where it did before.
+// Edits one shape, of several bodies that of each; the mass follows where it did before.
 void edit_shape(Session& session, Ui& ui, const InspectorState& inspector, const std::string& body,
                 std::size_t index, const char* what, const Change& change) {
+  const std::vector<std::string> names = edited_with(ui, {PartKind::body, body});
   later(ui, [=, &session, &inspector] {
-    edit(session, std::string(what) + " " + body, [&](Mechanism& mechanism, Selection&) {
+    const std::string step = std::string(what) + " " + body + and_more(names.size() - 1);
+    edit(session, step, [&](Mechanism& mechanism, Selection&) {
       for (Body& same : mechanism.bodies) {
-        if (same.name != body || index >= same.shapes.size()) continue;
+        if (std::ranges::count(names, same.name) == 0 || index >= same.shapes.size()) continue;
         const bool follows = follows_shapes(inspector, same);
         const std::optional<double> density = density_of(same);
         change(same, same.shapes[index]);
@@ -73,31 +75,34 @@ struct ShapeRows {
     return "bodies." + body.name + ".shapes." + std::to_string(index) + "." + key;
   }
   auto follow() const {
-    return [&inspector = inspector, body = body.name](const Mechanism& before, Mechanism& next) {
-      mass_follows(inspector, body, before, next);
+    return [&inspector = inspector,
+            bodies = edited_with(ui, {PartKind::body, body.name})](const Mechanism& before, Mechanism& next) {
+      for (const std::string& each : bodies)
+        mass_follows(inspector, each, before, next);
     };
   }
 
   void length(const std::string& label, const std::string& widget, const std::string& key, double value,
               const char* help, const std::function<void(Shape&, double)>& set) const {
-    quantity_row(session, ui, label,
-                 {.name = name + "/" + widget,
-                  .value = value,
-                  .unit = "m",
-                  .help = help,
-                  .least = Least::above_zero,
-                  .expression = expression(key),
-                  .set =
-                      [&session = session, &ui = ui, &inspector = inspector, body = body.name, index = index,
-                       set](double typed) {
-                        edit_shape(session, ui, inspector, body, index, "Size",
-                                   [set, typed](Body&, Shape& s) { set(s, typed); });
-                      },
-                  .follow = follow()});
+    number_row(session, ui, label,
+               {.name = name + "/" + widget,
+                .value = value,
+                .unit = "m",
+                .help = help,
+                .least = Least::above_zero,
+                .expression = expression(key),
+                .set =
+                    [&session = session, &ui = ui, &inspector = inspector, body = body.name, index = index,
+                     set](double typed) {
+                      edit_shape(session, ui, inspector, body, index, "Size",
+                                 [set, typed](Body&, Shape& s) { set(s, typed); });
+                    },
+                .follow = follow()});
   }
 
   void point(const std::string& label, const std::string& key, const Vec3& value, const char* help,
              const std::function<Vec3&(Body&, Shape&)>& place, bool standard = false) const {
+    if (is_of_several(ui)) return; // each has its own
     vector_rows(session, ui, label,
                 {.name = name + "/" + key,
                  .value = value,
@@ -117,18 +122,18 @@ struct ShapeRows {
   // Of a cylinder or capsule: about its middle, along its centre line.
   void length_and_axis() const {
     const Vec3 line = shape().to - shape().from;
-    quantity_row(session, ui, "Length",
-                 {.name = name + "/length",
-                  .value = line.norm(),
-                  .unit = "m",
-                  .help = "Length of the centre line; its middle stays where it is.",
-                  .least = Least::above_zero,
-                  .set = [&session = session, &ui = ui, &inspector = inspector, body = body.name,
-                          index = index](double typed) {
-                    edit_shape(session, ui, inspector, body, index, "Size", [typed](Body&, Shape& s) {
-                      lay_along(s, (s.to - s.from).stableNormalized(), typed);
-                    });
-                  }});
+    number_row(session, ui, "Length",
+               {.name = name + "/length",
+                .value = line.norm(),
+                .unit = "m",
+                .help = "Length of the centre line; its middle stays where it is.",
+                .least = Least::above_zero,
+                .set = [&session = session, &ui = ui, &inspector = inspector, body = body.name,
+                        index = index](double typed) {
+                  edit_shape(session, ui, inspector, body, index, "Size", [typed](Body&, Shape& s) {
+                    lay_along(s, (s.to - s.from).stableNormalized(), typed);
+                  });
+                }});
     row_label(ui, "Axis");
     for (int i = 0; i < 3; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -280,6 +285,11 @@ Shape shape_as(const Shape& shape, ShapeType type, const Body& body) {
 }
 
 void shapes_section(Session& session, Ui& ui, InspectorState& inspector, const Body& body) {
+  const std::vector<const Body*> others = others_edited(session, ui, body);
+  const auto as_this = [&](const Body* each) {
+    return std::ranges::equal(each->shapes, body.shapes, {}, &Shape::type, &Shape::type);
+  };
+  if (!std::ranges::all_of(others, as_this)) return; // none is that of another
   if (!inspector_section(session, ui, "inspector/shapes section", "Shapes", true)) return;
   if (body.shapes.empty()) paragraph("Drawn from what is joined to it.", colors_of(ui).dim);
   for (std::size_t i = 0; i < body.shapes.size(); ++i) {

@@ -1,6 +1,8 @@
 // What is being typed or dragged in a field, and the edits that wait.
 #pragma once
 
+#include "app/document/part.hpp"
+
 #include <imgui.h>
 
 #include <functional>
@@ -49,6 +51,9 @@ struct ChoiceSearch {
 };
 
 struct FieldState {
+  // The parts that the inspector edits together, at least two: the first is the one whose numbers are drawn.
+  // Empty where it edits one.
+  std::vector<Part> together;
   Typing typing;
   Scrub scrub;
   // Edits wait until the panels are drawn, which refer to the mechanism as it was before.

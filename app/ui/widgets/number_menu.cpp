@@ -29,10 +29,14 @@ bool entry(Ui& ui, const QuantityField& field, const char* text, const std::stri
   return chosen;
 }
 
-void name_it(Session& session, const std::string& place) {
-  const std::string name = suggested_name(session.document.stored(), place), phrase = parameter_phrase(place);
-  edit(session, "Name " + phrase,
-       [&](Mechanism& mechanism, Selection&) { name_number(mechanism, place, name); });
+void name_it(Session& session, const std::string& place, const std::vector<std::string>& also) {
+  const std::string name = suggested_name(session.document.stored(), place),
+                    phrase = parameter_phrase(place) + and_more(also.size());
+  edit(session, "Name " + phrase, [&](Mechanism& mechanism, Selection&) {
+    name_number(mechanism, place, name);
+    for (const std::string& other : also)
+      set_expression(mechanism, other, name);
+  });
   if (parameter_index(session.mechanism(), name) >= 0)
     session.notice =
         "The " + phrase + " is the parameter " + name +
@@ -114,13 +118,17 @@ void number_menu(Session& session, Ui& ui, const QuantityField& field, bool aske
   if (asked || takes_menu_key(ui, field.name)) ImGui::OpenPopup("number");
   if (ImGui::BeginPopup("number")) {
     if (!place.starts_with("parameters.") && entry(ui, field, "Name this number", "name it"))
-      later(ui, [&session, place] { name_it(session, place); });
+      later(ui, [&session, place, also = field.also] { name_it(session, place, also); });
     if (formula_of(session, field) && entry(ui, field, "Leave the value without its expression", "take off"))
-      later(ui, [&session, place] {
-        edit(session, "Take the expression off " + parameter_phrase(place),
-             [&](Mechanism& mechanism, Selection&) { set_expression(mechanism, place, ""); });
+      later(ui, [&session, place, also = field.also] {
+        edit(session, "Take the expression off " + parameter_phrase(place) + and_more(also.size()),
+             [&](Mechanism& mechanism, Selection&) {
+               set_expression(mechanism, place, "");
+               for (const std::string& other : also)
+                 set_expression(mechanism, other, "");
+             });
       });
-    point_entries(session, ui, field);
+    if (field.also.empty()) point_entries(session, ui, field);
     if (!field.address.empty() && entry(ui, field, "Copy the address", "copy address"))
       ImGui::SetClipboardText(field.address.c_str());
     ImGui::EndPopup();

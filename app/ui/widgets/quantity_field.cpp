@@ -169,6 +169,8 @@ std::string typed_again(const Session& session, const QuantityField& field, cons
 
 // What a typed expression does; a point's name alone gives all three numbers of a vector.
 void set_typed_expression(Mechanism& mechanism, const QuantityField& field, const std::string& text) {
+  for (const std::string& place : field.also)
+    set_expression(mechanism, place, text);
   const std::string vector = vector_of(field);
   if (!vector.empty() && point_index(mechanism, text) >= 0)
     stand_at_point(mechanism, vector, text);
@@ -202,27 +204,39 @@ bool has_slider(const Session& session, const std::string& address) {
                                  session.parameters.end();
 }
 
+std::string set_step(const QuantityField& field) {
+  return "Set " + parameter_phrase(place_of(field)) + and_more(field.also.size());
+}
+
 // A number without the dust of binary arithmetic.
 double rounded(double value) {
   return std::strtod(fmt::format("{:.12g}", value).c_str(), nullptr);
 }
 
+// The number, and those that are edited with it, are by themselves this value (in the field's unit).
+void set_all_by_themselves(Session& session, const QuantityField& field, double value) {
+  edit(session, set_step(field), [&](Mechanism& mechanism, Selection&) {
+    const std::optional<Unit> unit = parse_unit(field.unit); // SI, or degrees
+    const double number = unit ? times_unit(value, unit->factor) : value;
+    set_by_itself(mechanism, place_of(field), number);
+    for (const std::string& place : field.also)
+      set_by_itself(mechanism, place, number);
+    if (field.follow) field.follow(session.document.stored(), mechanism);
+  });
+}
+
 // What was typed: an expression, with the parameter that is made for it, or a number by itself.
 void take_typed(Session& session, const QuantityField& field, const std::string& typed,
                 const std::optional<NamedParameter>& made = {}) {
-  const std::string step = "Set " + parameter_phrase(place_of(field));
-  const auto follow = [&](Mechanism& mechanism) {
-    if (field.follow) field.follow(session.document.stored(), mechanism);
-  };
   if (is_expression(field, typed)) {
     const std::string text = with_field_unit(session, field, typed.substr(1)), place = place_of(field);
     if (field.slider && is_of_numbers_alone(text))
       return field.set(evaluate_expression(session.mechanism(), text, field.unit, place));
     const bool slid = has_slider(session, place);
-    edit(session, step + " by an expression", [&](Mechanism& mechanism, Selection&) {
+    edit(session, set_step(field) + " by an expression", [&](Mechanism& mechanism, Selection&) {
       if (made) mechanism.parameters.push_back(*made);
       set_typed_expression(mechanism, field, text);
-      follow(mechanism);
+      if (field.follow) field.follow(session.document.stored(), mechanism);
       std::erase_if(mechanism.sliders,
                     [&](const Slider& each) { return formula_at(mechanism, each.parameter).has_value(); });
     });
@@ -235,13 +249,9 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
   if (const std::optional<NumberWithUnit> own = with_own_unit(field, typed))
     return field.set_with_unit(own->value, own->unit);
   const double value = typed_quantity(session, typed, field).value;
-  if (formula_of(session, field))
-    return edit(session, step, [&](Mechanism& mechanism, Selection&) {
-      const std::optional<Unit> unit = parse_unit(field.unit); // SI, or degrees
-      set_by_itself(mechanism, place_of(field), unit ? times_unit(value, unit->factor) : value);
-      follow(mechanism);
-    });
+  if (formula_of(session, field)) return set_all_by_themselves(session, field, value);
   if (field.set) return field.set(value);
+  if (!field.also.empty()) return set_all_by_themselves(session, field, value);
   set_number(session, field.address, value);
 }
 
@@ -259,11 +269,13 @@ FieldOffer add_parameter(Session& session, const QuantityField& field, const std
 
 void set(Session& session, Ui& ui, const QuantityField& field, double value) {
   if (field.at_once) return field.set(value);
-  later(ui, [&session, set = field.set, address = field.address, value] {
-    if (set)
-      set(value);
+  later(ui, [&session, field, value] {
+    if (field.set)
+      field.set(value);
+    else if (!field.also.empty())
+      set_all_by_themselves(session, field, value);
     else
-      set_number(session, address, value);
+      set_number(session, field.address, value);
   });
 }
 
@@ -387,7 +399,8 @@ std::string tooltip(const Session& session, const QuantityField& field, const Sh
 void pin_button(Session& session, Ui& ui, const QuantityField& field, bool row_hovered) {
   if (field.address.empty()) return;
   const float side = ImGui::GetFrameHeight(), width = margin_width(ui);
-  if (formula_of(session, field)) return ImGui::Dummy({width, side}); // what it rests on has the slider
+  // What it rests on has the slider; of several parts each has its own.
+  if (formula_of(session, field) || !field.also.empty()) return ImGui::Dummy({width, side});
   const bool pinned = is_pinned(session.mechanism(), field.address);
   const UiColors& colors = colors_of(ui);
   const std::string name = "inspector/pin/" + field.address;
@@ -515,7 +528,8 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
   ImGui::PushFont(ui.fonts.digits);
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {padding, (height - ui.fonts.digits->FontSize) / 2});
   const bool typing = text_field(session, ui, text, width);
-  if (field.name != "parameters/" + field.address + "/value") note_number(ui, field.name, field.address);
+  if (field.name != "parameters/" + field.address + "/value")
+    note_number(ui, field.name, field.also.empty() ? field.address : "");
   ImGui::PopStyleVar();
   ImGui::PopFont();
   if (bare) ImGui::PopStyleColor(2);
@@ -569,6 +583,10 @@ bool plain_quantity_field(Session& session, Ui& ui, const std::string& name, con
   if (!ui.fields.plain || *ui.fields.plain == value) return false;
   value = *ui.fields.plain;
   return true;
+}
+
+std::string and_more(std::size_t parts) {
+  return parts == 0 ? "" : ", and " + std::to_string(parts) + " more";
 }
 
 void set_number(Session& session, const std::string& address, double value) {

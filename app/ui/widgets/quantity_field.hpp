@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -21,6 +22,7 @@ struct QuantityField {
   Least least = Least::any;
   std::string address{};             // "" where it has none
   std::string expression{};          // where its expression is kept, if it has no address
+  std::vector<std::string> also{};   // the same of other parts, which are given what this one is
   std::function<void(double)> set{}; // an edit; if empty, of the number at the address
   std::string various{};             // shown instead of the value: several parts differ
   std::string law{};                 // likewise: an expression of the state, which has no value by itself
@@ -49,6 +51,8 @@ bool plain_quantity_field(Session& session, Ui& ui, const std::string& name, con
 
 // Edits the number at the address, see edit_parameter(): what is typed or dragged in the inspector is meant.
 void set_number(Session& session, const std::string& address, double value);
+// ", and 2 more", behind what is done to one part; nothing for none.
+std::string and_more(std::size_t parts);
 // Makes the number a slider, or none.
 void pin(Session& session, const std::string& address, bool pinned);
 bool is_pinned(const Mechanism& mechanism, const std::string& address);

@@ -1,6 +1,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 
 #include "app/render/imgui_compat.hpp"
+#include "app/ui/widgets/completion_list.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <imgui_internal.h>
@@ -25,6 +26,7 @@ void check(Typing& typing, const TextField& field) {
 // Takes what was typed, or says why not.
 void leave(Session& session, Ui& ui, bool at_once) {
   const Typing typing = std::exchange(ui.fields.typing, {});
+  ui.completion = {};
   if (typing.text == typing.original || !typing.take) return;
   if (!typing.mistake.empty()) {
     show_error(session, "“" + typing.text + "” was not taken. " + typing.mistake);
@@ -40,35 +42,42 @@ void begin(Session& session, Ui& ui, const TextField& field, std::string typed) 
       .name = field.name, .text = std::move(typed), .original = field.text, .checked = field.text};
 }
 
-// Below the field, wherever the mouse is. A tooltip lets clicks through, which what is offered may not.
-void show_mistake(Ui& ui) {
+// Below the field, wherever the mouse is: why the text cannot be taken, and what the word could become. A
+// tooltip lets clicks through, which what is offered may not.
+void show_advice(Ui& ui) {
   Typing& typing = ui.fields.typing;
-  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-  const bool right = from.x + to.x > ImGui::GetIO().DisplaySize.x;
-  ImGui::SetNextWindowPos({right ? to.x : from.x, to.y + 3 * ui.scale}, ImGuiCond_Always,
-                          {right ? 1.f : 0.f, 0});
-  const bool offers = !typing.offer.words.empty();
+  const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax(),
+               window = ImGui::GetIO().DisplaySize;
+  const bool right = from.x + to.x > window.x, lists = !ui.completion.found.list.empty();
+  const float list_height = lists ? 11 * ImGui::GetTextLineHeightWithSpacing() : 0;
+  const bool above = to.y + list_height > window.y;
+  ImGui::SetNextWindowPos({right ? to.x : from.x, above ? from.y - 3 * ui.scale : to.y + 3 * ui.scale},
+                          ImGuiCond_Always, {right ? 1.f : 0.f, above ? 1.f : 0.f});
+  const bool clickable = lists || !typing.offer.words.empty(), offers = !typing.offer.words.empty();
   constexpr ImGuiWindowFlags in_front = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                         ImGuiWindowFlags_NoFocusOnAppearing;
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
-  if (offers)
+  if (clickable)
     ImGui::Begin("mistake", nullptr, in_front);
   else
     ImGui::BeginTooltip();
-  if (offers) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
+  if (clickable) ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
   ImGui::PushFont(ui.fonts.text);
-  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
-  ImGui::TextColored(colors_of(ui).bad, "%s", typing.mistake.c_str());
-  ImGui::PopTextWrapPos();
+  if (offers || !lists) { // of half a word there is nothing to mend
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 20);
+    ImGui::TextColored(colors_of(ui).bad, "%s", typing.mistake.c_str());
+    ImGui::PopTextWrapPos();
+  }
   if (offers) {
     ImGui::Button((typing.offer.words + " (Ctrl+Enter)").c_str());
     typing.offered_from = ImGui::GetItemRectMin();
     typing.offered_to = ImGui::GetItemRectMax();
     note_widget(ui.widgets, typing.name + "/offer", KeyUse::none);
   }
+  draw_completions(ui, ui.completion, typing.name);
   ImGui::PopFont();
-  if (offers)
+  if (clickable)
     ImGui::End();
   else
     ImGui::EndTooltip();
@@ -84,6 +93,25 @@ bool takes_offer(const Typing& typing, bool entered) {
   return clicked || (entered && ImGui::GetIO().KeyCtrl);
 }
 
+// The one that ends typing for a moment: under a click, or marked by an arrow and taken by Enter; -1: none.
+int taken_completion(const CompletionState& completion, bool entered) {
+  if (ImGui::IsMouseClicked(0)) return row_at(completion, ImGui::GetIO().MousePos);
+  return entered && completion.by_arrow && completes(completion) ? completion.marked : -1;
+}
+
+// What a field's text input calls: keeps account of the cursor, then does what the field wants.
+struct FieldCallback {
+  const TextField& field;
+  CompletionState& completion;
+};
+int call_back(ImGuiInputTextCallbackData* data) {
+  const auto& own = *static_cast<const FieldCallback*>(data->UserData);
+  steer_cursor(own.completion, data);
+  if (!own.field.callback || (own.field.flags & data->EventFlag) == 0) return 0;
+  data->UserData = own.field.callback_data;
+  return own.field.callback(data);
+}
+
 bool escape_pressed_now() {
   return imgui_compat::key_pressed(ImGuiKey_Escape);
 }
@@ -95,8 +123,13 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
   typing.check = field.check;
   typing.take = field.take;
   check(typing, field);
+  find_completions(ui.completion, session.mechanism(), typing.text, typing.original);
   if (!ImGui::IsItemDeactivated()) {
-    if (!typing.mistake.empty()) show_mistake(ui);
+    move_mark(ui.completion);
+    if (!typing.mistake.empty() || !ui.completion.found.list.empty()) show_advice(ui);
+  } else if (const int row = taken_completion(ui.completion, entered); row >= 0) {
+    typing.text = completed(ui.completion, typing.text, row);
+    typing.wants_focus = true;
   } else if (takes_offer(typing, entered)) {
     later(ui, std::exchange(typing, {}).offer.take);
     ui.keyboard.focus = {};
@@ -134,10 +167,12 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
 
   ImGui::SetNextItemWidth(width);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
-  const int flags = field.flags | ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll;
+  const int flags = field.flags | ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll |
+                    ImGuiInputTextFlags_CallbackAlways;
+  FieldCallback own{field, ui.completion};
   ImGui::PushID(field.name.c_str());
   const bool entered = ImGui::InputTextWithHint("##typed", field.hint, was_typing ? &typing.text : &resting,
-                                                flags, field.callback, field.callback_data);
+                                                flags, call_back, &own);
   ImGui::PopID();
   ImGui::PopStyleColor();
   note_widget(ui.widgets, field.name, KeyUse::type);
