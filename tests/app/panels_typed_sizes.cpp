@@ -169,6 +169,19 @@ TEST_CASE("the size of balls, discs, blocks and plates is typed before or while 
     CHECK(d.m().bodies[0].shapes[0].radius == Approx(0.08));
     CHECK((d.m().bodies[0].shapes[0].to - d.m().bodies[0].shapes[0].from - Vec3(0, 0, 0.02)).norm() < 1e-15);
   }
+  SECTION("a disc's while it is drawn out is what it is a quarter as thick as") {
+    d.click("tools/disc");
+    d.point_at({0, 0, 0});
+    d.press();
+    d.point_at({0.08, 0, 0});
+    d.strike("60 mm");
+    d.key(key_enter);
+    d.release();
+    REQUIRE(d.m().bodies.size() == 1);
+    const Shape& disc = d.m().bodies[0].shapes[0];
+    CHECK(disc.radius == Approx(0.06));
+    CHECK((disc.to - disc.from - Vec3(0, 0, 0.015)).norm() < 1e-15);
+  }
   SECTION("while a ball is drawn out") {
     d.click("tools/ball");
     d.point_at({0, 0, 0});

@@ -48,7 +48,7 @@ Vec3 disc_axis(const ViewContext& context, const Aim& from) {
 
 // A quarter of its radius thick.
 void lay_disc(NewBody& body, const Vec3& axis) {
-  const Vec3 half = nearest_step(body.radius / 4) / 2 * axis;
+  const Vec3 half = body.radius / 8 * axis;
   body.from = body.at - half;
   body.to = body.at + half;
 }
