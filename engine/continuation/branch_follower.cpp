@@ -5,6 +5,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/kink_message.hpp"
 #include "engine/report/report_forces.hpp"
@@ -87,6 +88,13 @@ Mechanism begun(const Mechanism& mechanism, const std::string& address, double f
   }
 }
 
+// Of what the system is compiled.
+Mechanism inside(const Mechanism& mechanism, const std::string& address, double from, double to) {
+  const NumberRange range{address, from, to};
+  auto out = inside_ranges(mechanism, {&range, 1});
+  return out ? std::move(*out) : begun(mechanism, address, from, to);
+}
+
 } // namespace
 
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
@@ -146,7 +154,7 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_for_drives(begun(mechanism, address, from, to))),
+    : options_(options), system_(compile_for_drives(inside(mechanism, address, from, to))),
       family_(system_, begun(mechanism, address, from, to), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form

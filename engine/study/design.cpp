@@ -6,6 +6,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/report.hpp"
@@ -22,12 +23,17 @@
 namespace flyball {
 namespace {
 
+Mechanism inside(const Mechanism& mechanism, const NumberRange& range) {
+  auto out = inside_ranges(mechanism, {&range, 1});
+  return out ? std::move(*out) : with_parameter(mechanism, range.address, range.from);
+}
+
 class Designer {
  public:
   Designer(const Mechanism& mechanism, const std::string& address, double from, double to,
            const std::string& coordinate, double value, const DesignOptions& options)
       : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
-        options_(options), system_(compile_for_drives(with_parameter(mechanism, address, from))),
+        options_(options), system_(compile_for_drives(inside(mechanism, {address, from, to}))),
         wanted_(find_wanted(mechanism, system_, coordinate)) {}
 
   DesignAnswer run() {

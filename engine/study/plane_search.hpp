@@ -61,6 +61,7 @@ class PlaneSearch {
 
  private:
   double part_before() const { return static_cast<double>(line_) / static_cast<double>(lines_.size()); }
+  Mechanism inside() const; // of what the system is compiled
   Mechanism at_corner() const;
 
   const Mechanism& mechanism_;

@@ -8,6 +8,7 @@
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
@@ -51,6 +52,7 @@ SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> fre
   lower_.resize(n);
   upper_.resize(n);
   p_.resize(n);
+  std::vector<NumberRange> ranges;
   for (Eigen::Index i = 0; i < n; ++i) {
     const FreeNumber& number = free[static_cast<std::size_t>(i)];
     const double value = get_parameter(mechanism, number.address);
@@ -59,30 +61,16 @@ SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> fre
       throw SceneError(number.address, "expected each number once");
     expect_no_found_speed(mechanism, number.address);
     addresses_.push_back(number.address);
+    ranges.push_back({number.address, number.from, number.to});
     lower_[i] = number.from;
     upper_[i] = number.to;
     p_[i] = std::clamp(value, number.from, number.to);
   }
   range_ = upper_ - lower_;
   numbers_.emplace(varied_, addresses_);
-  system_ = compile_for_drives(inside_ranges(mechanism));
+  system_ = compile_for_drives(inside_ranges(mechanism, ranges).value_or(mechanism));
   for (const std::string& name : wanted)
     wanted_.push_back(find_wanted(mechanism, system_, name));
-}
-
-// Off the ends of the ranges, so that a damper that is none there is among the system's elements.
-Mechanism SteadyMap::inside_ranges(const Mechanism& mechanism) const {
-  Mechanism inside = mechanism;
-  std::vector<ParameterValue> values;
-  for (Eigen::Index i = 0; i < count(); ++i)
-    values.push_back({addresses_[static_cast<std::size_t>(i)],
-                      p_[i] == lower_[i] || p_[i] == upper_[i] ? lower_[i] + 0.37 * range_[i] : p_[i]});
-  try {
-    set_parameters(inside, values);
-  } catch (const SceneError&) { // of which no mechanism can be made
-    return mechanism;
-  }
-  return inside;
 }
 
 bool SteadyMap::measures_wanted() const {

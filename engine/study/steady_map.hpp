@@ -88,7 +88,6 @@ class SteadyMap {
 
  private:
   Problem problem() const { return {system_, parameters_, scaling_, cancel_, system_.kkt_form}; }
-  Mechanism inside_ranges(const Mechanism& mechanism) const;
   bool measures_wanted() const;
   // The numbers, and what a speed that is found is measured by, which is that in q.
   void set(const Eigen::VectorXd& p, const Eigen::VectorXd& q);

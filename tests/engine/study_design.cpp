@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/error.hpp"
 #include "engine/study/design.hpp"
+#include "engine/study/fold_curve.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -133,4 +134,29 @@ TEST_CASE("what a coordinate covers is told branch by branch") {
   const DesignAnswer answer = design(m, "joints.spin.drive.speed", 0, 12, "swing", 2.5);
   CHECK(answer.solutions.empty());
   CHECK(answer.message.find("-1.47335 rad to 1.47335 rad and 3.14159 rad") != std::string::npos);
+}
+
+TEST_CASE("a damper that is none at the beginning of a range is part of what is solved",
+          "[design][branches]") {
+  // In a bearing that closes a loop: (0.1 + c) w = 10 N m.
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Two bearings",
+    "bodies": [{"name": "A", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]}],
+    "joints": [{"name": "p", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=10 N m - 0.1 N m s*rate(p)", "load": 0, "speed": 50}},
+      {"name": "b", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 1, 0], "axis": [0, 1, 0]}]})json");
+  const std::string damping = "joints.b.damping";
+  const ResponseDiagram diagram = follow_branches(m, damping, 0, 1);
+  REQUIRE(diagram.branches.size() == 1);
+  CHECK(diagram.branches[0].points.back().parameter == 1);
+  for (const ResponsePoint& point : diagram.branches[0].points)
+    CHECK(point.coordinates[0].speed.value() == Approx(10 / (0.1 + point.parameter)).epsilon(1e-12));
+
+  const DesignAnswer answer = design(m, damping, 0, 1, "p.speed", 40);
+  REQUIRE(answer.solutions.size() == 1);
+  CHECK(answer.solutions[0].parameter == Approx(10. / 40 - 0.1).epsilon(1e-12));
+
+  const PlaneCurves plane = value_curves(m, {damping, 0, 1}, {"joints.p.drive.load", 0, 5}, "p.speed", 40);
+  REQUIRE(plane.curves.size() == 1);
+  for (const PlanePoint& p : plane.curves[0].points)
+    CHECK((0.1 + p.x) * 40 == Approx(10 - p.y).epsilon(1e-12));
 }
