@@ -16,6 +16,17 @@ bool is_finite(const Explored& explored) {
   return std::ranges::all_of(explored, [](const ExploredValue& each) { return std::isfinite(each.value); });
 }
 
+// Bytes, roughly.
+std::size_t size_of(const Mechanism& mechanism) {
+  std::size_t out = sizeof mechanism + mechanism.bodies.size() * sizeof(Body) +
+                    mechanism.joints.size() * sizeof(Joint) + mechanism.forces.size() * sizeof(Force);
+  for (const Body& body : mechanism.bodies)
+    out += body.shapes.size() * sizeof(Shape);
+  for (const Joint& joint : mechanism.joints)
+    out += joint.coordinates.size() * sizeof(Coordinate);
+  return out;
+}
+
 } // namespace
 
 Document::Document(Mechanism mechanism, std::filesystem::path file, const NamedHues& hues)
@@ -63,8 +74,9 @@ void Document::push(Step step) {
     }
     return changed(before.get());
   }
+  const std::size_t most = std::clamp(most_bytes / size_of(*step.tried), least_steps, most_steps);
   steps_.push_back(std::move(step));
-  if (steps_.size() > most_steps) steps_.erase(steps_.begin());
+  if (steps_.size() > most) steps_.erase(steps_.begin(), steps_.end() - static_cast<std::ptrdiff_t>(most));
   position_ = steps_.size() - 1;
   changed(before.get());
 }

@@ -94,8 +94,9 @@ class Document {
 
   // No bodies, the earth's gravity along -y.
   static Mechanism empty_mechanism();
-  // Steps kept; the oldest are dropped.
-  static constexpr std::size_t most_steps = 1000;
+  // Steps kept; the oldest are dropped. Of large mechanisms those that take about `most_bytes`, but some
+  // always.
+  static constexpr std::size_t most_steps = 1000, least_steps = 20, most_bytes = 256'000'000;
 
  private:
   const Step& now() const { return steps_[position_]; }

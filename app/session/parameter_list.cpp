@@ -188,6 +188,21 @@ Range range_of(const Mechanism& mechanism, const std::string& address, double va
   return range_for(value, unit, is_stiffness(address), units);
 }
 
+// Addresses, among those of automatic_controls(), that expressions give.
+std::unordered_set<std::string> given_addresses(const Mechanism& mechanism) {
+  std::unordered_set<std::string> out;
+  const auto add = [&](const char* list, const auto& parts) {
+    for (const auto& part : parts)
+      for (const Formula& formula : part.formulas)
+        out.insert(list + part.name + "." + formula.key);
+  };
+  add("joints.", mechanism.joints);
+  add("forces.", mechanism.forces);
+  for (const NamedParameter& parameter : mechanism.parameters)
+    if (!parameter.formulas.empty()) out.insert("parameters." + parameter.name);
+  return out;
+}
+
 // Of every named parameter, drive and spring, in the scene's order.
 std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, const Mechanism& file,
                                                  const DisplayUnits& units) {
@@ -252,9 +267,8 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
   }
   for (ParameterControl& control : controls)
     set_range(control, range_of(mechanism, control.address, control.file_value, control.unit, units));
-  std::erase_if(controls, [&](const ParameterControl& control) {
-    return formula_at(mechanism, control.address).has_value();
-  });
+  const std::unordered_set<std::string> given = given_addresses(mechanism);
+  std::erase_if(controls, [&](const ParameterControl& control) { return given.contains(control.address); });
   return controls;
 }
 

@@ -99,6 +99,25 @@ TEST_CASE("the oldest steps are dropped, the rest stays exact") {
   CHECK(document.mechanism() == with_gravity(1500));
 }
 
+TEST_CASE("of a large mechanism fewer steps are kept") {
+  Mechanism large = with_gravity(0);
+  large.bodies.resize(10'000);
+  for (std::size_t i = 0; i < large.bodies.size(); ++i)
+    large.bodies[i].name = std::to_string(i);
+  Document document(large);
+  constexpr int edits = 150;
+  for (int i = 1; i <= edits; ++i) {
+    large.gravity.y() = -i;
+    document.edit("Change gravity", large, {});
+  }
+  const std::size_t kept = document.steps().size();
+  CHECK(kept >= Document::least_steps);
+  CHECK(kept * large.bodies.size() * sizeof(Body) < Document::most_bytes);
+  CHECK(document.mechanism().gravity.y() == -edits);
+  document.go_to(0);
+  CHECK(document.mechanism().gravity.y() == -(edits + 1. - static_cast<double>(kept)));
+}
+
 TEST_CASE("undoing keeps what is selected as far as it exists") {
   Document document(with_bodies({"a", "b"}));
   document.select(body("a"));
