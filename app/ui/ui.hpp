@@ -5,6 +5,7 @@
 #include "app/render/fonts.hpp"
 #include "app/session/settings.hpp"
 #include "app/ui/keyboard/keyboard_state.hpp"
+#include "app/ui/widgets/completion_list.hpp"
 #include "app/ui/widgets/field_state.hpp"
 #include "app/ui/widgets/section_state.hpp"
 #include "app/ui/widgets/slider_press.hpp"
@@ -39,6 +40,7 @@ struct Ui {
   std::vector<KeyPress> keys; // since the last frame; whoever runs the loop adds, build_gui() empties
   TooltipState tooltip;
   FieldState fields;
+  CompletionState completion; // of the field that is typed in
   SectionState sections;
   SliderPress slider_press;
   std::shared_ptr<PlotToSave> plot_to_save; // asked for in a plot's menu, until the dialog takes it

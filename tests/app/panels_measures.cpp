@@ -4,6 +4,7 @@
 #include "app/document/measure_edits.hpp"
 #include "app/document/rename.hpp"
 #include "app/session/response_quantity.hpp"
+#include "app/ui/commands.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "tests/catch.hpp"
@@ -64,6 +65,27 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
   CHECK(d.m().measures[0].name == "rise");
   const std::size_t steps = d.app.session.document.position();
 
+  SECTION("names and functions are offered while it is typed, for Tab and for a click") {
+    const std::string field = "inspector/measure/rise";
+    d.frames(60);
+    d.click(field);
+    d.type("=dist");
+    d.frames(3);
+    REQUIRE(d.app.ui.widgets.contains(field + "/completion/distance("));
+    d.key(keys::tab);
+    d.frames(2);
+    CHECK(d.app.ui.fields.typing.text == "=distance(");
+    d.type("ball");
+    d.frames(3);
+    d.click(field + "/completion/ball1"); // between the brackets bodies come first
+    d.frames(4);
+    CHECK(d.app.ui.fields.typing.text == "=distance(ball1");
+    d.type(", ball2)");
+    d.frames(2);
+    d.key(key_enter);
+    d.frames(3);
+    CHECK(d.m().measures[0].text == "distance(ball1, ball2)");
+  }
   SECTION("what is wrong with it is said while it is typed") {
     d.frames(60);
     d.click("inspector/measure/rise");

@@ -226,6 +226,10 @@ bool take_focus_key(Ui& ui, const DialogState& dialog, const CommandRunner& comm
     commands.run("edit.pin");
     return true;
   }
+  if (key.key == keys::tab && !key.ctrl && !key.shift && typing && completes(ui.completion)) {
+    ui.completion.taken = ui.completion.marked;
+    return true;
+  }
   if (key.key == keys::tab && !key.ctrl) {
     // The mouse has been at a row or a slider, and is done there.
     const bool clicked =
@@ -297,8 +301,8 @@ void follow_clicks(Ui& ui) {
   }
 }
 
-// Of a region that has gone, or of a widget that has. What the next key would press, perhaps to delete all that
-// has just been selected, is not what anybody went to.
+// Of a region that has gone, or of a widget that has. What the next key would press, perhaps to delete all
+// that has just been selected, is not what anybody went to.
 void find_another(Ui& ui) {
   KeyboardState& state = ui.keyboard;
   const std::vector<KeyStop>& stops = ui.widgets.stops;
