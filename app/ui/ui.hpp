@@ -19,6 +19,7 @@
 namespace flyball {
 
 struct PlotToSave; // see plot_save.hpp
+enum class PlotFile; // see plot_view.hpp
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
 // begins, and misses one that was tapped while a slow frame was drawn.
@@ -43,6 +44,7 @@ struct Ui {
   CompletionState completion; // of the field that is typed in
   SectionState sections;
   SliderPress slider_press;
+  PlotFile plot_file_wanted{}; // by a command, of the first plot that is drawn next
   std::shared_ptr<PlotToSave> plot_to_save; // asked for in a plot's menu, until the dialog takes it
 };
 

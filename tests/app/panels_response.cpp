@@ -815,3 +815,15 @@ TEST_CASE("a number that several poses have is told once") {
     ++rows;
   CHECK(rows == different.size());
 }
+
+TEST_CASE("a command saves the plot that is shown, as a right click on it does") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  CHECK_FALSE(app.commands.enabled(command("study.save_csv"))); // there is none
+  robot.key('C');
+  robot.frames(4);
+  REQUIRE(app.commands.enabled(command("study.save_csv")));
+  app.commands.run("study.save_csv");
+  robot.frames(4);
+  CHECK(app.ui.widgets.contains("save_plot/save"));
+}

@@ -1,5 +1,7 @@
 #include "app/ui/menus/menu_commands.hpp"
 
+#include "app/ui/plots/plot_view.hpp"
+
 #include <array>
 
 namespace flyball::menus {
@@ -16,6 +18,23 @@ bool is_study_shown(const App& app) {
   return study_shown(app.session, study);
 }
 
+bool shows_plot(const App& app) {
+  const StudyKind open = app.session.study.open;
+  return app.session.mode == Mode::explore && open != StudyKind::none && open != StudyKind::states;
+}
+
+// What a right click on a plot offers, too.
+template <PlotFile kind>
+Command save_plot(const char* id, const char* title, const char* help) {
+  return {.id = id,
+          .title = title,
+          .help = help,
+          .run = [](App& app) { app.ui.plot_file_wanted = kind; },
+          .enabled = shows_plot,
+          .words = "export, numbers, curve",
+          .lacks = "no plot is shown."};
+}
+
 const std::array study_commands{
     Command{.id = "study.motion",
             .title = "Motion",
@@ -24,20 +43,17 @@ const std::array study_commands{
             .run = [](App& app) { open_study(app.session, StudyKind::motion); },
             .enabled = of_session<holds_parts>,
             .checked = is_study_shown<StudyKind::motion>,
-            .words = "simulation, transient; a plot's menu saves CSV and SVG",
+            .words = "simulation, transient",
             .lacks = "there is no part yet."},
-    Command{
-        .id = "study.response",
-        .title = "Response",
-        .help = "The steady states over one parameter: branches, folds and crossings, live.",
-        .key = plain('C'),
-        .run = [](App& app) { open_study(app.session, StudyKind::response); },
-        .enabled = of_session<holds_parts>,
-        .checked = is_study_shown<StudyKind::response>,
-        .words =
-            "droop curve, resonance curve, bifurcation diagram, hysteresis, friction, sweep; a plot's menu "
-            "saves CSV and SVG",
-        .lacks = "there is no part yet."},
+    Command{.id = "study.response",
+            .title = "Response",
+            .help = "The steady states over one parameter: branches, folds and crossings, live.",
+            .key = plain('C'),
+            .run = [](App& app) { open_study(app.session, StudyKind::response); },
+            .enabled = of_session<holds_parts>,
+            .checked = is_study_shown<StudyKind::response>,
+            .words = "droop curve, resonance curve, bifurcation diagram, hysteresis, friction, sweep",
+            .lacks = "there is no part yet."},
     Command{.id = "study.states",
             .title = "All equilibria",
             .help = "Every equilibrium that a bounded search finds, stable or not.",
@@ -120,6 +136,12 @@ const std::array study_commands{
             .run = film<Filmed::mode>,
             .enabled = [](const App& app) { return moving_mode(app.session) != nullptr; },
             .lacks = "no mode is shown; O lists them."},
+    save_plot<PlotFile::csv>("study.save_csv", "Save the plot as CSV…",
+                             "The numbers of the plot that is shown."),
+    save_plot<PlotFile::svg>("study.save_svg", "Save the plot as SVG…",
+                             "For papers, of the plot that is shown."),
+    save_plot<PlotFile::png>("study.save_png", "Save the plot as PNG…",
+                             "A picture of the plot that is shown."),
 };
 
 } // namespace

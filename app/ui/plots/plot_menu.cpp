@@ -3,6 +3,8 @@
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <utility>
+
 namespace flyball {
 
 namespace {
@@ -38,7 +40,7 @@ void scale_item(const PlotFrame& frame, int axis) {
 } // namespace
 
 void plot_menu(const PlotFrame& frame) {
-  PlotFile wanted = PlotFile::none;
+  PlotFile wanted = std::exchange(frame.ui.plot_file_wanted, PlotFile::none);
   if (ImGui::BeginPopup("menu")) {
     if (item(frame, "fit", "Fit")) fit_plot(frame.view);
     ImGui::Separator();

@@ -88,6 +88,7 @@ void StudyPanel::draw(Session& session, Ui& ui, const CommandRunner& commands, c
   case StudyKind::spread: spread_panel(session, ui, shown_.spread); break;
   case StudyKind::transfer: transfer_panel(session, ui, shown_.transfer, commands); break;
   }
+  ui.plot_file_wanted = PlotFile::none; // there is no plot
   ImGui::End();
   if (closed) open_study(session, StudyKind::none);
   if (wanted != StudyKind::none) open_study(session, wanted);
