@@ -94,19 +94,24 @@ namespace {
 
 constexpr float largest_share = 0.2f; // of the view, that an open legend takes unasked
 
-// How much of the loads' arrows lies in a part of the view, in fifths of an arrow.
-int arrows_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
+// How much of the loads' arrows and of the drawn pose's outline lies in a part of the view: fifths of an
+// arrow, and solids.
+int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
   const ShownScene& shown = state.scene;
   if (!shown.scene || !shown.source.loads) return 0;
   const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
+  const auto is_within = [&](const Vec3& point) {
+    const auto at = state.camera.project(point, size);
+    if (!at) return false;
+    const float x = view.x + static_cast<float>(at->x()), y = view.y + static_cast<float>(at->y());
+    return x > from.x && x < to.x && y > from.y && y < to.y;
+  };
   int within = 0;
   for (const LoadArrow& arrow : shown.scene->arrows.arrows)
-    for (const double part : {0.2, 0.4, 0.6, 0.8, 1.}) {
-      const auto at = state.camera.project(arrow.from + part * (arrow.to - arrow.from), size);
-      if (!at) continue;
-      const float x = view.x + static_cast<float>(at->x()), y = view.y + static_cast<float>(at->y());
-      within += x > from.x && x < to.x && y > from.y && y < to.y;
-    }
+    for (const double part : {0.2, 0.4, 0.6, 0.8, 1.})
+      within += is_within(arrow.from + part * (arrow.to - arrow.from)) ? 1 : 0;
+  for (const Instance& solid : shown.scene->drawn)
+    within += is_within(solid.position) ? 1 : 0;
   return within;
 }
 
@@ -121,7 +126,7 @@ float Legend::top(const Ui& ui, const ViewState& state, const PanelRect& view, I
       explored == ui.widgets.end() ? view.y + view.height - 44 * s : explored->second.from.y - 14 * s;
   const float upper = view.y + 10 * s, lower = bottom - size.y;
   const auto hidden = [&](float top) {
-    return arrows_within(state, view, {left, top}, {left + size.x, top + size.y});
+    return shown_within(state, view, {left, top}, {left + size.x, top + size.y});
   };
   if (!ImGui::IsAnyMouseDown() && state.legend) low_ = lower > upper && hidden(lower) < hidden(upper);
   return low_ ? lower : upper;

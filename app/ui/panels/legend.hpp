@@ -26,8 +26,8 @@ struct LegendRow {
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(const ViewContext& context);
 
-// A small window in a right corner of the view, the upper one unless it hides loads' arrows there, which a
-// click on its title folds.
+// A small window in a right corner of the view, the upper one unless it hides loads' arrows or the drawn
+// pose there, which a click on its title folds.
 class Legend {
  public:
   void draw(const ViewContext& context, const PanelRect& view, bool folds = true);

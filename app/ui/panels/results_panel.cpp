@@ -66,6 +66,8 @@ void verdict(const Session& session, Ui& ui) {
   ImGui::PopTextWrapPos();
   ImGui::PopFont();
   note_widget(ui.widgets, "results/verdict");
+  // Why nothing stands is no news where the motion is found.
+  if (motion) help_on_hover(without_repetition(window_message(solution), headline).c_str());
   std::string growth = solution.status == Status::converged ? growth_words(solution) : std::string();
   if (growth.empty() && solution.status == Status::converged) growth = undamped_words(solution);
   if (solution.status == Status::converged && solution.stability_reason)
@@ -77,9 +79,9 @@ void verdict(const Session& session, Ui& ui) {
   // Where all went well the words above say it already.
   const bool said = solution.message == "Converged." ||
                     (!growth.empty() && solution.message == "Converged. This state is unstable.");
-  if (solution.status != Status::converged || !said)
+  if (!motion && (solution.status != Status::converged || !said))
     paragraph(without_repetition(window_message(solution), headline),
-              solution.status == Status::converged || motion ? colors.dim : colors.text);
+              solution.status == Status::converged ? colors.dim : colors.text);
 }
 
 // Directions that nothing resists.

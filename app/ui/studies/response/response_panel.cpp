@@ -79,12 +79,18 @@ void shown_quantity_choice(Session& session, Ui& ui) {
   }
   std::string group;
   for (const ResponseQuantity& each : offered_quantities(session)) {
-    if (each.group != group) ImGui::TextDisabled("%s", (group = each.group).c_str());
+    if (each.group != group) {
+      ImGui::PushFont(ui.fonts.strong);
+      ImGui::TextDisabled("%s", (group = each.group).c_str());
+      ImGui::PopFont();
+    }
     ImGui::PushID(each.key.c_str());
+    ImGui::Indent(10 * ui.scale);
     if (ImGui::Selectable(each.title.c_str(), each.key == state.choice.quantity))
       choose_quantity(session, each);
-    ImGui::PopID();
     note_widget(ui.widgets, "response/quantity/" + each.key);
+    ImGui::Unindent(10 * ui.scale);
+    ImGui::PopID();
     if (each.key == state.choice.quantity) mark_chosen(ui.widgets);
   }
   ImGui::EndCombo();
