@@ -55,12 +55,7 @@ Plot pole_zero_plot(const std::vector<std::complex<double>>& poles,
       out.push_back({s.real(), s.imag()});
     return out;
   };
-  plot.curves.push_back({.name = "poles",
-                         .points = points(poles),
-                         .line = PlotLine::none,
-                         .color = plot_color::vermillion,
-                         .shape = PlotShape::cross,
-                         .shape_size = 8});
+  // Below the poles, so that both are seen where one cancels the other.
   if (!zeros.empty())
     plot.curves.push_back({.name = "zeros",
                            .points = points(zeros),
@@ -68,6 +63,12 @@ Plot pole_zero_plot(const std::vector<std::complex<double>>& poles,
                            .color = plot_color::blue,
                            .shape = PlotShape::circle,
                            .shape_size = 8});
+  plot.curves.push_back({.name = "poles",
+                         .points = points(poles),
+                         .line = PlotLine::none,
+                         .color = plot_color::vermillion,
+                         .shape = PlotShape::cross,
+                         .shape_size = 8});
   // The axis of what neither grows nor decays belongs to the picture, and a range of nothing has no middle.
   double left = 0, right = 0, high = 0;
   for (const auto* all : {&poles, &zeros})

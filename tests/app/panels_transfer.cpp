@@ -210,6 +210,9 @@ TEST_CASE("an engine's governor has its shaft among the states") {
   robot.frames(3);
   CHECK(robot.found().model.states.size() == 3);
   CHECK(robot.found().zeros.size() == 2);
+  // Crosses on top of circles, which would hide them where one cancels the other.
+  REQUIRE(robot.view().roots.curves.size() == 2);
+  CHECK(robot.view().roots.curves[1].name == "poles");
 }
 
 TEST_CASE("the File menu exports the model of what is shown, whichever panel is open") {
