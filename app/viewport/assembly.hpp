@@ -75,9 +75,9 @@ double coordinate_value(const Assembly& assembly, std::size_t joint, std::size_t
 // and where it stands in the poses.
 struct SlideRange {
   double from = 0, to = 0;
-  // Where the other end of its spring and damper sits: outside what the coordinate takes, so that it always
-  // lies on the same side, and on the shapes of what it slides on where the slide leads to them. It gives way
-  // only to poses beyond all that.
+  // Where the other end of its spring and damper sits: outside what the coordinate takes but for stops, so
+  // that it always lies on the same side, and on the shapes of what it slides on where the slide leads to
+  // them. It gives way only to poses beyond all that.
   double anchor = 0;
   double below = 0, above = 0; // m, how far the shapes of what slides extend from its point either way
 };
