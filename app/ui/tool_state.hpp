@@ -97,6 +97,7 @@ struct ToolCaches {
   std::vector<Vec3> ends;     // of the selected part, where it alone is selected
   std::uint64_t aim_revision = 0;
   Vec2 aim_cursor = Vec2::Zero();
+  std::optional<Vec3> aim_meant{};
   ViewCamera aim_camera;
   ViewSize aim_size;
   bool aim_snaps = false;
@@ -128,12 +129,13 @@ struct ToolState {
   std::optional<Aim> first{};  // where the button went down, or the first of two clicks
   bool first_clicked = false;  // the latter
   std::optional<JointDraft> joint{};
-  float card_height = 0;        // pixels, the most that the joint's card has taken
-  bool spent = false;           // the button that is down has done its work
-  std::string typed{};          // the length or size of what is being placed, instead of the hand's
-  bool place_now = false;       // Enter was pressed: as if clicked here
-  std::optional<Vec2> cursor{}; // pixel of the view where the keyboard has put it; see tool_cursor.hpp
-  bool cursor_click = false;    // Enter was pressed there
+  float card_height = 0;           // pixels, the most that the joint's card has taken
+  bool spent = false;              // the button that is down has done its work
+  std::string typed{};             // the length or size of what is being placed, instead of the hand's
+  bool place_now = false;          // Enter was pressed: as if clicked here
+  std::optional<Vec2> cursor{};    // pixel of the view where the keyboard has put it; see tool_cursor.hpp
+  std::optional<Vec3> cursor_at{}; // the point there that is meant: others may lie before it in the picture
+  bool cursor_click = false;       // Enter was pressed there
 
   ToolCaches caches{};
 };

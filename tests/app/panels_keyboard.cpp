@@ -1,6 +1,7 @@
 // All of it without a mouse: what follows are key events only.
 #include "robot.hpp"
 
+#include "app/document/create.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
@@ -147,6 +148,34 @@ TEST_CASE("a pendulum is built, solved, explored and exported without one event 
   hand.frames(2);
   CHECK(app.export_request);
   CHECK_FALSE(app.dialog.showing);
+}
+
+TEST_CASE("points that lie behind one another in the picture are gone to one by one") {
+  Typist hand;
+  App& app = hand.app;
+  hand.key('N', true);
+  edit(app.session, "Add rod", [](Mechanism& next, Selection& selection) {
+    add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = {-0.2, 0, 0}, .to = {0.4, 0, 0}});
+    selection.set({});
+  });
+  hand.frames(2);
+  hand.key('2'); // along the rod
+  hand.frames(60);
+  hand.key('J');
+  std::set<double> met;
+  for (int i = 0; i < 8; ++i) {
+    hand.key(keys::page_down);
+    hand.frames(1);
+    met.insert(std::round(1000 * app.tool.caches.aim.point.x()));
+  }
+  CHECK(met == std::set<double>{-200, 0, 100, 400}); // both ends, the centre and the origin
+  for (int i = 0; i < 8 && app.tool.caches.aim.point.x() > -0.199; ++i) {
+    hand.key(keys::page_up);
+    hand.frames(1);
+  }
+  hand.key(keys::enter);
+  REQUIRE(app.tool.joint);
+  CHECK(app.tool.joint->at == Vec3(-0.2, 0, 0));
 }
 
 TEST_CASE("Tab reaches every field and button of the inspector, in reading order and in sight") {

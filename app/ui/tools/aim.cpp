@@ -80,6 +80,17 @@ Vec3 on_rod(const Instance& rod, const Ray& ray, double step) {
   return point;
 }
 
+// The snap point that the cursor means: one that the keyboard has gone to, or the nearest in the picture.
+const SnapPoint* aimed_snap(const ViewContext& context, const ViewInput& input, double reach) {
+  const std::vector<SnapPoint>& points = cached_snap_points(context.session, context.tool);
+  const std::optional<Vec3>& meant = context.tool.cursor_at;
+  const auto at = meant ? input.camera.project(*meant, input.size) : std::nullopt;
+  if (at && (*at - input.cursor).norm() < 1)
+    if (const auto found = std::ranges::find(points, *meant, &SnapPoint::point); found != points.end())
+      return &*found;
+  return snap_point(points, input.camera, input.size, input.cursor, reach);
+}
+
 Aim find_aim(const ViewContext& context, const ViewInput& input) {
   const Mechanism& mechanism = context.session.mechanism();
   const SceneList& scene = cached_scene(context);
@@ -95,9 +106,7 @@ Aim find_aim(const ViewContext& context, const ViewInput& input) {
   Aim aim;
   aim.step = snap ? grid_step(input) : 0;
   aim.plane = work_plane(input.camera, context.tool.last_point.value_or(Vec3::Zero()));
-  if (const SnapPoint* point = snap ? snap_point(cached_snap_points(context.session, context.tool),
-                                                 input.camera, input.size, input.cursor, reach)
-                                    : nullptr) {
+  if (const SnapPoint* point = snap ? aimed_snap(context, input, reach) : nullptr) {
     aim.plane.through = aim.point = point->point;
     aim.what = point->what;
     aim.named = point->named;
@@ -158,10 +167,11 @@ const Aim& aim_at(const ViewContext& context, const ViewInput& input) {
   const std::uint64_t revision = context.session.document.revision();
   if (cache.aim_revision != revision || cache.aim_cursor != input.cursor ||
       cache.aim_camera != input.camera || cache.aim_size != input.size ||
-      cache.aim_snaps != snaps(context.tool, input)) {
+      cache.aim_meant != context.tool.cursor_at || cache.aim_snaps != snaps(context.tool, input)) {
     cache.aim = find_aim(context, input);
     cache.aim_revision = revision;
     cache.aim_cursor = input.cursor;
+    cache.aim_meant = context.tool.cursor_at;
     cache.aim_camera = input.camera;
     cache.aim_size = input.size;
     cache.aim_snaps = snaps(context.tool, input);

@@ -91,22 +91,51 @@ Vec2 first_place(const ViewContext& context, ViewSize view) {
   return point ? context.view.camera.project(*point, view).value_or(middle) : middle;
 }
 
-// Left to right and top to bottom, as they are seen.
-std::optional<Vec2> next_point(const ViewContext& context, const Vec2& from, ViewSize view, bool back) {
-  std::vector<std::pair<double, double>> places;
+// A point of the mechanism as it is seen, in the order in which keys go from one to the next.
+struct SeenPoint {
+  double x, y;  // pixels, whole ones
+  double depth; // m, away from the eye
+  Vec3 point;
+
+  std::tuple<double, double, double> order() const { return {x, y, depth}; }
+};
+
+std::vector<SeenPoint> seen_points(const ViewContext& context, ViewSize view) {
+  const ViewCamera& camera = context.view.camera;
+  std::vector<SeenPoint> seen;
   for (const SnapPoint& snap : cached_snap_points(context.session, context.tool)) {
     if (context.tool.tool == Tool::point && snap.named.empty()) continue;
-    if (const auto at = context.view.camera.project(snap.point, view))
+    if (const auto at = camera.project(snap.point, view))
       if (at->x() >= 0 && at->y() >= 0 && at->x() < view.width && at->y() < view.height)
-        places.emplace_back(std::round(at->x()), std::round(at->y()));
+        seen.push_back({std::round(at->x()), std::round(at->y()),
+                        -camera.backward().dot(snap.point - camera.target), snap.point});
   }
-  if (places.empty()) return std::nullopt;
-  std::ranges::sort(places);
-  const std::pair now(std::round(from.x()), std::round(from.y()));
-  const auto after = back ? std::ranges::lower_bound(places, now) : std::ranges::upper_bound(places, now);
-  const auto next = back ? (after == places.begin() ? places.end() : after) - 1
-                         : (after == places.end() ? places.begin() : after);
-  return Vec2(next->first, next->second);
+  std::ranges::sort(seen, {}, &SeenPoint::order);
+  return seen;
+}
+
+// Left to right, top to bottom, and from front to back where one lies behind another. The cursor goes there.
+void go_to_next_point(const ViewContext& context, const Vec2& from, ViewSize view, bool back) {
+  ToolState& tool = context.tool;
+  const std::vector<SeenPoint> seen = seen_points(context, view);
+  if (seen.empty()) return;
+  // Where the cursor is, it is on the point that was gone to, or else on what is in front there.
+  const auto at_cursor = [&](const SeenPoint& p) {
+    return p.x == std::round(from.x()) && p.y == std::round(from.y());
+  };
+  auto now = std::ranges::find_if(
+      seen, [&](const SeenPoint& p) { return at_cursor(p) && tool.cursor_at == p.point; });
+  if (now == seen.end()) now = std::ranges::find_if(seen, at_cursor);
+  const auto count = static_cast<std::ptrdiff_t>(seen.size());
+  const bool on_point = now != seen.end();
+  if (!on_point) {
+    const SeenPoint cursor{std::round(from.x()), std::round(from.y()), 0, Vec3::Zero()};
+    now = std::ranges::upper_bound(seen, cursor.order(), {}, &SeenPoint::order);
+  }
+  const std::ptrdiff_t next = now - seen.begin() + (back ? -1 : on_point ? 1 : 0);
+  const SeenPoint& to = seen[static_cast<std::size_t>((next + count) % count)];
+  tool.cursor = Vec2(to.x, to.y);
+  tool.cursor_at = to.point;
 }
 
 // A step of the grid on the screen, a pixel with Shift.
@@ -134,7 +163,7 @@ bool take_cursor_key(const ViewContext& context, const KeyPress& key, ViewSize v
   case keys::down: by.y() = step; break;
   case keys::up: by.y() = -step; break;
   case keys::page_down:
-  case keys::page_up: tool.cursor = next_point(context, now, view, key.key == keys::page_up); return true;
+  case keys::page_up: go_to_next_point(context, now, view, key.key == keys::page_up); return true;
   case keys::enter:
     if (key.ctrl || key.shift) return false;
     tool.cursor = now;
@@ -142,6 +171,7 @@ bool take_cursor_key(const ViewContext& context, const KeyPress& key, ViewSize v
     return true;
   default: return false;
   }
+  tool.cursor_at.reset();
   tool.cursor = (now + by).cwiseMax(Vec2::Zero()).cwiseMin(Vec2(view.width - 1, view.height - 1));
   return true;
 }
@@ -152,6 +182,7 @@ void use_tool_cursor(const ViewContext& context, ViewInput& input) {
   const bool click = std::exchange(tool.cursor_click, false);
   if (!context.ui.keyboard.by_key || context.session.mode != Mode::build || !places(tool.tool)) {
     tool.cursor.reset();
+    tool.cursor_at.reset();
     return;
   }
   // A tool that was chosen by a key shows at once where Enter would put it.
