@@ -23,12 +23,16 @@ double iteration_cost(const Problem& problem) {
                  3 * m * n * (m + n));
 }
 
-// The deflation operator prod_i (1 + 1 / |x - r_i|^2).
-double deflation(const Problem& problem, const Eigen::VectorXd& q, const std::vector<Unknowns>& roots) {
-  double product = 1;
-  for (const Unknowns& root : roots)
-    product *= 1 + 1 / std::max(squared_distance(problem, q, root.q), 1e-30);
-  return product;
+// The derivative of the logarithm of the deflation operator prod_i (1 + 1 / |x - r_i|^2) along a scaled step.
+double deflation_slope(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& scaled_step,
+                       const std::vector<Unknowns>& roots) {
+  double slope = 0;
+  for (const Unknowns& root : roots) {
+    const Eigen::VectorXd away = scaled_difference(problem, root.q, q);
+    const double square = std::max(away.squaredNorm(), 1e-30);
+    slope -= 2 * away.dot(scaled_step) / (square * (1 + square));
+  }
+  return slope;
 }
 
 class Searcher {
@@ -289,7 +293,7 @@ class Searcher {
     const double of_deflation =
         1e-8 * static_cast<double>(list_.states.size()) * (1 + 0.5 * p_.system.nv) / cost_;
     for (int i = 0; i < 60; ++i) {
-      spend(1 + 3 * of_deflation);
+      spend(1 + of_deflation);
       evaluate(p_, z, 0, w_);
       if (!std::isfinite(scaled_residual(p_, w_))) return false;
       factor(p_, z, w_);
@@ -298,16 +302,7 @@ class Searcher {
       find_step(p_, whole, z, w_);
       const double size = largest_size(w_.scaled_step);
       if (!std::isfinite(size) || size == 0) return false;
-      // Directional derivative of the operator along the step, by a central difference.
-      const double h = 1e-5 / std::max(1., size);
-      double side[2];
-      for (int k : {0, 1}) {
-        w_.moved = z.q;
-        w_.step = (k == 0 ? h : -h) * w_.scaled_step.cwiseProduct(p_.scaling.column);
-        retract<double>(p_.system, w_.step, w_.moved);
-        side[k] = deflation(p_, w_.moved, list_.states);
-      }
-      const double slope = (side[0] - side[1]) / (2 * h) / deflation(p_, z.q, list_.states);
+      const double slope = deflation_slope(p_, z.q, w_.scaled_step, list_.states);
       double length = 1 / (1 - slope);
       if (!std::isfinite(length)) return false;
       length = std::clamp(length, -2., 2.);

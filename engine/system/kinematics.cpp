@@ -142,6 +142,7 @@ S coordinate_value(const System& system, const ParametersOf<S>& parameters, cons
 
 bool turns_matter(const System& system, const Parameters& p, int l) {
   if (p.links[static_cast<std::size_t>(l)].elastic) return true;
+  if (system.torques.empty()) return false;
   const auto own = [l](const CoordinateInfo& c) { return c.link == l; };
   const auto coordinate = std::ranges::find_if(system.coordinates, own) - system.coordinates.begin();
   for (std::size_t i = 0; i < system.torques.size(); ++i)
