@@ -28,9 +28,9 @@ int first_samples(const Orbit& orbit, double rate) {
 }
 
 // A period of the orbit, segment by segment, for an unstable one would be left.
-Run recorded(Flow& flow, const Orbit& orbit, int samples, double tolerance) {
+Run recorded(Flow& flow, const Orbit& orbit, int wanted, double tolerance) {
   const auto m = static_cast<int>(orbit.nodes.size());
-  const int each = 2 * ((samples + 2 * m - 1) / (2 * m)); // even, so that every second one counts as well
+  const int each = 2 * ((wanted + 2 * m - 1) / (2 * m)); // even, so that every second one counts as well
   Run whole;
   for (const StateChart& node : orbit.nodes) {
     const Run part = flow.record(node.base(), orbit.period / m, each, tolerance);
