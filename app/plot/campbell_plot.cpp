@@ -144,6 +144,7 @@ void add_special(Plot& plot, const ResponseDiagram& diagram, std::size_t branch,
     }
     std::string label(word(point.type));
     std::ranges::replace(label, '_', ' ');
+    if (point.type == SpecialPointType::hopf) label = "Hopf";
     plot.marks.push_back({.at = {point.at.parameter, y * factor},
                           .label = std::move(label),
                           .shape = PlotShape::diamond,

@@ -195,12 +195,15 @@ void toolbar_panel(Session& session, Ui& ui, ViewState& view, const CommandRunne
   ImGui::BeginDisabled(session.mode != Mode::explore); // what follows stays where it is
   play_buttons(session, ui);
   ImGui::EndDisabled();
-  space_between_groups(ui);
-  const float fit = ImGui::GetFrameHeight() + 2 * s + 17 * s; // the button, and the space behind it
-  if (have_room(ui, rect, {"Front", "Side", "Top", "Iso"}, fit)) {
-    direction_buttons(ui, view);
+  // The line between groups is only where another follows.
+  const float space = 17 * s, fit = ImGui::GetFrameHeight() + 2 * s;
+  ImGui::SameLine(0, 0);
+  if (have_room(ui, rect, {"Front", "Side", "Top", "Iso"}, space + fit + space)) {
     space_between_groups(ui);
-    if (have_room(ui, rect, {"Ghost", "Grid", "Shadow"}, 0)) {
+    direction_buttons(ui, view);
+    ImGui::SameLine(0, 0);
+    if (have_room(ui, rect, {"Ghost", "Grid", "Shadow"}, space)) {
+      space_between_groups(ui);
       toggle(session, ui, view, &ViewState::ghost, "toolbar/ghost", "Ghost",
              session.mode == Mode::build ? "Where it settles, in grey (G)" : "The drawn pose, in grey (G)");
       toggle(session, ui, view, &ViewState::grid, "toolbar/grid", "Grid", "The floor");

@@ -8,6 +8,7 @@
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/view_frame.hpp"
+#include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/notice.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -136,14 +137,7 @@ void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect
   ImGui::SetNextWindowPos({std::round(rect.x + rect.width / 2), std::round(view.lines_top)}, ImGuiCond_Always,
                           {0.5f, 1});
   ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {9 * s, 5 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::Begin("error", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleVar(3);
+  begin_chip("error", s, 5, {9 * s, 5 * s});
   const float button = ImGui::GetFrameHeight();
   ImGui::AlignTextToFramePadding();
   const float end = ImGui::GetContentRegionAvail().x - button;
@@ -160,16 +154,20 @@ void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect
 
 namespace {
 
-// "Explored: speed of spin 15 rad/s", or how many are. While building no result is with them.
-std::string tried_text(const Session& session) {
+// "Explored: speed of spin" and " 15 rad/s", or how many are. While building no result is with them.
+struct TriedText {
+  std::string words, number;
+};
+TriedText tried_text(const Session& session) {
   const Explored& explored = session.document.explored();
   const bool aside = session.mode == Mode::build;
   if (explored.size() > 1)
-    return std::to_string(explored.size()) + " explored values" + (aside ? " put aside" : "");
+    return {std::to_string(explored.size()) + " explored values" + (aside ? " put aside" : ""), ""};
   const ShownUnit unit =
       shown_unit(parameter_unit(session.document.stored(), explored.front().address), session.units);
-  return (aside ? "Put aside: " : "Explored: ") + parameter_phrase(explored.front().address) + " " +
-         short_text(unit.shown(explored.front().value), 9) + (unit.text.empty() ? "" : " " + unit.text);
+  return {(aside ? "Put aside: " : "Explored: ") + parameter_phrase(explored.front().address),
+          " " + short_text(unit.shown(explored.front().value), 9) +
+              (unit.text.empty() ? "" : " " + unit.text)};
 }
 
 } // namespace
@@ -182,19 +180,14 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
       status == ui.widgets.end() ? view.y + view.height - 10 * s : status->second.from.y - 6 * s;
   ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(bottom)}, ImGuiCond_Always,
                           {1, 1});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8 * s, 4 * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::Begin("explored", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleVar(4);
+  begin_chip("explored", s, 5, {8 * s, 4 * s});
   const float cube = 96 * s; // in the other corner
   const float buttons = ImGui::CalcTextSize("KeepBack").x + 4 * ImGui::GetStyle().FramePadding.x + 12 * s;
   ImGui::AlignTextToFramePadding();
-  clipped_text(tried_text(session), std::max(view.width - cube - buttons - 36 * s, 76 * s));
+  const TriedText tried = tried_text(session); // of which the number is never cut
+  const float room = std::max(view.width - cube - buttons - 36 * s, 76 * s);
+  ImGui::TextUnformatted(
+      (cut_to(tried.words, room - ImGui::CalcTextSize(tried.number.c_str()).x) + tried.number).c_str());
   note_widget(ui.widgets, "explored");
   std::string help = session.mode == Mode::build
                          ? "Tried while exploring and put aside while building; saving leaves it out."
@@ -217,13 +210,7 @@ void problem_banner(Session& session, Ui& ui, const CommandRunner& commands, con
   const float s = ui.scale, width = std::max(rect.width - 48 * s, 40 * s);
   ImGui::SetNextWindowPos({rect.x + 24 * s, rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {16 * s, 14 * s});
-  ImGui::Begin("problem", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PopStyleVar(3);
+  begin_card("problem", s, {16 * s, 14 * s});
   ImGui::PushFont(ui.fonts.strong);
   ImGui::TextColored(colors.bad, "%s  The scene cannot be opened", icon::warning);
   ImGui::PopFont();
