@@ -5,6 +5,7 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/report_export.hpp"
+#include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/error.hpp"
@@ -74,13 +75,7 @@ void file_banner(Session& session, Ui& ui, DialogState& dialog, ReportExport& re
   const float s = ui.scale;
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
   if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::Begin("file banner", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
-                   ImGuiWindowFlags_NoFocusOnAppearing);
-  ImGui::PopStyleVar(2);
+  begin_card("file banner", s, ImGui::GetStyle().WindowPadding, ImGuiWindowFlags_NoFocusOnAppearing);
   if (both_changed)
     conflict(session, ui, commands);
   else if (writing)

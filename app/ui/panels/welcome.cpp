@@ -4,6 +4,7 @@
 #include "app/ui/dialog_state.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/tool_state.hpp"
+#include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <array>
@@ -39,13 +40,7 @@ void welcome(const Session& session, Ui& ui, const ToolState& tool, const Dialog
   ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + view.height / 2}, ImGuiCond_Always,
                           {0.5f, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {20 * s, 16 * s});
-  ImGui::Begin("welcome", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PopStyleVar(3);
+  begin_card("welcome", s, {20 * s, 16 * s});
   heading(ui, "Build a mechanism");
   for (const FirstStep& step : first_steps) {
     ImGui::Dummy({0, 3 * s});

@@ -5,6 +5,7 @@
 #include "app/ui/tools/joint_guess.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/view_context.hpp"
+#include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/work_plane.hpp"
 
@@ -271,14 +272,8 @@ void joint_card(const ViewContext& context, const ViewInput& input) {
   const ImVec2 size(264 * s, std::max(context.tool.card_height, most_rows));
   place_card(context, input, size);
   ImGui::SetNextWindowSize({size.x, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
   // Each has a window of its own, which begins as tall as it was last.
-  ImGui::Begin(bearing ? "bearing" : "joint", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoScrollbar |
-                   ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PopStyleVar(2);
+  begin_card(bearing ? "bearing" : "joint", s, ImGui::GetStyle().WindowPadding, ImGuiWindowFlags_NoScrollbar);
   heading(context.ui, bearing ? "Bearing" : "Join");
   body_rows(context.session, context.ui, context.tool);
   away_note(context.session, context.ui, *context.tool.joint);

@@ -2,6 +2,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/tools/tool_glyphs.hpp"
 #include "app/ui/tools/tools.hpp"
+#include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/tooltip.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
@@ -85,15 +86,7 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
   // In a low view the groups stand in as many columns as they need.
   const float room = std::max(view.height / s - top - bottom, 4 * button_side + 2 * strip_pad);
   ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {strip_pad * s, strip_pad * s});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.f, std::round(s)));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1, 1});
-  ImGui::Begin("tools", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleVar(4);
+  begin_chip("tools", s, 6, {strip_pad * s, strip_pad * s});
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   float x = 0, y = 0;
   const auto place = [&](bool separated) {
