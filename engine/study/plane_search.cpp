@@ -124,7 +124,10 @@ std::optional<PlaneSearch::Added> PlaneSearch::add(ExtendedBalance& balance, Pla
     balance.set(state);
   }
   state.z.q = configuration_of(balance.problem(), coordinates);
-  if (!tracer.start(state, 1 - line.varied)) return {};
+  if (!tracer.start(state, 1 - line.varied)) {
+    ++not_followed_;
+    return {};
+  }
   for (std::size_t i = 0; i < traced_.size(); ++i)
     if (out_.curves[i].type == type && tracer.lies_on(state, traced_[i])) return {};
   PlaneCurve curve;
@@ -167,6 +170,10 @@ PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left
                    " through the " + std::to_string(lines_.size()) +
                    " lines searched; there may be others between.";
     if (left_out_ > 0) out_.message += " " + left_out + " at " + std::to_string(left_out_) + " more points.";
+    if (not_followed_ > 0)
+      out_.message += " From " + std::to_string(not_followed_) +
+                      (not_followed_ == 1 ? " point on them no curve could be followed."
+                                          : " points on them no curve could be followed.");
     if (cancelled()) out_.message = "Cancelled. " + out_.message;
   } else if (out_.message.empty()) { // before anything was found
     out_.message = "Cancelled.";

@@ -71,7 +71,7 @@ class PlaneSearch {
   System system_;
   std::vector<Line> lines_;
   std::size_t line_ = 0; // that is searched
-  int left_out_ = 0;
+  int left_out_ = 0, not_followed_ = 0; // starts
   std::vector<TracedCurve> traced_;
   PlaneCurves out_;
   std::string refusal_;
