@@ -7,9 +7,8 @@
 #include <cmath>
 
 namespace flyball {
-namespace {
 
-std::string_view stem_of(BodyForm form) {
+std::string form_name(BodyForm form) {
   switch (form) {
   case BodyForm::ball: return "ball";
   case BodyForm::block: return "block";
@@ -19,6 +18,8 @@ std::string_view stem_of(BodyForm form) {
   }
   return "body";
 }
+
+namespace {
 
 // The axes of a rod: the world's, but for the one nearest to the rod, which lies along it.
 Quat axes_along(const Vec3& direction) {
@@ -56,7 +57,7 @@ std::string add(Mechanism& mechanism, Force force, std::string_view stem) {
 
 std::string add_body(Mechanism& mechanism, const NewBody& wanted) {
   Body body;
-  body.name = unused_name(mechanism, PartKind::body, stem_of(wanted.form));
+  body.name = unused_name(mechanism, PartKind::body, form_name(wanted.form));
   body.position = wanted.at;
   Shape shape;
   switch (wanted.form) {

@@ -11,6 +11,7 @@
 namespace flyball {
 
 enum class BodyForm { ball, block, rod, plate, disc };
+std::string form_name(BodyForm form); // "ball"
 
 inline constexpr double steel = 7850; // kg/m^3
 

@@ -23,17 +23,6 @@ namespace {
 // Points of the picture that a size given by a click is near to.
 constexpr double ball_size = 22, block_size = 56, plate_size = 110, disc_size = 55;
 
-std::string form_name(BodyForm form) {
-  switch (form) {
-  case BodyForm::ball: return "ball";
-  case BodyForm::block: return "block";
-  case BodyForm::rod: return "rod";
-  case BodyForm::plate: return "plate";
-  case BodyForm::disc: return "disc";
-  }
-  return "";
-}
-
 bool is_round(BodyForm form) {
   return form == BodyForm::ball || form == BodyForm::disc;
 }
