@@ -7,6 +7,7 @@
 #include "app/cli/solution_json.hpp"
 #include "app/cli/solution_text.hpp"
 #include "app/cli/time_limit.hpp"
+#include "app/live/motion.hpp"
 #include "app/render/movie.hpp"
 #include "app/ui/studies/motion/run_movie.hpp"
 #include "engine/dynamics/settled.hpp"
@@ -373,10 +374,14 @@ Ending run_simulate(const SimulateCommand& options) {
     quick.progress = progress->reporter();
     quick.cancel = &limit.over();
     if (!run.time.empty()) steady = Analysis(mechanism).solve(quick);
-    if (steady && steady->status == Status::converged)
+    if (steady && steady->status == Status::converged) {
       settled = find_settled(run, *steady);
-    else
+      if (const auto other = resting_state(run, std::make_shared<const Mechanism>(mechanism), &limit.over());
+          other && runs_into(run, *steady, *other))
+        settled->message += " It runs into another steady state, as its coordinates below tell.";
+    } else {
       steady.reset();
+    }
   } catch (const SceneError& error) {
     if (!error.where().empty()) throw options.scene.in_file(error);
     run = {}; // nothing is wrong with the scene as it is written: it has no such motion

@@ -3,7 +3,9 @@
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -54,6 +56,28 @@ std::size_t memory_of(const Run& run) {
   return bytes;
 }
 
+std::shared_ptr<const Solution> resting_state(const Run& run,
+                                              const std::shared_ptr<const Mechanism>& mechanism,
+                                              const std::atomic<bool>* cancel) {
+  constexpr double still = 0.1; // of a radian or the reach, in the run's last tenth
+  if (!run.damped || run.time.size() < 2) return nullptr;
+  const std::size_t last = run.time.size() - 1, first = last - last / 10;
+  SolveOptions options;
+  options.details = options.explain = false;
+  options.search = 0;
+  options.cancel = cancel;
+  for (const CoordinateTrack& track : run.coordinates) {
+    if (track.driven || track.dependent) continue;
+    if (!(std::abs(track.value[first] - track.value[last]) < still * track.scale)) return nullptr;
+    options.start.emplace_back(coordinate_label(track), track.value[last]);
+  }
+  try {
+    return std::make_shared<const Solution>(Analysis(mechanism).solve(options));
+  } catch (const SceneError&) {
+    return nullptr; // the run goes without
+  }
+}
+
 Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& context) {
   // The simulator looks at the flag by itself, and keeps what it has; nothing is thrown away by others.
   const Uninterrupted scope;
@@ -72,7 +96,7 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
     }
     Simulator simulator(*request.mechanism, options);
     if (simulator.run().time.empty()) // cancelled before it began
-      return {before, true, simulator.run().message};
+      return {before, true, simulator.run().message, {}};
     const double begin = simulator.time(), end = begin + std::max(duration, 0.);
     const auto so_far = [&] {
       return std::make_shared<const Run>(before ? joined(*before, last, simulator.run()) : simulator.run());
@@ -88,20 +112,24 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
       const std::size_t samples = simulator.run().time.size() + last;
       if (well && until < end && samples > least_samples &&
           memory_of(simulator.run()) / simulator.run().time.size() * samples > request.most_memory)
-        return {so_far(), true,
+        return {so_far(),
+                true,
                 "The run is kept up to " + rounded_text(simulator.run().time.back(), 6) +
-                    " s: more of it would take too much memory. Keep its last state to start from there."};
+                    " s: more of it would take too much memory. Keep its last state to start from there.",
+                {}};
       if (options.rate > 0) step *= std::clamp(slice / std::max(took, 1e-6), 0.5, 2.);
       if (well && until < end && since(told) > wait) {
         const auto copying = Clock::now();
-        context.publish({so_far(), false, {}});
+        context.publish({so_far(), false, {}, {}});
         wait = std::max(apart, share * since(copying));
         told = Clock::now();
       }
     }
-    return {so_far(), true, {}};
+    Motion motion{so_far(), true, {}, {}};
+    motion.rests_in = resting_state(*motion.run, request.mechanism, &context.cancel);
+    return motion;
   } catch (const std::exception& error) { // SceneError, or no memory
-    return {before, true, error.what()};
+    return {before, true, error.what(), {}};
   }
 }
 

@@ -1,9 +1,12 @@
 #include "app/session/motion.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
+#include "app/session/units.hpp"
 #include "engine/dynamics/joined.hpp"
 #include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -118,6 +121,35 @@ std::string motion_words(const Session& session, const MotionRun* motion) {
   return !motion || !motion->run || motion->run->damped ? "Motion, damped" : "Motion, without dampers";
 }
 
+std::string elsewhere_words(const Session& session) {
+  if (!session.motion.elsewhere) return {};
+  const Solution& there = *session.motion.elsewhere;
+  constexpr double apart = 1e-3;   // of a radian or the reach
+  constexpr std::size_t named = 3; // coordinates
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < there.coordinates.size(); ++i) {
+    const CoordinateSolution& c = there.coordinates[i];
+    if (std::abs(value_difference(session.answer.solution.coordinates[i], c)) < apart) continue;
+    const ShownUnit unit = coordinate_unit(c.angle, session.units);
+    places.push_back(coordinate_words(c) + " at " + short_text(unit.shown(c.value), 5) +
+                     (unit.text == "°" ? "" : " ") + unit.text);
+  }
+  if (places.size() > named + 1) {
+    const std::size_t more = places.size() - named;
+    places.resize(named);
+    places.push_back("and " + std::to_string(more) + " more");
+  }
+  std::string words = "It settles in another steady state";
+  for (std::size_t i = 0; i < places.size(); ++i)
+    words += (i == 0 ? ": " : ", ") + places[i];
+  return words + ".";
+}
+
+void go_elsewhere(Session& session) {
+  if (const auto there = session.motion.elsewhere)
+    go_to_state(session, "", 0, start_values(there->coordinates));
+}
+
 std::vector<std::string> motion_problems(const Session& session) {
   const auto& runs = session.motion.runs;
   const bool both = std::ranges::all_of(runs, [](const MotionRun& run) { return run.wanted && run.task; });
@@ -143,6 +175,7 @@ void show_motion(Session& session, bool on) {
     session.motion.on = false;
     session.motion.poses.clear();
     session.motion.settled.reset();
+    session.motion.elsewhere.reset();
     session.motion.shown = {};
     play(session, false);
     rewind(session);
@@ -198,6 +231,7 @@ void update_motion(Session& session) {
     news = run.told = true;
     run.finished = !taken->result || taken->result->finished;
     run.problem = taken->result ? taken->result->problem : taken->problem;
+    run.rests_in = taken->result ? taken->result->rests_in : nullptr;
     run.run = taken->result ? std::move(taken->result->run) : nullptr;
     if (run.run && run.run->status == RunStatus::diverged) run.problem = run.run->message;
   }
@@ -206,6 +240,7 @@ void update_motion(Session& session) {
   if (!shown) {
     motion.poses.clear();
     motion.settled.reset();
+    motion.elsewhere.reset();
     motion.shown = {};
     return;
   }
@@ -216,8 +251,12 @@ void update_motion(Session& session) {
     motion.poses = poses_at(run, session.playback.time);
   if (before.run != shown->run || before.answer != session.answer.ticket) {
     motion.settled.reset();
-    if (run.damped && converged(session) && !solving(session))
+    motion.elsewhere.reset();
+    if (run.damped && converged(session) && !solving(session)) {
       motion.settled = find_settled(run, session.answer.solution);
+      if (shown->rests_in && runs_into(run, session.answer.solution, *shown->rests_in))
+        motion.elsewhere = shown->rests_in;
+    }
   }
 }
 

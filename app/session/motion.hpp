@@ -22,7 +22,8 @@ struct MotionRun {
   bool told = false;              // anything has come of what was asked for last
   std::shared_ptr<const Run> run; // until then of an earlier request; null: none
   bool finished = false;
-  std::string problem; // why there is no run, or no more of it
+  std::string problem;                        // why there is no run, or no more of it
+  std::shared_ptr<const Solution> rests_in{}; // see Motion
 };
 
 struct MotionState {
@@ -42,6 +43,8 @@ struct MotionState {
   std::array<MotionRun, 2> runs; // damped, undamped
   std::vector<Pose> poses;       // of the shown run at playback.time; empty: none
   std::optional<Settled> settled;
+  std::shared_ptr<const Solution>
+      elsewhere{}; // another steady state that the shown run runs into; null: none
   // What these two are of.
   struct Of {
     std::shared_ptr<const Run> run;
@@ -76,6 +79,10 @@ bool computing_motion(const Session& session);
 std::optional<double> computed_motion(const Session& session);
 // "Motion, damped": only dampers make that difference.
 std::string motion_words(const Session& session, const MotionRun* motion);
+// "It settles in another steady state: arm1 at 139.36°, arm2 at 139.36°."; empty where it does not.
+std::string elsewhere_words(const Session& session);
+// Goes to that one.
+void go_elsewhere(Session& session);
 // Why there is no motion, or no more of it; of two each says which it is.
 std::vector<std::string> motion_problems(const Session& session);
 // Whether there are dampers to be left out.

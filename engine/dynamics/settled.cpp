@@ -27,20 +27,28 @@ bool is_held(const Run& run) {
   });
 }
 
-} // namespace
+// What of a sample is farthest from a steady state.
+struct Farthest {
+  double scaled = 0; // see distance_from()
+  const CoordinateTrack* track = nullptr;
+  double away = 0; // rad or m; of a speed a second
+  bool speed = false;
+};
 
-double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return infinity;
-  double worst = 0;
+Farthest farthest_from(const Run& run, std::size_t sample, const Solution& steady) {
+  const Farthest unlike{.scaled = std::numeric_limits<double>::infinity()};
+  if (run.segments.empty() || steady.coordinates.size() != run.coordinates.size()) return unlike;
+  Farthest worst;
+  const auto take = [&](const CoordinateTrack& track, double away, double size, bool speed) {
+    if (away > 0 && !(away / size <= worst.scaled)) worst = {away / size, &track, away, speed};
+  };
   for (std::size_t i = 0; i < run.coordinates.size(); ++i) {
     const CoordinateTrack& track = run.coordinates[i];
     const CoordinateSolution& there = steady.coordinates[i];
-    if (track.joint != there.joint || track.index != there.index) return infinity;
-    if (there.speed && !track.driven) {
-      const double away = std::abs(track.rate[sample] - *there.speed);
-      if (away > 0) worst = std::max(worst, away / std::max(std::abs(*there.speed), largest_rate(track)));
-    }
+    if (track.joint != there.joint || track.index != there.index) return unlike;
+    if (there.speed && !track.driven)
+      take(track, std::abs(track.rate[sample] - *there.speed),
+           std::max(std::abs(*there.speed), largest_rate(track)), true);
     if (track.driven || there.driven ||
         std::ranges::find(steady.neutral, track.joint) != steady.neutral.end())
       continue;
@@ -51,15 +59,37 @@ double distance_from(const Run& run, std::size_t sample, const Solution& steady)
         b[static_cast<Eigen::Index>(k)] = steady.coordinates[i + k].value;
       }
       const Quat turn = exp_rotation<double>(a) * exp_rotation<double>(b).conjugate();
-      worst = std::max(worst, log_rotation<double>(turn).norm());
+      take(track, log_rotation<double>(turn).norm(), 1, false);
       i += 2;
       continue;
     }
     double away = track.value[sample] - there.value;
     if (track.turns) away = std::remainder(away, 2 * std::numbers::pi);
-    worst = std::max(worst, std::abs(away) / track.scale);
+    take(track, std::abs(away), track.scale, false);
   }
   return worst;
+}
+
+std::string words(const Farthest& farthest) {
+  if (!farthest.track) return "it is the direct solution";
+  const std::string name =
+      farthest.track->rotation ? farthest.track->joint : coordinate_label(*farthest.track);
+  const std::string unit = (farthest.track->angle ? "rad" : "m") + std::string(farthest.speed ? "/s" : "");
+  return name + " is " + rounded_text(farthest.away, 2) + " " + unit + " from the direct solution";
+}
+
+} // namespace
+
+double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
+  return farthest_from(run, sample, steady).scaled;
+}
+
+bool runs_into(const Run& run, const Solution& steady, const Solution& other) {
+  constexpr double near = 0.05, by_far = 0.1, same = 1e-3;
+  if (run.time.empty() || other.status != Status::converged || other.stable == false) return false;
+  const std::size_t last = run.time.size() - 1;
+  const double away = distance_from(run, last, other), from_steady = distance_from(run, last, steady);
+  return away < near && away < by_far * from_steady && from_steady > same;
 }
 
 Settled find_settled(const Run& run, const Solution& steady, double within) {
@@ -69,17 +99,17 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
     out.message = "There is no steady state to settle in.";
     return out;
   }
+  const Farthest farthest = farthest_from(run, run.time.size() - 1, steady);
+  out.distance = farthest.scaled;
   std::size_t first = run.time.size();
   while (first > 0) {
     const double away = distance_from(run, first - 1, steady);
-    if (first == run.time.size()) out.distance = away;
     if (!(away <= within)) break;
     --first;
   }
-  const std::string distance =
-      rounded_text(out.distance, 2) + " (rad, or parts of the reach) from the direct solution";
+  const std::string distance = words(farthest);
   if (first == run.time.size() && is_held(run)) {
-    out.message = "Friction holds it where it has come to rest, " + distance + ".";
+    out.message = "Friction holds it where it has come to rest: " + distance + ".";
     return out;
   }
   if (first == run.time.size()) {
@@ -88,7 +118,7 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
     return out;
   }
   out.time = run.time[first] - run.time.front();
-  out.message = "Settled after " + rounded_text(*out.time, 4) + " s, " + distance + ".";
+  out.message = "Settled after " + rounded_text(*out.time, 4) + " s; at the end " + distance + ".";
   return out;
 }
 

@@ -20,6 +20,10 @@ struct Settled {
 // directions that nothing resists. Infinite where the two do not fit.
 double distance_from(const Run& run, std::size_t sample, const Solution& steady);
 
+// Whether a damped run that has not settled in a steady state runs into another one: it has come near it, and
+// is nearer than to `steady` by far.
+bool runs_into(const Run& run, const Solution& steady, const Solution& other);
+
 Settled find_settled(const Run& run, const Solution& steady, double within = 1e-6);
 
 } // namespace flyball

@@ -84,6 +84,33 @@ TEST_CASE("the motion begins when it is asked for, and ends in the steady state"
   CHECK(apart > 0.02);
 }
 
+TEST_CASE("a motion that settles in another steady state says in which, and shows it") {
+  Robot robot(wide);
+  App& app = robot.app;
+  change_parameter(app.session, "joints.spin.drive.speed", 12.566370614359172);
+  robot.frames(3);
+  const double direct = value(app.session.answer.solution, "arm1");
+  robot.key('M');
+  robot.frames(3);
+  REQUIRE(app.session.motion.settled);
+  CHECK_FALSE(app.session.motion.settled->time);
+  REQUIRE(app.session.motion.elsewhere);
+  // The arms have swung over the top, to the mirrored state.
+  CHECK_THAT(elsewhere_words(app.session), ContainsSubstring("another steady state: arm1 at 139.36°"));
+  robot.click("motion/go elsewhere");
+  robot.frames(3);
+  CHECK(value(app.session.answer.solution, "arm1") == Approx(std::acos(-1) - direct).epsilon(1e-9));
+  CHECK_FALSE(app.session.motion.elsewhere);
+  CHECK(app.ui.widgets.count("motion/elsewhere") == 0);
+  CHECK(app.ui.widgets.count("motion/settled") == 1);
+
+  // One that settles where solving answers says nothing of others.
+  change_parameter(app.session, "joints.spin.drive.speed", 11);
+  solve_from_drawn_pose(app.session);
+  robot.frames(3);
+  CHECK_FALSE(app.session.motion.elsewhere);
+}
+
 TEST_CASE("a closed panel takes everything of the motion with it") {
   MotionRobot robot;
   robot.click("study/close");

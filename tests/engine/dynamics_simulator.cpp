@@ -283,6 +283,7 @@ TEST_CASE("the settled detector") {
     if (run.time[i] >= *early.time) CHECK(distance_from(run, i, steady) <= 1e-3);
   const Settled never = find_settled(simulate(m, undamped(lasting(1))), steady);
   CHECK_FALSE(never.time);
-  CHECK_THAT(never.message, ContainsSubstring("Not settled after 1 s"));
+  CHECK_THAT(never.message, ContainsSubstring("Not settled after 1 s: theta is "));
+  CHECK_FALSE(runs_into(run, steady, steady));
   CHECK_FALSE(find_settled(run, solve(shipped("governor"))).time);
 }

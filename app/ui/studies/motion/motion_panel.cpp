@@ -135,12 +135,18 @@ double greatest(const std::vector<double>& values) {
 }
 
 // Whether it has settled, or why it ended.
-void outcome(const Session& session, Ui& ui) {
+void outcome(Session& session, Ui& ui) {
   const UiColors& colors = colors_of(ui);
   for (const std::string& problem : motion_problems(session))
     paragraph(problem, colors.bad);
   if (!shown_motion(session)) return;
-  if (session.motion.settled) {
+  if (session.motion.elsewhere) {
+    paragraph(elsewhere_words(session), colors.text);
+    note_widget(ui.widgets, "motion/elsewhere");
+    if (text_button(ui, "motion/go elsewhere", "Show that steady state"))
+      later(ui, [&session] { go_elsewhere(session); });
+    help_on_hover("The view, the results and the studies are of the steady state that the motion runs into.");
+  } else if (session.motion.settled) {
     paragraph(session.motion.settled->message, session.motion.settled->time ? colors.good : colors.text);
     note_widget(ui.widgets, "motion/settled");
   } else if (!converged(session) && !solving(session)) {
