@@ -388,7 +388,8 @@ class PhaseSearch {
     if (way == Way::together && !approach(along, z)) return {};
     auto drift = drift_at(along, z);
     const Eigen::Index count = along.size();
-    double last = 1;
+    constexpr double longest = 0.5; // rad, of a step
+    double last = 1, most = longest;
     double time = drift ? first_drift / drift->norm() : 0; // s, of a step
     const int most_steps = way == Way::slowly ? 120 : 60;
     for (int i = 0; i < most_steps && drift && spent_ < most_iterations(); ++i) {
@@ -421,13 +422,13 @@ class PhaseSearch {
       Lu lu;
       if (!lu.compute(jacobian)) return {};
       Eigen::VectorXd step = -lu.solve(*drift);
-      constexpr double most = 0.5;
-      if (step.norm() > most) step *= most / step.norm();
+      const bool cut = step.norm() > most;
+      if (cut) step *= most / step.norm();
       last = step.norm();
       if (!std::isfinite(last)) return {};
       const Eigen::VectorXd from = along;
       const Unknowns at = z;
-      const double before = drift->norm();
+      const Eigen::VectorXd before = *drift;
       constexpr int most_halvings = 3; // where a step leads to no balance
       for (int k = 0; k <= most_halvings; ++k) {
         along = from + step;
@@ -437,7 +438,11 @@ class PhaseSearch {
         step /= 2;
         time /= 2;
       }
-      if (drift) time *= std::clamp(before / drift->norm(), 0.5, 10.);
+      if (!drift) continue;
+      time *= std::clamp(before.norm() / drift->norm(), 0.5, 10.);
+      // Beyond a stop they drift back: between such places a step must not be as long as from one to the
+      // other.
+      most = cut && drift->dot(before) < 0 ? most / 2 : std::min(1.5 * most, longest);
     }
     return {};
   }

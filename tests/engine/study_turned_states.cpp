@@ -342,6 +342,47 @@ TEST_CASE("two shafts with play between them turn together against its flank", "
   CHECK(s.stable == true);
 }
 
+TEST_CASE("a coupling with play lies against its flank where what rides on the shafts is dragged",
+          "[phase][coupling]") {
+  const double radius = 0.12, lower = -0.0733, stop = 200.5, linear = 0.2, quadratic = 0.04;
+  Mechanism m;
+  m.gravity = Vec3::Zero();
+  for (const double y : {0., -0.3}) {
+    const std::string n = y == 0 ? "0" : "1";
+    m.bodies.push_back(body("shaft" + n, 2, {0, y, 0}, {0.1, 0.085, 0.1}));
+    m.bodies.push_back(body("rider" + n, 0.9, {radius, y, 0}, {0.002, 0.003, 0.002}));
+    m.joints.push_back(
+        torque_driven(revolute("p" + n, "ground", "shaft" + n, {0, y, 0}, Vec3::UnitY()), 5,
+                      y == 0 ? "3.03 N m - 0.898 N m s * rate(p0)" : "-0.278 N m - 0.124 N m s * rate(p1)"));
+    m.joints.push_back(dampened(
+        sprung(prismatic("h" + n, "shaft" + n, "rider" + n, {radius, y, 0}, Vec3::UnitX()), 430), 2));
+    Force drag;
+    drag.type = ForceType::drag;
+    drag.name = "drag" + n;
+    drag.body = "rider" + n;
+    drag.at = {radius, y, 0};
+    drag.linear = linear;
+    drag.quadratic = quadratic;
+    m.forces.push_back(drag);
+  }
+  m.joints.push_back(dampened(revolute("c", "shaft0", "shaft1", {0, -0.15, 0}, Vec3::UnitY()), 0.12));
+  m.joints.back().coordinates[0].stop = Stop{lower, 0.0961, stop};
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  const auto place = [&](const std::string& joint) {
+    return std::ranges::find(s.coordinates, joint, &CoordinateSolution::joint)->value;
+  };
+  const double w = speed(s, "p0");
+  const auto drag = [&](const std::string& joint) {
+    const double r = radius + place(joint);
+    return linear * r * r * w + quadratic * r * r * r * w * w;
+  };
+  CHECK_THAT(3.03 - 0.898 * w - 0.278 - 0.124 * w, WithinAbs(drag("h0") + drag("h1"), 1e-10));
+  CHECK_THAT(place("c"), WithinAbs(lower - (0.278 + 0.124 * w + drag("h1")) / stop, 1e-10));
+}
+
 TEST_CASE("of states that stand turned a stable one is the answer, wherever it lies", "[phase]") {
   const Mechanism m =
       read_scene(R"json({"flyball": 2, "name": "Three shafts", "gravity": [0, 0, 0], "bodies": [
