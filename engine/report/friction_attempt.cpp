@@ -26,18 +26,13 @@ std::size_t entry_of(int i) {
   return static_cast<std::size_t>(i);
 }
 
-// The least and the largest of the drives' speeds, rad/s or m/s, of those that turn; 1 where none does.
-struct DriveSpeeds {
-  double least = 1, most = 1;
-};
-DriveSpeeds drive_speeds(const Mechanism& mechanism) {
-  std::vector<double> all;
+// The largest of the drives' speeds, rad/s or m/s; 1 where none turns.
+double fastest_drive(const Mechanism& mechanism) {
+  double most = 0;
   for (const Joint& joint : mechanism.joints)
     for (const Coordinate& c : joint.coordinates)
-      if (c.drive && c.drive->speed != 0) all.push_back(std::abs(c.drive->speed));
-  if (all.empty()) return {};
-  const auto [least, most] = std::ranges::minmax(all);
-  return {least, most};
+      if (c.drive) most = std::max(most, std::abs(c.drive->speed));
+  return most > 0 ? most : 1;
 }
 
 // The friction of each coordinate played by its part.
@@ -120,7 +115,7 @@ class Attempt {
   void let_slip(std::size_t which, Mechanism& out) const {
     const CoordinateReference at = frictions_[which];
     const double way = parts_[which] == Part::slips_forwards ? 1 : -1;
-    double speed = drive_speeds(mechanism_).most;
+    double speed = fastest_drive(mechanism_);
     for (const GearedCoordinate& geared : gear_train(mechanism_, at)) {
       std::optional<Drive>& drive = coordinate_of(out, geared.at).drive;
       if (!drive || !finds_speed(*drive)) continue;
@@ -146,18 +141,13 @@ class Attempt {
     number = number.value_or(0) + load;
   }
 
-  // rad/s or m/s: of what slips so slowly a rate that the drives give is not told from none.
-  double slowest() const { return 1e-3 * drive_speeds(mechanism_).least; }
-
-  // The limit against the rate, beside what dampers of its own give: a joint with a damper may close a loop.
-  // From a tenth of the slowest rate on that is the limit to the last digit.
+  // The limit against the way it slips, beside what dampers of its own give: a joint with a damper may close
+  // a loop.
   void put_as_damper(std::size_t which, Joint& joint, Coordinate& c) const {
     const int i = frictions_[which].coordinate;
     const bool angle = is_angle(joint.type, i);
     const std::string force = angle ? " N m" : " N", rate = angle ? " rad/s" : " m/s";
-    const double limit = friction_limit(friction_at(mechanism_, frictions_[which]));
-    std::string text =
-        number_text(limit) + force + "*tanh(rate/(" + number_text(slowest() / 200) + rate + "))";
+    std::string text = number_text(-slipping_force(which)) + force;
     const std::string key = coordinate_key(joint, entry_of(i), "damping_force");
     if (const Formula* law = damper_law(joint, i)) {
       text += " + (" + law->text + ")";
@@ -314,7 +304,6 @@ class Attempt {
         force.value = slipping_force(i);
         if (!c->speed) return false;
         out.margins[i] = parts_[i] == Part::slips_forwards ? *c->speed : -*c->speed;
-        if (implied_[i] && std::abs(*c->speed) < slowest()) out.margins[i] = -slowest(); // not told from rest
         out.goes = out.goes && out.margins[i] > c->speed_error;
       } else {
         c->driven = false;

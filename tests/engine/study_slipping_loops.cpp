@@ -100,6 +100,34 @@ TEST_CASE("the branch of a block on a conveyor ends where that stands, in a slip
   CHECK(std::ranges::count(d.special, SpecialPointType::slip, &SpecialPoint::type) >= 1);
 }
 
+TEST_CASE("a clutch between two shafts slips up to where both turn alike, to the last digits") {
+  // 5 N m - w of one and 0.2 w of the other: alike at 25/6 rad/s, with 5/6 N m in the clutch.
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Clutch", "gravity": [0, 0, 0],
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
+      {"name": "b", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.2, 0.3, 0.2]}],
+    "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=5 N m - 1 N m s*rate(pa)", "speed": 5}},
+      {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=-0.2 N m s*rate(pb)", "speed": 3}},
+      {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0.05, 0], "axis": [0, 1, 0],
+        "friction": {"limit": 0.5}}]})json");
+  for (const double to : {2., 0.9}) {
+    const ResponseDiagram d = follow_response(m, "joints.c.friction.limit", 0.1, to);
+    INFO(d.message);
+    REQUIRE(d.special.size() == 1);
+    CHECK(d.special[0].type == SpecialPointType::slip);
+    CHECK_THAT(d.special[0].at.parameter, WithinRel(5. / 6, 1e-9));
+    CHECK(d.branches.size() == 2);
+  }
+  Mechanism nearly = m;
+  nearly.joints[2].coordinates[0].friction->limit = 5. / 6 - 1e-7;
+  const Solution s = Analysis(nearly).solve();
+  REQUIRE(s.status == Status::converged);
+  REQUIRE(s.frictions.size() == 1);
+  CHECK(s.frictions[0].slips);
+  CHECK_THAT(rate(s, "c"), WithinRel(-6e-7, 1e-6)); // (5/6 - T) (1 + 5) rad/s per N m
+}
+
 TEST_CASE("a damper that closes a loop balances a spring: the sizes of what it gives count") {
   const Mechanism m = clutch_and_brake(R"("damping": 0.01)", R"("spring": {"stiffness": 97})");
   SolveOptions nearest;
