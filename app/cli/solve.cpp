@@ -19,6 +19,14 @@
 namespace flyball::cli {
 namespace {
 
+struct SolveArguments {
+  SceneArgument scene;
+  std::vector<std::string> start, points;
+  int modes = 0, starts = 0;
+  double search_time = 1;
+  bool all = false, nearest = false, periodic = false, json = false;
+};
+
 // Of each state the band about it; of one that rests on friction none.
 std::vector<std::optional<FrictionBand>> bands_of(const Mechanism& mechanism, const AllSolutions& all,
                                                   const ReportProgress& progress) {
@@ -32,17 +40,81 @@ std::vector<std::optional<FrictionBand>> bands_of(const Mechanism& mechanism, co
   return out;
 }
 
+Ending solve_all(const SolveArguments& arguments, const Mechanism& mechanism, const SolveOptions& options,
+                 std::optional<ProgressBar>& progress) {
+  const AllSolutions all = Analysis(mechanism).solve_all(options);
+  const auto bands = bands_of(mechanism, all, options.progress);
+  progress.reset();
+  if (arguments.json) {
+    nlohmann::ordered_json told = to_json(mechanism, all);
+    for (std::size_t i = 0; i < bands.size(); ++i)
+      if (bands[i]) told["equilibria"][i]["friction"] = to_json(*bands[i]);
+    print_json(with_warnings(std::move(told), mechanism));
+  } else {
+    std::vector<std::string> more;
+    for (const auto& band : bands)
+      more.push_back(band ? band_lines(*band) : "");
+    print_text(to_text(mechanism, all, more) + "\n");
+  }
+  return end_with(!all.equilibria.empty(), arguments.scene.file, all.message);
+}
+
+Ending solve_one(const SolveArguments& arguments, const Mechanism& mechanism, const SolveOptions& options,
+                 std::optional<ProgressBar>& progress) {
+  const Solution solution = Analysis(mechanism).solve(options);
+  std::optional<FrictionReport> friction;
+  if (has_friction(mechanism)) {
+    report_progress(options.progress, "friction");
+    friction = report_friction(mechanism, solution);
+  }
+  std::optional<PeriodicState> periodic;
+  if (arguments.periodic || solution.status == Status::no_steady_state) {
+    report_progress(options.progress, "periodic motion");
+    PeriodicOptions wanted;
+    wanted.nearest = arguments.nearest;
+    if (arguments.periodic) wanted.patience = 10;
+    periodic = find_periodic_state(mechanism, wanted);
+  }
+  progress.reset();
+  if (arguments.json) {
+    nlohmann::ordered_json told = to_json(mechanism, solution);
+    if (friction) told["friction"] = to_json(*friction);
+    if (periodic) told["periodic"] = to_json(*periodic);
+    print_json(with_warnings(std::move(told), mechanism));
+  } else {
+    print_text(to_text(mechanism, solution) + (friction ? to_text(*friction) : "") +
+               (periodic ? to_text(*periodic) : ""));
+  }
+  if (arguments.periodic)
+    return end_with(periodic->status == PeriodicStatus::found, arguments.scene.file, periodic->message);
+  return end_with(solution.status == Status::converged, arguments.scene.file, solution.message);
+}
+
+Ending run_solve(const SolveArguments& arguments) {
+  std::optional<ProgressBar> progress(std::in_place, "reading");
+  const Mechanism mechanism = arguments.scene.load();
+  SolveOptions options;
+  options.nearest = arguments.nearest;
+  options.modes = arguments.modes;
+  options.progress = progress->reporter();
+  options.search_time = arguments.search_time;
+  options.search_starts = arguments.starts;
+  for (const std::string& text : arguments.start)
+    options.start.push_back(parse_assignment("--start", text));
+  for (const std::string& text : arguments.points)
+    options.points.push_back(parse_point("--point", text));
+  try {
+    return arguments.all ? solve_all(arguments, mechanism, options, progress)
+                         : solve_one(arguments, mechanism, options, progress);
+  } catch (const SceneError& error) {
+    throw arguments.scene.in_file(error);
+  }
+}
+
 } // namespace
 
 void add_solve(CLI::App& app, Ending& ending) {
-  struct Options {
-    SceneArgument scene;
-    std::vector<std::string> start, points;
-    int modes = 0, starts = 0;
-    double search_time = 1;
-    bool all = false, nearest = false, periodic = false, json = false;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SolveArguments>();
   CLI::App* command = app.add_subcommand("solve", "Find the steady state");
   options->scene.add_to(*command);
   CLI::Option* start = add_start(*command, options->start);
@@ -74,71 +146,7 @@ void add_solve(CLI::App& app, Ending& ending) {
   add_points(*command, options->points);
   command->add_flag("--json", options->json, "Print a JSON object");
   command->footer("Example: flyball solve governor.json --set joints.spin.drive.speed=12 --json");
-  command->callback([options, &ending] {
-    std::optional<ProgressBar> progress(std::in_place, "reading");
-    const Mechanism mechanism = options->scene.load();
-    SolveOptions solve;
-    solve.nearest = options->nearest;
-    solve.modes = options->modes;
-    solve.progress = progress->reporter();
-    solve.search_time = options->search_time;
-    solve.search_starts = options->starts;
-    for (const std::string& text : options->start)
-      solve.start.push_back(parse_assignment("--start", text));
-    for (const std::string& text : options->points)
-      solve.points.push_back(parse_point("--point", text));
-    Solution solution;
-    std::optional<FrictionReport> friction;
-    std::optional<PeriodicState> periodic;
-    try {
-      if (options->all) {
-        const AllSolutions all = Analysis(mechanism).solve_all(solve);
-        const auto bands = bands_of(mechanism, all, solve.progress);
-        progress.reset();
-        if (options->json) {
-          nlohmann::ordered_json told = to_json(mechanism, all);
-          for (std::size_t i = 0; i < bands.size(); ++i)
-            if (bands[i]) told["equilibria"][i]["friction"] = to_json(*bands[i]);
-          print_json(with_warnings(std::move(told), mechanism));
-        } else {
-          std::vector<std::string> more;
-          for (const auto& band : bands)
-            more.push_back(band ? band_lines(*band) : "");
-          print_text(to_text(mechanism, all, more) + "\n");
-        }
-        ending = end_with(!all.equilibria.empty(), options->scene.file, all.message);
-        return;
-      }
-      solution = Analysis(mechanism).solve(solve);
-      if (has_friction(mechanism)) {
-        report_progress(solve.progress, "friction");
-        friction = report_friction(mechanism, solution);
-      }
-      if (options->periodic || solution.status == Status::no_steady_state) {
-        report_progress(solve.progress, "periodic motion");
-        PeriodicOptions wanted;
-        wanted.nearest = options->nearest;
-        if (options->periodic) wanted.patience = 10;
-        periodic = find_periodic_state(mechanism, wanted);
-      }
-    } catch (const SceneError& error) {
-      throw options->scene.in_file(error);
-    }
-    progress.reset();
-    if (options->json) {
-      nlohmann::ordered_json told = to_json(mechanism, solution);
-      if (friction) told["friction"] = to_json(*friction);
-      if (periodic) told["periodic"] = to_json(*periodic);
-      print_json(with_warnings(std::move(told), mechanism));
-    } else {
-      print_text(to_text(mechanism, solution) + (friction ? to_text(*friction) : "") +
-                 (periodic ? to_text(*periodic) : ""));
-    }
-    if (options->periodic)
-      ending = end_with(periodic->status == PeriodicStatus::found, options->scene.file, periodic->message);
-    else
-      ending = end_with(solution.status == Status::converged, options->scene.file, solution.message);
-  });
+  command->callback([options, &ending] { ending = run_solve(*options); });
 }
 
 } // namespace flyball::cli
