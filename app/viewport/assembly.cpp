@@ -326,6 +326,10 @@ void fit_to_shapes(Shaft& shaft, const Body& body, std::span<const Attachment> a
 
 } // namespace
 
+bool is_broad(const Shaft& shaft, double unit) {
+  return shaft.base > 1.8 * unit;
+}
+
 bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit) {
   return (drawn - shaft.origin).cross(shaft.direction).norm() < 0.6 * unit;
 }
@@ -336,8 +340,11 @@ std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
   const std::vector<Attachment>& attachments = assembly.attachments[b];
   const double unit = assembly.scale.unit;
   for (const Attachment& bearing : attachments) {
-    if (bearing.joint < 0 || attachments.size() < 2) continue;
+    if (bearing.joint < 0) continue;
     const Joint& joint = assembly.joint(bearing.joint);
+    // A wheel alone is one if it is driven, so that the drive's sign is round it rather than within it.
+    const bool alone = attachments.size() < 2;
+    if (alone && (joint.coordinates.empty() || !joint.coordinates[0].drive)) continue;
     const auto j = static_cast<std::size_t>(bearing.joint);
     const bool on_ground = assembly.joint_bodies[j][0] < 0 || assembly.joint_bodies[j][1] < 0;
     if (!on_ground || (joint.type != JointType::revolute && joint.type != JointType::cylindrical)) continue;
@@ -375,8 +382,10 @@ std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
     }
     if (!turning.shapes.empty()) {
       fit_to_shapes(shaft, turning, attachments, unit);
+      if (alone && !is_broad(shaft, unit)) continue;
       return shaft;
     }
+    if (alone) continue;
     shaft.from -= 7 * unit;
     shaft.to += 2.2 * unit;
     return shaft;

@@ -87,6 +87,8 @@ bool has_anchor(const Coordinate& coordinate);
 
 // As what a body is drawn, if it is one; ground (-1) is none.
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);
+// Whether it has the base of a wheel or turntable, by the size of glyphs.
+bool is_broad(const Shaft& shaft, double unit);
 // Whether a point of the drawn pose lies on its axis, by the size of glyphs.
 bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit);
 

@@ -64,6 +64,25 @@ Rank rank_on_pin(const Assembly& assembly, std::size_t index) {
   return rank;
 }
 
+// How far the discs that a hinge's pin goes through as their axle reach to either side of it (m).
+double wheel_half(const Assembly& assembly, std::size_t index) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const Vec3 axis = joint.axis.stableNormalized();
+  double half = 0;
+  for (const int body : assembly.joint_bodies[index]) {
+    if (body < 0) continue;
+    for (const Shape& shape : assembly.mechanism.bodies[static_cast<std::size_t>(body)].shapes) {
+      const Vec3 line = shape.to - shape.from, off = joint.at - (shape.from + shape.to) / 2;
+      const double along = std::abs(off.dot(axis)), reach = line.norm() / 2;
+      if (shape.type != ShapeType::cylinder || reach > shape.radius || along > reach ||
+          line.cross(axis).norm() > 0.1 * line.norm() || off.cross(axis).norm() > shape.radius)
+        continue;
+      half = std::max(half, along + reach);
+    }
+  }
+  return half;
+}
+
 void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, const Place& p,
                    const Palette& colors) {
   const double u = p.unit;
@@ -90,7 +109,8 @@ void draw_revolute(Sketch& sketch, const Assembly& assembly, std::size_t index, 
   const Rank rank = rank_on_pin(assembly, index);
   const double half = rank.count > 1 ? 0.5 * u : 0.8 * u;
   const Vec3 knuckle = p.at + (rank.index - 0.5 * (rank.count - 1)) * 1.08 * u * p.axis;
-  const double reach = 0.54 * u * rank.count + 0.7 * u;
+  // Through a wheel, in which it would not be seen.
+  const double reach = std::max(0.54 * u * rank.count + 0.7 * u, wheel_half(assembly, index) + 0.7 * u);
   sketch.pen.color = colors.metal;
   sketch.tube(knuckle, p.axis, half, 0.98 * u, 0.14 * u);
   sketch.pen.color = colors.metal_dark;
@@ -270,7 +290,7 @@ void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, co
       const auto shaft = shaft_of(assembly, body);
       if (!shaft || shaft->joint != static_cast<int>(index)) continue;
       // Round the base of a turntable, otherwise above the bearing.
-      const bool broad = shaft->base > 1.8 * u;
+      const bool broad = is_broad(*shaft, u);
       center =
           shaft->origin + (shaft->from + (broad ? 0.5 * shaft->base_height : 3.4 * u)) * shaft->direction;
       if (broad) radius = 1.1 * shaft->base + 0.4 * u;

@@ -218,6 +218,32 @@ TEST_CASE("what a drive is drawn with keeps its size when a joint is added to wh
   }
 }
 
+TEST_CASE("the joint and the drive of a disc that faces the eye are seen") {
+  Mechanism m;
+  m.bodies = {body("disc", 1)};
+  Shape disc;
+  disc.type = ShapeType::cylinder;
+  disc.radius = 0.06;
+  disc.from = {0, 0, -0.01};
+  disc.to = {0, 0, 0.01};
+  m.bodies[0].shapes = {disc};
+  m.joints = {revolute("turn", "ground", "disc", {0, 0, 0}, {0, 0, 1})};
+  const auto bounds_of_role = [&](Role role) {
+    Bounds all;
+    for (const Instance& i : build_scene(m, {}).instances)
+      if (i.role == role) all.add(instance_bounds(i));
+    return all;
+  };
+  CHECK(bounds_of_role(Role::joint).upper.z() > 0.011); // before its face
+  m.joints[0].coordinates[0].drive = Drive{10};
+  CHECK(bounds_of_role(Role::drive).upper.x() > 0.06); // round it
+  // As when it carries something.
+  const double alone = bounds_of_role(Role::drive).upper.x();
+  m.bodies.push_back(body("shoe", 0.1, {0.04, 0, 0}));
+  m.joints.push_back(prismatic("slide", "disc", "shoe", {0.04, 0, 0}, {1, 0, 0}));
+  CHECK(bounds_of_role(Role::drive).upper.x() == Approx(alone).epsilon(0.1));
+}
+
 TEST_CASE("parts move with the poses and keep their size") {
   const Mechanism m = governor();
   std::vector<Pose> poses = drawn_poses(m);
