@@ -180,6 +180,16 @@ TEST_CASE("in a narrow view the legend is folded where it would lie over the too
   CHECK(legend.from.x >= tools.to.x);
 }
 
+TEST_CASE("the tools keep clear of the cube however high the window is") {
+  const int height = GENERATE(768, 743, 735, 700, 600);
+  Robot robot({1366, height});
+  set_mode(robot.app.session, Mode::build);
+  robot.frames(3);
+  // Above it is the letter of an axis.
+  const WidgetRect tools = robot.widget("tool strip"), cube = robot.widget("view/cube");
+  CHECK(tools.to.y < cube.from.y - 7);
+}
+
 TEST_CASE("drawn pose and steady state are drawn in different ways") {
   Robot robot;
   App& app = robot.app;

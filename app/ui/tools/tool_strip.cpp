@@ -40,7 +40,7 @@ constexpr std::array buttons{
     ToolButton{Tool::vane, "tools/vane", "insert.vane"},
 };
 
-constexpr float top = 46, bottom = 102; // points of the view that the caption and the axes need
+constexpr float top = 46, bottom = 110; // points of the view that the caption and the cube with its axes need
 constexpr float button_side = 26, strip_pad = 4, group_gap = 7;
 
 // What it is and how to call it, beside the strip.
@@ -90,15 +90,16 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
   const ImVec2 origin = ImGui::GetCursorScreenPos();
   float x = 0, y = 0;
   const auto place = [&](bool separated) {
-    if (y + button_side + 2 * strip_pad > room) {
+    const float gap = separated && y > 0 ? group_gap : 0;
+    if (y + gap + button_side + 2 * strip_pad > room) {
       x += button_side + strip_pad;
       y = 0;
-    } else if (separated && y > 0) {
+    } else if (gap > 0) {
       const float line = origin.y + s * (y + group_gap / 2);
       ImGui::GetWindowDrawList()->AddLine({origin.x + s * (x + 3), line},
                                           {origin.x + s * (x + button_side - 3), line}, packed(colors.border),
                                           std::max(1.f, std::round(s)));
-      y += group_gap;
+      y += gap;
     }
     ImGui::SetCursorScreenPos({origin.x + x * s, origin.y + y * s});
     y += button_side;
