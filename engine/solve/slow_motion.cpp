@@ -69,7 +69,9 @@ class SlowMotion {
       newton_step(p_, f, phi, w_, w_.scaled_step, w_.trial.lambda);
       const double size = length(w_.scaled_step);
       if (!(size <= longest)) continue;
-      kkt.metric_of_solution(w_.scaled_step, resisted_);
+      const double inertia = kkt.metric_of_solution(w_.scaled_step, resisted_),
+                   pulled = -f.cwiseProduct(p_.scaling.column).dot(w_.scaled_step);
+      if (pulled < inertia / (2 * time_)) continue; // see slow_motion.hpp
       w_.step = w_.scaled_step.cwiseProduct(p_.scaling.column);
       z_.q = begin.q;
       retract<double>(p_.system, w_.step, z_.q);

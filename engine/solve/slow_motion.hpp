@@ -5,7 +5,9 @@
 //
 // Pseudo-transient continuation (Kelley, Keyes, Convergence analysis of pseudo-transient continuation, 1998):
 // steps of the linearly implicit Euler method, (K + W / h) x = -f, as long as their model holds, and
-// Newton-Raphson at the end.
+// Newton-Raphson at the end. Along a direction of stiffness -k such a step grows until h = 1 / k in the units
+// of W and goes backwards beyond, to the unstable state that the motion leaves: steps stay within half of
+// that, -f^T x >= x^T W x / (2 h).
 #pragma once
 
 #include "engine/solve/newton.hpp"

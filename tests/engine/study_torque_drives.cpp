@@ -235,6 +235,24 @@ TEST_CASE("a heavy top's slow and fast steady precession with the speed unknown"
   }
 }
 
+TEST_CASE("a pendulum drawn hanging on a shaft swings out as the motion from beside there does", "[torque]") {
+  // The slow motion must not step backwards along what falls.
+  const auto [length, law] = GENERATE(std::pair<double, const char*>(2, "60 N m - 20 N m s * rate(spin)"),
+                                      std::pair<double, const char*>(1.2, "6 N m - 2 N m s * rate(spin)"));
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("hub", 1, Vec3::Zero(), {0.1, 0.1, 0.1}),
+              body("bob", 1, {0, -length, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {torque_driven(revolute("spin", "ground", "hub", Vec3::Zero(), Vec3::UnitY()), 3, law),
+              dampened(revolute("hinge", "hub", "bob", Vec3::Zero(), Vec3::UnitZ()), 0.1)};
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK(s.fallback == Fallback::slow_motion);
+  CHECK_THAT(std::cos(s.coordinates[1].value), WithinRel(standard_gravity / (9 * length), 1e-12));
+}
+
 TEST_CASE("random mechanisms: the speed is found at which the drive gives what turning takes",
           "[torque][random]") {
   int found = 0, moved = 0;
