@@ -271,9 +271,7 @@ struct Analysis::State {
       failure = add_lowest_eigenvalues(problem, steady.found.z, options.modes, steady.elsewhere(), stability);
     else if (!stability.eigenvalues) // only of a minimum the sign is found without them
       stability = stability_of(problem, steady, true, options.modes);
-    if (options.modes > 0 && stability.eigenvalues &&
-        stability.eigenvalues->size() > static_cast<std::size_t>(options.modes))
-      stability.eigenvalues->resize(static_cast<std::size_t>(options.modes));
+    keep_asked_for(problem, options.modes, stability);
     return failure;
   }
 

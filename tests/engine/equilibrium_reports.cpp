@@ -220,7 +220,7 @@ TEST_CASE("drive torques that vary have their mean and range over all phases") {
     Mechanism m;
     m.gravity = {0, -standard_gravity, 0};
     m.bodies = {body("a", 1, {0.1, 0, 0}), body("b", 1, {0.3, 0, 0})};
-    m.joints = {driven(revolute("p", "ground", "a", {}), 5),
+    m.joints = {driven(revolute("p", "ground", "a", Vec3::Zero()), 5),
                 driven(revolute("q", "a", "b", {0.2, 0, 0}), 7.3)};
     const auto closed = [](double t) { // of p
       return standard_gravity * (0.3 * std::cos(5 * t) + 0.1 * std::cos(12.3 * t)) -

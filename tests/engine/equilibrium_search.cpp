@@ -94,14 +94,16 @@ TEST_CASE("a gyrocompass points north at the Earth's rate", "[search]") {
     CAPTURE(rate);
     Mechanism m;
     m.gravity = Vec3::Zero();
-    m.bodies = {body("earth", 1, {}, {1, 1, 1}), body("gimbal", 0.1, {}, {1e-3, 1e-3, 1e-3}),
-                body("rotor", 1, {}, {a, a, a})};
+    m.bodies = {body("earth", 1, Vec3::Zero(), {1, 1, 1}),
+                body("gimbal", 0.1, Vec3::Zero(), {1e-3, 1e-3, 1e-3}),
+                body("rotor", 1, Vec3::Zero(), {a, a, a})};
     const double x = std::cos(drawn), z = std::sin(drawn);
     m.bodies[2].inertia = {a + (c - a) * x * x, a, a + (c - a) * z * z, 0, (c - a) * x * z, 0};
-    m.joints = {
-        driven(revolute("turns", "ground", "earth", {}, {std::cos(latitude), std::sin(latitude), 0}), rate),
-        dampened(revolute("vertical", "earth", "gimbal", {}, {0, 1, 0}), 1e-4),
-        driven(revolute("spins", "gimbal", "rotor", {}, {x, 0, z}), 2500)};
+    m.joints = {driven(revolute("turns", "ground", "earth", Vec3::Zero(),
+                                {std::cos(latitude), std::sin(latitude), 0}),
+                       rate),
+                dampened(revolute("vertical", "earth", "gimbal", Vec3::Zero(), {0, 1, 0}), 1e-4),
+                driven(revolute("spins", "gimbal", "rotor", Vec3::Zero(), {x, 0, z}), 2500)};
     const Solution s = solve(m);
     CAPTURE(s.message);
     REQUIRE(s.status == Status::converged);

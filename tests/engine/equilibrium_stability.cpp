@@ -589,9 +589,9 @@ TEST_CASE("a bead on a heavy block is not taken for massless") {
     CAPTURE(mass);
     Mechanism m;
     m.gravity = Vec3::Zero();
-    m.bodies = {body("shaft", 1, {}, {1, 1, 1}), body("block", 1e4, {0.1, 0, 0}),
+    m.bodies = {body("shaft", 1, Vec3::Zero(), {1, 1, 1}), body("block", 1e4, {0.1, 0, 0}),
                 body("bead", mass, {0.2, 0, 0})};
-    m.joints = {driven(revolute("spin", "ground", "shaft", {}, Vec3::UnitZ()), 2),
+    m.joints = {driven(revolute("spin", "ground", "shaft", Vec3::Zero(), Vec3::UnitZ()), 2),
                 dampened(sprung(prismatic("x", "shaft", "block", {0.1, 0, 0}, Vec3::UnitX()), 4e6), 2e4),
                 sprung(prismatic("y", "block", "bead", {0.2, 0, 0}, Vec3::UnitX()), 100 * mass)};
     m.joints[2].coordinates[0].damping_force = 0;
