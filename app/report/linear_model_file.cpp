@@ -200,16 +200,34 @@ NpzArray npz_matrix(const char* name, const Matrix& m) {
   return out;
 }
 
-// Texts as bytes of UTF-8, of the longest's size.
+// Of valid UTF-8.
+std::u32string code_points(std::string_view text) {
+  std::u32string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0xC0)
+      out.push_back(byte & (byte >= 0xF0 ? 0x07u : byte >= 0xE0 ? 0x0Fu : 0x1Fu));
+    else if (byte >= 0x80)
+      out.back() = out.back() << 6 | (byte & 0x3Fu);
+    else
+      out.push_back(byte);
+  }
+  return out;
+}
+
+// Texts as NumPy's, of the longest's size.
 template <class Signals, class Part>
 NpzArray npz_texts(const std::string& name, const Signals& signals, Part part) {
+  std::vector<std::u32string> texts;
   std::size_t longest = 1;
-  for (const auto& signal : signals)
-    longest = std::max(longest, (signal.*part).size());
-  NpzArray out{name, fmt::format("|S{}", longest), fmt::format("{},", signals.size()), {}};
   for (const auto& signal : signals) {
-    out.items += signal.*part;
-    out.items.append(longest - (signal.*part).size(), '\0');
+    texts.push_back(code_points(signal.*part));
+    longest = std::max(longest, texts.back().size());
+  }
+  NpzArray out{name, fmt::format("<U{}", longest), fmt::format("{},", signals.size()), {}};
+  for (std::u32string& text : texts) {
+    text.resize(longest, U'\0');
+    out.items.append(reinterpret_cast<const char*>(text.data()), longest * sizeof(char32_t));
   }
   return out;
 }

@@ -47,8 +47,9 @@ def npz(file):
                 if len(shape) == 2:
                     values = [values[i * shape[1]:(i + 1) * shape[1]] for i in range(shape[0])]
             else:
-                size = int(kind[2:])
-                values = [items[i:i + size].rstrip(b"\0").decode() for i in range(0, len(items), size)]
+                check(f"texts are NumPy's: {kind}", kind.startswith("<U"))
+                size = 4 * int(kind[2:])
+                values = [items[i:i + size].decode("utf-32-le").rstrip("\0") for i in range(0, len(items), size)]
             arrays[name.removesuffix(".npy")] = values
     return arrays
 
