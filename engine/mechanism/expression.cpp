@@ -242,7 +242,7 @@ class ExpressionParser {
       do {
         call.arguments.push_back(argument());
       } while (take(","));
-      if (!take(")")) fail("expected , or ) after a part's name");
+      if (!take(")")) fail("expected , or ) after a part's name" + quotes_hint(call.arguments.back().begin));
     }
     const auto count = static_cast<int>(call.arguments.size());
     if (count < function.fewest || count > function.most)
@@ -258,6 +258,16 @@ class ExpressionParser {
     put({.operation = Operation::result, .index = static_cast<std::uint16_t>(to_.results_.size())}, 0);
     to_.results_.push_back(std::move(call));
   }
+  // Where more words follow one at `begin` they may be of its name: "; a name that is no word stands in
+  // quotes, as 'sun shaft'".
+  std::string quotes_hint(std::size_t begin) const {
+    const std::size_t end = std::min(text_.find_first_of(",()'\"", begin), text_.size());
+    if (at_ == text_.size() || !begins_name(text_[at_]) || end <= at_) return {};
+    std::string_view words = text_.substr(begin, end - begin);
+    words.remove_suffix(words.size() - 1 - words.find_last_not_of(' '));
+    return "; a name that is no word stands in quotes, as '" + std::string(words) + "'";
+  }
+
   // "slide", "ball.1", "ball@A"; names that are no words in quotes of either kind.
   ResultCall::Argument argument() {
     skip_blanks();

@@ -100,6 +100,7 @@ TEST_CASE("Mistakes of measures are told with their place", "[measures]") {
            {"x(arm.1)", "m", "found a coordinate"},
            {"coordinate(slide@W)", "m", "found a point"},
            {"x('arm)", "m", "the end of a name in quotes"},
+           {"x(sun shaft 2) + 1 m", "m", "a name that is no word stands in quotes, as 'sun shaft 2'"},
            {"x(2)", "m", "column 3: expected the name of a part"},
            {"hinge", "rad", "of a part results are asked for"},
            {"W", "m", "expected a coordinate of the point"},
