@@ -111,6 +111,7 @@ App::App(AppOptions chosen)
   view.animated = chosen.animated;
   ui.system_theme = chosen.theme;
   ui.zoom = settings.zoom;
+  ui.theme_kept = settings.theme;
   ui.theme_choice = chosen.theme_choice.value_or(settings.theme);
   ui.theme = theme_of(ui.theme_choice, chosen.theme);
   session.on_document_opened = [this](bool same_file) { show_document(*this, same_file); };

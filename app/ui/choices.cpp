@@ -22,7 +22,7 @@ Settings settings_of(const Session& session, const Ui& ui, const ViewState& view
           .grid = view.grid,
           .shadow = view.shadow,
           .navigation = view.navigation,
-          .theme = ui.theme_choice,
+          .theme = ui.theme_kept,
           .zoom = ui.zoom};
 }
 
@@ -66,7 +66,7 @@ Theme theme_of(ThemeChoice choice, Theme system) {
 }
 
 void choose_theme(const Session& session, Ui& ui, const ViewState& view, ThemeChoice choice) {
-  ui.theme_choice = choice;
+  ui.theme_choice = ui.theme_kept = choice;
   keep_choices(session, ui, view);
   show_theme(ui, theme_of(choice, ui.system_theme));
 }

@@ -4,9 +4,11 @@
 #include "app/ui/file_commands.hpp"
 #include "app/ui/key_focus.hpp"
 #include "app/ui/panel_list.hpp"
+#include "app/ui/widgets/typed_field.hpp"
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 namespace flyball {
@@ -94,15 +96,25 @@ void act_on(App& app, const KeyPress& key) {
   may_command(app.session, app.ui, key); // no command, but maybe the beginning of a number
 }
 
+// "Ctrl+S", which no text has a use for.
+bool is_of_files(const KeyPress& key) {
+  return key.ctrl && std::ranges::any_of(commands(), [&](const Command& command) {
+           return std::string_view(command.id).starts_with("file.") && pressed(command, key);
+         });
+}
+
 } // namespace
 
 void handle_shortcuts(App& app) {
   // The palette has its own use for keys.
   if (app.panels->palette.showing()) return;
   const std::vector<KeyPress> pressed_keys = std::exchange(app.ui.keys, {});
-  if (ImGui::GetIO().WantTextInput || !app.ui.fields.typing.name.empty() || app.dialog.showing) return;
-  for (const KeyPress& key : pressed_keys)
-    if (!keys_are_wanted(*app.panels, app.dialog)) act_on(app, key);
+  if (app.dialog.showing) return;
+  const bool typing = ImGui::GetIO().WantTextInput || !app.ui.fields.typing.name.empty();
+  for (const KeyPress& key : pressed_keys) {
+    if (keys_are_wanted(*app.panels, app.dialog)) continue;
+    if (!typing || (is_of_files(key) && finish_typing(app.session, app.ui))) act_on(app, key);
+  }
 }
 
 } // namespace flyball

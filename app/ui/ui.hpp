@@ -32,6 +32,7 @@ struct KeyPress {
 struct Ui {
   Theme theme = Theme::light; // that is shown
   ThemeChoice theme_choice = ThemeChoice::system;
+  ThemeChoice theme_kept = ThemeChoice::system; // for every run: not one that was asked for this run alone
   Theme system_theme = Theme::light; // that the desktop has
   float scale = 1;                   // pixels a point has
   double zoom = 1;                   // that a person has chosen, times what the display has

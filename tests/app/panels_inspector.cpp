@@ -214,6 +214,29 @@ TEST_CASE("looking into a field changes nothing, and leaving takes what was type
   }
 }
 
+TEST_CASE("a command of files takes what is being typed and runs") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  hand.press_widget("inspector/mass");
+  hand.type("2.5");
+  SECTION("which is right") {
+    hand.key('O', true);
+    hand.frames(3);
+    CHECK(hand.body("ball1").mass == 2.5);
+    CHECK(hand.app.ui.fields.typing.name.empty());
+    CHECK((hand.app.dialog.showing || hand.app.dialog.wanted != Dialog::none));
+  }
+  SECTION("unless that is wrong, which is said") {
+    hand.type(" m");
+    hand.frames(2);
+    hand.key('O', true);
+    hand.frames(3);
+    CHECK(hand.body("ball1").mass == 1);
+    CHECK_FALSE(hand.app.dialog.showing);
+    CHECK_THAT(hand.app.session.notice, ContainsSubstring("was not taken"));
+  }
+}
+
 TEST_CASE("a number is dragged by its label and stepped by the arrow keys") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");

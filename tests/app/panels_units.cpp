@@ -185,6 +185,24 @@ TEST_CASE("ends of sliders are round in the units shown, and so is a new drive")
   CHECK(shown_unit("rad", DisplayUnits{}).shown(slider.to) == 180);
 }
 
+TEST_CASE("colours for one run are not kept with what is chosen in it") {
+  const TemporaryFolder folder;
+  AppOptions options{.mode = LiveSolver::Mode::immediate,
+                     .on_news = {},
+                     .scenes = {},
+                     .numbers = {},
+                     .state = folder.path()};
+  options.theme_choice = ThemeChoice::high_contrast;
+  {
+    App app(options);
+    CHECK(app.ui.theme == Theme::high_contrast);
+    app.commands.run("view.shadow");
+    CHECK(read_settings(folder.path()).theme == ThemeChoice::system);
+    app.commands.run("view.theme_contrast"); // and those that are chosen are
+  }
+  CHECK(read_settings(folder.path()).theme == ThemeChoice::high_contrast);
+}
+
 TEST_CASE("the interface has sizes, by command and key, which are kept") {
   const TemporaryFolder folder;
   {

@@ -184,6 +184,13 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
   return was_typing;
 }
 
+bool finish_typing(Session& session, Ui& ui) {
+  const bool taken = ui.fields.typing.mistake.empty();
+  leave(session, ui, true);
+  ImGui::ClearActiveID();
+  return taken;
+}
+
 void later(Ui& ui, std::function<void()> edit) {
   ui.fields.later.push_back(std::move(edit));
 }

@@ -30,6 +30,10 @@ bool typing_in(const Ui& ui, const std::string& name);
 // As if it had been clicked; for a field that is drawn only while it is typed in.
 void start_typing(Session& session, Ui& ui, const std::string& name, const std::string& text);
 
+// Leaves the field that is typed in, before anything is drawn: what was typed is taken at once. False where
+// it cannot be, which is said.
+bool finish_typing(Session& session, Ui& ui);
+
 // To be done after the panels are drawn.
 void later(Ui& ui, std::function<void()> edit);
 // After the panels: leaves a field that is not shown any more and does what was put off.
