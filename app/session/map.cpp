@@ -115,12 +115,22 @@ void compute_curves(Session& session) {
       });
 }
 
+// Whether dampers move what a map shows: the speed that a torque gives, or where hunting begins.
+Dampers of_dampers(const Session& session) {
+  const bool found = std::ranges::any_of(session.mechanism().joints, [](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates,
+                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
+  });
+  return found || session.study.map.choice.hunting ? Dampers::with : Dampers::without;
+}
+
 // What an axis is at first: across a drive's speed; up another slider, or else gravity or a mass.
 std::string first_address(const Session& session, std::size_t axis) {
+  const bool with_dampers = of_dampers(session) == Dampers::with;
   const std::string& other = session.study.map.choice.axes[1 - axis].address;
   std::string found;
   for (const ParameterControl& control : session.parameters) {
-    if (control.group == ParameterGroup::dampers || control.address == other) continue;
+    if ((control.group == ParameterGroup::dampers && !with_dampers) || control.address == other) continue;
     if (axis == 0 && sets_speed(session.mechanism(), control.address)) return control.address;
     if (found.empty()) found = control.address;
   }
@@ -167,7 +177,7 @@ bool choose(Session& session) {
 } // namespace
 
 std::vector<std::string> map_addresses(const Session& session) {
-  return variable_numbers(session, session.study.map.choice.hunting ? Dampers::with : Dampers::without);
+  return variable_numbers(session, of_dampers(session));
 }
 
 MapAxis map_axis(const Session& session, const std::string& address) {

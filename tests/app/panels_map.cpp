@@ -8,6 +8,7 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/parts.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
@@ -369,4 +370,19 @@ TEST_CASE("the boundary of hunting shows in the map, hard parts told from soft o
   robot.click("map/hunting");
   robot.frames(3);
   CHECK_FALSE(robot.map().curves.found->result.hunting);
+}
+
+TEST_CASE("where a torque turns it the map begins with the damper's slider, on which the speed depends") {
+  Mechanism m;
+  m.name = "Braked";
+  m.bodies = {body("wheel", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {dampened(driven(revolute("spin", "ground", "wheel", {0, 0, 0}), 50), 0.5)};
+  m.joints[0].coordinates[0].drive->torque = 0;
+  m.joints[0].formulas = {{"drive.torque", "10 N m - 0.1 N m s*rate(spin)"}};
+  Robot robot(wide);
+  open_document(robot.app.session, Document(m));
+  robot.frames(3);
+  robot.key('P');
+  robot.frames(3);
+  CHECK(robot.app.session.study.map.choice.axes[0].address == "joints.spin.damping");
 }
