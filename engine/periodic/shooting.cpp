@@ -74,16 +74,19 @@ class Shooter {
       if (orbit_.iterations > 0 && (gap <= closed || (gap <= nearly_closed && still)))
         return ended(ShootingEnd::converged);
       if (orbit_.iterations == options_.iterations) return ended(ShootingEnd::diverged);
-      Vector step;
-      bool reachable = true;
-      if (!newton(step, reachable)) return ended(end_of(flow_));
-      if (gap <= closed) return ended(ShootingEnd::converged);
-      if (!reachable)
-        return ended(gap <= nearly_closed && is_rounding() ? ShootingEnd::converged : ShootingEnd::pumped);
-      if (!advance(step, gap))
-        return ended(gap <= nearly_closed ? ShootingEnd::converged
-                     : moved_             ? ShootingEnd::diverged
-                                          : end_of(flow_));
+      if (!(nearly_linear_ && advance_again(gap))) {
+        Vector step;
+        bool reachable = true;
+        if (!newton(step, reachable)) return ended(end_of(flow_));
+        if (gap <= closed) return ended(ShootingEnd::converged);
+        if (!reachable)
+          return ended(gap <= nearly_closed && is_rounding() ? ShootingEnd::converged : ShootingEnd::pumped);
+        if (!advance(step, gap))
+          return ended(gap <= nearly_closed ? ShootingEnd::converged
+                       : moved_             ? ShootingEnd::diverged
+                                            : end_of(flow_));
+        nearly_linear_ = largest_gap() <= straight * gap;
+      }
       ++orbit_.iterations;
     }
   }
@@ -130,6 +133,13 @@ class Shooter {
     return gap;
   }
 
+  void take_gaps() {
+    const Eigen::Index n = orbit_.nodes.front().size();
+    gaps_.setZero(n * static_cast<Eigen::Index>(segments()) + (options_.find_period ? 1 : 0));
+    for (std::size_t i = 0; i < segments(); ++i)
+      gaps_.segment(n * static_cast<Eigen::Index>(i), n) = after(i).coordinates(ends_[i]);
+  }
+
   // The step of Newton's method, by coarse differences where these are enough. False where the flow leads
   // nowhere.
   bool newton(Vector& step, bool& reachable) {
@@ -148,7 +158,7 @@ class Shooter {
     const Eigen::Index extra = options_.find_period ? 1 : 0;
     matrix_.setZero(n * m + extra, n * m + extra);
     begin_.clear();
-    gaps_.setZero(n * m + extra);
+    take_gaps();
     for (Eigen::Index i = 0; i < m; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const auto rates = differences(flow_, orbit_.nodes[at], after(at), duration(), tolerance, newton_step);
@@ -156,7 +166,6 @@ class Shooter {
       matrix_.block(n * i, n * i, n, n) += rates->end;
       matrix_.block(n * ((i + m - 1) % m), n * i, n, n) -= rates->begin;
       begin_.push_back(rates->begin);
-      gaps_.segment(n * i, n) = after(at).coordinates(ends_[at]);
       if (!options_.find_period) continue;
       const auto going = velocity(ends_[at], after(at));
       if (!going) return false;
@@ -291,21 +300,40 @@ class Shooter {
     return false;
   }
 
+  // A step by the matrix of the last one, which takes one motion a segment instead of two for each
+  // coordinate (simplified Newton method). False where it leaves more than a tenth of the gap; nothing has
+  // moved then.
+  bool advance_again(double gap) {
+    take_gaps();
+    Vector step;
+    if (!solve(step)) return false;
+    const std::vector<StateChart> nodes = orbit_.nodes;
+    const std::vector<FlowState> ends = ends_;
+    const double period = orbit_.period;
+    if (place(displaced(step, nodes, period), options_.tolerance) && largest_gap() <= straight * gap)
+      return true;
+    orbit_.period = period;
+    orbit_.nodes = nodes;
+    ends_ = ends;
+    return false;
+  }
+
   Flow& flow_;
   const ShootingOptions& options_;
   Orbit orbit_;
   std::vector<FlowState> ends_; // of the segments
   Matrix matrix_;
   Vector gaps_;
-  std::vector<Matrix> begin_; // by segment: how its states move as their coordinates do
-  Matrix unclosed_;           // by column: parts of the gaps that no step closes
-  bool doubtful_ = false;     // the matrix may be singular, but for the errors of differences
-  bool moved_ = false;        // some part of the last step led to motions that last
+  std::vector<Matrix> begin_;  // by segment: how its states move as their coordinates do
+  Matrix unclosed_;            // by column: parts of the gaps that no step closes
+  bool doubtful_ = false;      // the matrix may be singular, but for the errors of differences
+  bool nearly_linear_ = false; // the last step left no more than a tenth of the gap
+  bool moved_ = false;         // some part of the last step led to motions that last
 };
 
 // Extrapolated differences of a segment, and the same by as much off as their error may be, in the way in
 // which the last extrapolation changed them: by that, and by no less than the motion's tolerance leaves in
-// differences over the shortest step.
+// differences over the shortest step. Of a linear map two steps tell as much as three.
 struct Extrapolated {
   Matrix best, off;
   double error = 0; // estimated, of each entry
@@ -318,9 +346,14 @@ std::optional<Extrapolated> extrapolate(Flow& flow, const StateChart& from, cons
     const auto map = [&](double step) {
       return derivative(differences(flow, from, to, duration, tolerance, step));
     };
-    const auto d1 = map(h), d2 = d1 ? map(h / 2) : std::nullopt, d3 = d2 ? map(h / 4) : std::nullopt;
+    const auto d1 = map(h), d2 = d1 ? map(h / 2) : std::nullopt;
+    if (!d2) return out;
+    const Matrix bend = (*d2 - *d1) / 3, once = *d2 + bend;
+    if (const double left = noise * tolerance / (h / 2), bent = largest_size(bend); bent <= left)
+      return Extrapolated{once, bent > 0 ? Matrix(once + left / bent * bend) : once, left};
+    const auto d3 = map(h / 4);
     if (!d3) return out;
-    const Matrix once = (4 * *d2 - *d1) / 3, twice = (4 * *d3 - *d2) / 3, change = (twice - once) / 15;
+    const Matrix twice = (4 * *d3 - *d2) / 3, change = (twice - once) / 15;
     const double changed = largest_size(change), floor = noise * tolerance / (h / 4);
     const double error = std::max(changed, floor);
     const Matrix best = twice + change;

@@ -478,6 +478,12 @@ struct TurningSprings {
 
 } // namespace
 
+TEST_CASE("A linear motion is found by one matrix, and its multipliers by differences over two steps") {
+  const PeriodicState s = find_periodic_state(shipped("horizontal_rotor"));
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.evaluations < 33'000); // 38 219 where each step has a matrix, and a third difference follows
+}
+
 TEST_CASE("A linear motion many times as large as the mechanism is found in few steps") {
   for (const double e : {0., 1e-5, 1e-3})
     for (const double w : {52., 60., 70.}) {
