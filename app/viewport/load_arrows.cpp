@@ -88,7 +88,7 @@ LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads,
     const Load& load = loads[i];
     const double exact = out.scales.length(load);
     if (!(exact > 0)) continue;
-    if (exact < least && !diagram) {
+    if (exact < least && !diagram && scales.lengths() == LoadLengths::in_proportion) {
       ++out.left_out[load.moment ? 1 : 0];
       continue;
     }

@@ -52,8 +52,8 @@ struct LoadArrows {
   std::array<double, 2> least{};
 };
 // Short arrows have smaller heads. Moments stand beside their point, clear of forces; of a mechanism so do
-// forces along links and slides, clear of these. Of a body's diagram nothing is left out: what is too short
-// to be seen is as long as can be seen.
+// forces along links and slides, clear of these. Of a body's diagram, and by the cube root, nothing is left
+// out: what is too short to be seen is as long as can be seen.
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
                        const Palette& colors, bool diagram);
 

@@ -20,8 +20,9 @@ struct LegendRow {
   std::string words{}; // "Steady state"
   LoadKind load = LoadKind::reaction;
   bool moment = false;
-  float length = 0;   // pixels, of an arrow
-  std::string help{}; // where it is pointed at
+  float length = 0;     // pixels, of an arrow
+  std::string help{};   // where it is pointed at
+  bool by_root = false; // a click has lengths of arrows by the cube root
 };
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(const ViewContext& context);

@@ -131,8 +131,9 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     if (const int left_out = arrows.left_out[moment ? 1 : 0]; left_out > 0) {
       note(std::to_string(left_out) + " below " + load_size_words(arrows.least[moment ? 1 : 0], moment) +
            " not drawn");
-      rows.back().help = "Too short to be seen. View, Forces by the cube root shows them; with a body chosen "
-                         "they are drawn to the scale of that body's loads.";
+      rows.back().by_root = true;
+      rows.back().help = "Too short to be seen. A click shows them: lengths by the cube root (View). With a "
+                         "body chosen they are drawn to the scale of that body's loads.";
     }
   }
   if (rows.size() == before)

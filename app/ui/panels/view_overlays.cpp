@@ -154,20 +154,25 @@ void error_line(Session& session, Ui& ui, const ViewState& view, const PanelRect
 
 namespace {
 
-// "Explored: speed of spin" and " 15 rad/s", or how many are. While building no result is with them.
-struct TriedText {
-  std::string words, number;
-};
-TriedText tried_text(const Session& session) {
+// "Explored: speed of spin 15 rad/s", or how many are. While building no result is with them. The words give
+// way to the number where there is no room (pixels) for both.
+std::string tried_text(const Session& session, float room, float least) {
   const Explored& explored = session.document.explored();
   const bool aside = session.mode == Mode::build;
   if (explored.size() > 1)
-    return {std::to_string(explored.size()) + " explored values" + (aside ? " put aside" : ""), ""};
+    return cut_to(std::to_string(explored.size()) + " explored values" + (aside ? " put aside" : ""), room);
   const ShownUnit unit =
       shown_unit(parameter_unit(session.document.stored(), explored.front().address), session.units);
-  return {(aside ? "Put aside: " : "Explored: ") + parameter_phrase(explored.front().address),
-          " " + short_text(unit.shown(explored.front().value), 9) +
-              (unit.text.empty() ? "" : " " + unit.text)};
+  const auto width = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+  std::string number;
+  for (int digits = 9; digits >= 3 && (number.empty() || width(number) > room); --digits)
+    number =
+        short_text(unit.shown(explored.front().value), digits) + (unit.text.empty() ? "" : " " + unit.text);
+  const std::string words =
+      (aside ? "Put aside: " : "Explored: ") + parameter_phrase(explored.front().address) + " ";
+  const float rest = room - width(number);
+  return rest < least ? number
+                      : (width(words) <= rest ? words : cut_to(words, rest - width(" ")) + " ") + number;
 }
 
 } // namespace
@@ -184,10 +189,8 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
   const float cube = 96 * s; // in the other corner
   const float buttons = ImGui::CalcTextSize("KeepBack").x + 4 * ImGui::GetStyle().FramePadding.x + 12 * s;
   ImGui::AlignTextToFramePadding();
-  const TriedText tried = tried_text(session); // of which the number is never cut
-  const float room = std::max(view.width - cube - buttons - 36 * s, 76 * s);
   ImGui::TextUnformatted(
-      (cut_to(tried.words, room - ImGui::CalcTextSize(tried.number.c_str()).x) + tried.number).c_str());
+      tried_text(session, std::max(view.width - cube - buttons - 36 * s, 76 * s), 40 * s).c_str());
   note_widget(ui.widgets, "explored");
   std::string help = session.mode == Mode::build
                          ? "Tried while exploring and put aside while building; saving leaves it out."
