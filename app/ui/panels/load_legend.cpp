@@ -55,8 +55,8 @@ const char* load_help(LoadKind kind, bool moment, bool diagram) {
   return "";
 }
 
-std::string load_size_words(double size, bool moment) {
-  return short_text(size, 4) + (moment ? " N m" : " N");
+std::string load_size_words(double size, bool moment, int digits = 4) {
+  return short_text(size, digits) + (moment ? " N m" : " N");
 }
 
 LegendRow load_row(const Ui& ui, double largest, LoadKind kind, bool moment, bool diagram) {
@@ -129,7 +129,7 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
       if (const double largest = arrows.scales.largest(static_cast<LoadKind>(kind), moment); largest > 0)
         rows.push_back(load_row(context.ui, largest, static_cast<LoadKind>(kind), moment, diagram));
     if (const int left_out = arrows.left_out[moment ? 1 : 0]; left_out > 0) {
-      note(std::to_string(left_out) + " below " + load_size_words(arrows.least[moment ? 1 : 0], moment) +
+      note(std::to_string(left_out) + " below " + load_size_words(arrows.least[moment ? 1 : 0], moment, 2) +
            " not drawn");
       rows.back().by_root = true;
       rows.back().help = "Too short to be seen. A click shows them: lengths by the cube root (View). With a "
