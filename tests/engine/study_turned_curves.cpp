@@ -79,6 +79,38 @@ TEST_CASE("branches of states that stand turned go through their folds", "[phase
   CHECK(whole.branches[0].end == "the end of the range");
 }
 
+TEST_CASE("along a ratio that ties the angles otherwise nothing is followed", "[phase][coupling]") {
+  Mechanism m;
+  const Vec3 axis(0, 1, 0), all(0.1, 0.1, 0.1);
+  m.bodies = {body("a", 1, {0, 0, 0}, all), body("c", 1, {0, 0.3, 0}, all), body("b", 1, {0.3, 0, 0}, all),
+              body("d", 1, {0.3, 0.3, 0}, all)};
+  m.joints = {
+      torque_driven(revolute("pa", "ground", "a", {0, 0, 0}, axis), 6, "3 N m - 0.4 N m s * rate(pa)"),
+      revolute("pc", "ground", "c", {0, 0.3, 0}, axis),
+      revolute("pb", "ground", "b", {0.3, 0, 0}, axis),
+      revolute("pd", "ground", "d", {0.3, 0.3, 0}, axis),
+      dampened(sprung(revolute("s", "a", "c", {0, 0.15, 0}, axis), 50), 0.2),
+      dampened(sprung(revolute("t", "b", "d", {0.3, 0.15, 0}, axis), 80), 0.2),
+      gear("g1", "pa", "pb", -1.5),
+      gear("g2", "pc", "pd", -1.5)};
+  m.joints[4].coordinates[0].spring->free = 0.1;
+  m.parameters = {{"r", "", -1.5, "", {}}, {"K", "", 50, "N m/rad", {}}};
+  for (Joint& joint : m.joints)
+    if (joint.type == JointType::gear) joint.formulas = {{"ratio", "r"}};
+  m.joints[4].formulas = {{"spring.stiffness", "K"}};
+  validate(m);
+  const ResponseDiagram refused = follow_branches(m, "parameters.r", -1.5, -1.2);
+  CHECK(refused.status == Status::not_converged);
+  CHECK(refused.branches.empty());
+  CHECK(refused.turned);
+  CHECK_THAT(refused.message, ContainsSubstring("A sweep solves at each value by itself."));
+  CHECK(design(m, "parameters.r", -1.5, -1.2, "s", 0.03, {}).message == refused.message);
+  const ResponseDiagram followed = follow_branches(m, "parameters.K", 50, 60);
+  INFO(followed.message);
+  REQUIRE(followed.branches.size() == 1);
+  CHECK(followed.branches[0].points.back().parameter == 60);
+}
+
 TEST_CASE("design of states that stand turned, beyond a fold of theirs, too", "[phase][coupling]") {
   const Mechanism m = driven_and_braked();
   const double twist = GENERATE(0.5, 2.);
