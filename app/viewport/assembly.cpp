@@ -336,15 +336,26 @@ bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit) {
 
 namespace {
 
+bool is_geared(const Mechanism& mechanism, const std::string& joint) {
+  return std::ranges::any_of(mechanism.joints, [&](const Joint& gear) {
+    return gear.type == JointType::gear && std::ranges::any_of(gear.joints, [&](const std::string& end) {
+             return end.substr(0, end.find('.')) == joint;
+           });
+  });
+}
+
 std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
   const std::vector<Attachment>& attachments = assembly.attachments[b];
   const double unit = assembly.scale.unit;
   for (const Attachment& bearing : attachments) {
     if (bearing.joint < 0) continue;
     const Joint& joint = assembly.joint(bearing.joint);
-    // A wheel alone is one if it is driven, so that the drive's sign is round it rather than within it.
+    // A wheel alone is one if it is driven, so that the drive's sign is round it rather than within it; one
+    // with teeth, which would hide that, has it before them.
     const bool alone = attachments.size() < 2;
-    if (alone && (joint.coordinates.empty() || !joint.coordinates[0].drive)) continue;
+    if (alone && (joint.coordinates.empty() || !joint.coordinates[0].drive ||
+                  is_geared(assembly.mechanism, joint.name)))
+      continue;
     const auto j = static_cast<std::size_t>(bearing.joint);
     const bool on_ground = assembly.joint_bodies[j][0] < 0 || assembly.joint_bodies[j][1] < 0;
     if (!on_ground || (joint.type != JointType::revolute && joint.type != JointType::cylindrical)) continue;

@@ -424,7 +424,7 @@ TEST_CASE("several joints are edited as one, with a word where they differ") {
   CHECK_FALSE(hand.app.ui.widgets.contains("inspector/name"));
   CHECK_FALSE(hand.app.ui.widgets.contains("inspector/move"));
   hand.one_step([&] { hand.fill("inspector/spring/stiffness", "2 N/mm"); });
-  CHECK(hand.last_step() == "Set spring stiffness of slide_b, and 1 more");
+  CHECK(hand.last_step() == "Set stiffness of slide_b, and 1 more");
   CHECK(of("slide_a").spring->stiffness == 2000);
   CHECK(of("slide_b").spring->stiffness == 2000);
   CHECK(of("slide_a").spring->free == 0.01);

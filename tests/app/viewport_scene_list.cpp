@@ -237,6 +237,13 @@ TEST_CASE("the joint and the drive of a disc that faces the eye are seen") {
   CHECK(bounds_of_role(Role::joint).upper.z() > 0.011); // before its face
   m.joints[0].coordinates[0].drive = Drive{10};
   CHECK(bounds_of_role(Role::drive).upper.x() > 0.06); // round it
+  // One with teeth has it before them.
+  Mechanism geared = m;
+  geared.bodies.push_back(body("other", 1, {0.2, 0, 0}));
+  geared.joints.push_back(revolute("by", "ground", "other", {0.2, 0, 0}, {0, 0, 1}));
+  geared.joints.push_back(gear("mesh", "turn", "by", -1));
+  for (const Instance& i : build_scene(geared, {}).instances)
+    if (i.role == Role::drive) CHECK(instance_bounds(i).upper.x() < 0.06);
   // As when it carries something.
   const double alone = bounds_of_role(Role::drive).upper.x();
   m.bodies.push_back(body("shoe", 0.1, {0.04, 0, 0}));
