@@ -279,6 +279,7 @@ TEST_CASE("several parts are given one number") {
   hand.hold(true, false);
   hand.click("outline/bodies/ball2");
   hand.hold(false, false);
+  hand.frames(3);
   REQUIRE(hand.app.session.selection().parts.size() == 2);
   hand.one_step([&] { hand.fill("inspector/mass", "3"); });
   CHECK(hand.body("ball1").mass == 3);
