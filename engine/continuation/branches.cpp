@@ -222,7 +222,7 @@ class Diagram {
       add(std::move(branch), true);
     } else
       out_.message = "The start is a singular state; begin beside it.";
-    if (out_.branches.empty() || out_.branches[0].points.front().stable != true) from_answer(start);
+    from_answer(start);
   }
 
   // Where nothing resists some direction at the beginning of the range alone, as of a load that begins at
@@ -292,7 +292,8 @@ class Diagram {
     return stay;
   }
 
-  // Newton-Raphson may have stopped at an unstable state: the answer that solving gives has its branch, too.
+  // Newton-Raphson may have stopped at another state than the answer that solving gives, which has its branch,
+  // too.
   void from_answer(const Eigen::VectorXd& start) {
     const auto z = steady_state(follower_.problem_at(from_), start, false);
     if (!z) return;

@@ -5,6 +5,7 @@
 
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/solve/solution_difference.hpp"
 
 using namespace flyball;
 using namespace flyball::test;
@@ -571,4 +572,16 @@ TEST_CASE("a curve that turns back at a stop goes on along it", "[branches]") {
     CHECK_THAT(d.branches[0].end, ContainsSubstring("of the range"));
     CHECK(d.special.size() == 1);
   }
+}
+
+TEST_CASE("a diagram that begins at the scene's own number has the state that solving answers") {
+  // Watt's: arms that are crossed inwards are nearer to the drawn pose, and stable, too.
+  const Mechanism m = shipped(GENERATE(as<std::string>(), "watt_governor", "governor"));
+  CAPTURE(m.name);
+  const Solution s = Analysis(m).solve();
+  const double own = get_parameter(m, speed);
+  const ResponseDiagram d = follow_branches(m, speed, own, own + 1);
+  CHECK(std::ranges::any_of(d.branches, [&](const ResponseBranch& branch) {
+    return scaled_distance(branch.points.front().coordinates, s.coordinates) < 1e-9;
+  }));
 }
