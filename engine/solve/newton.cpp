@@ -178,7 +178,7 @@ NewtonOutcome newton(const Problem& problem, Unknowns& z, Workspace& w, const Ne
     if (settings.to_minimum && size > tolerance::near_balance && kkt.negative_count() > 0) break;
     if (settings.impatient && i >= 3 && size > 1 && size > 0.5 * previous_step) break;
     double fraction = 1;
-    if (settings.damped) {
+    if (settings.damped && size > 0) { // without a step no part of it is better
       kkt.complete_constraints(problem, w);
       const double start = merit(problem, w);
       for (;; fraction /= 2) {
