@@ -59,7 +59,9 @@ TEST_CASE("Session: solves and studies in the background") {
   REQUIRE(
       test::wait_until(session, [&] { return session.study.response.curve.found && !studying(session); }));
   CHECK_FALSE(session.study.response.curve.found->result.lines.empty());
-  CHECK_FALSE(session.study.states.found); // gone with its tab
+  CHECK(session.study.states.found); // behind another tab it stays
+  open_study(session, StudyKind::none);
+  CHECK_FALSE(session.study.states.found);
 }
 
 TEST_CASE("Session: a Campbell diagram over another range does not wait for the one before") {
