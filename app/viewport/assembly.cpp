@@ -251,11 +251,12 @@ SlideRange slide_range(const Assembly& assembly, std::size_t index, std::size_t 
                              (!c.stop || !(side > 0 ? c.stop->lower : c.stop->upper) ||
                               side * *(side > 0 ? c.stop->lower : c.stop->upper) >= 0);
   const bool from_zero = c.spring && never_crosses;
-  // The spring stands by what was foreseen, not by the poses, nor by stops, which may be far beyond.
+  // The spring stands by what was foreseen, not by the poses, nor by stops, which may be far beyond; but on
+  // no shapes up to which they let it come.
   const double lowest = range.from, now = coordinate_value(assembly, index, coordinate);
-  const int on_rail = has_anchor(c) && !from_zero ? stand_on_rail(assembly, index, axis, c.drawn, range) : 0;
   if (c.stop && c.stop->lower) include(*c.stop->lower);
   if (c.stop && c.stop->upper) include(*c.stop->upper);
+  const int on_rail = has_anchor(c) && !from_zero ? stand_on_rail(assembly, index, axis, c.drawn, range) : 0;
   if (std::isfinite(now)) include(now);
   if (has_anchor(c)) {
     const double length =

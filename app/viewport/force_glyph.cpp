@@ -86,8 +86,9 @@ void draw_slide_forces(Sketch& sketch, const Assembly& assembly, std::size_t ind
     draw_dashpot(sketch, start + side * inset * axis, end, 2.5 * u * across,
                  0.6 * std::abs(c.drawn - range.anchor), u, colors);
   }
-  // Ground's own plate ends the rail of a slide.
-  if ((rails && rail < 0) || ends_at_part(assembly, rail, start, index)) return;
+  // Ground's own plate ends the rail of a slide, which may go on beyond the spring.
+  const bool ends_there = range.anchor == range.from || range.anchor == range.to;
+  if ((rails && rail < 0 && ends_there) || ends_at_part(assembly, rail, start, index)) return;
   sketch.pen.color = colors.metal_dark;
   sketch.disc(start, axis, 0.25 * u, 1.7 * u, 0.1 * u);
 }
