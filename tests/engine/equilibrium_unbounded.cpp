@@ -2,6 +2,7 @@
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/mechanism/text.hpp"
+#include "engine/solve/newton.hpp"
 #include "engine/solve/unbounded.hpp"
 
 using namespace flyball;
@@ -30,6 +31,21 @@ std::vector<std::string> unheld(const Solution& s) {
 using Names = std::vector<std::string>;
 
 } // namespace
+
+TEST_CASE("where no step lessens what nothing resists, damped steps end at once") {
+  const Mechanism m = heavy({body("load", 3)}, {prismatic("slide", "ground", "load", origin, y)});
+  const System system = compile(m);
+  Parameters parameters;
+  Scaling scaling;
+  Unknowns at;
+  bind(system, m, parameters);
+  set_scaling(system, parameters, scaling);
+  drawn_configuration(system, parameters, at.q);
+  Workspace w;
+  const NewtonOutcome outcome = newton({system, parameters, scaling}, at, w, {100, true}, nullptr);
+  CHECK_FALSE(outcome.converged);
+  CHECK(outcome.iterations == 0);
+}
 
 TEST_CASE("a slide that nothing holds is named, with the weight on it") {
   // At any angle to gravity but a right one, either way along its axis.
