@@ -156,15 +156,25 @@ Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen:
   return s;
 }
 
-Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::VectorXd& made_of) {
+Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                 const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& made_of) {
   constexpr double rounding = 1e-13, light = 1e-10;
-  Eigen::VectorXd units = Eigen::VectorXd::Ones(mass.rows());
+  constexpr double fast = 1e4; // times the rates of the others, whose squares then keep eight digits
   const double heaviest = mass.rows() > 0 ? mass.diagonal().maxCoeff() : 0;
+  const auto rate = [&](Eigen::Index i) { // 1/s, by itself
+    return std::max(std::sqrt(std::abs(stiffness(i, i)) / mass(i, i)), std::abs(velocity(i, i)) / mass(i, i));
+  };
+  double others = 0;
+  for (Eigen::Index i = 0; i < mass.rows(); ++i)
+    if (mass(i, i) > 0 && mass(i, i) >= light * heaviest) others = std::max(others, rate(i));
+  Eigen::VectorXd units = Eigen::VectorXd::Ones(mass.rows());
   bool any_light = false;
   for (Eigen::Index i = 0; i < mass.rows(); ++i) {
+    const bool is_light = mass(i, i) < light * heaviest;
     if (!(mass(i, i) > rounding * made_of[i])) continue;
+    if (is_light && others > 0 && rate(i) > fast * others) continue;
     units[i] = std::sqrt(heaviest / mass(i, i));
-    any_light |= mass(i, i) < light * heaviest;
+    any_light |= is_light;
   }
   return any_light ? units : Eigen::VectorXd::Ones(mass.rows());
 }
@@ -176,7 +186,7 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
   const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
   if (!std::isfinite(m + k + d)) return {};
   if (made_of.size() > 0) {
-    const Eigen::VectorXd units = units_of_inertia(mass, made_of);
+    const Eigen::VectorXd units = units_of_inertia(mass, velocity, stiffness, made_of);
     const auto measured = [&](const Eigen::MatrixXd& a) {
       return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
     };

@@ -12,8 +12,11 @@ namespace flyball {
 
 // Units (n) in which each direction has as much inertia as the heaviest, all 1 where none is much lighter: a
 // light part beside a heavy one is as well known as that. `made_of` (n): what the diagonal entries of M are
-// sums of; of one that is only rounding of these nothing is known, and it keeps its unit.
-Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::VectorXd& made_of);
+// sums of; of one that is only rounding of these nothing is known, and it keeps its unit. So does a light
+// direction that by itself is far faster than the others: as large an eigenvalue would leave nothing of
+// theirs.
+Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                                 const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& made_of);
 
 // Finite eigenvalues (1/s, by size of the imaginary part) of the pencil s^2 M + s D + K, each (n, n) in units
 // of one kind. M may be singular in any direction (massless coordinates): directions without mass and damping

@@ -64,7 +64,8 @@ bool energy_keeps(const System& system, const SteadyMotion& motion) {
 // have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
 std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
   if (motion.mass.rows() == 0) return false;
-  const Eigen::VectorXd units = units_of_inertia(motion.mass, motion.inertia);
+  const Eigen::VectorXd units =
+      units_of_inertia(motion.mass, motion.velocity, motion.stiffness, motion.inertia);
   const auto measured = [&](const Eigen::MatrixXd& a) {
     return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
   };

@@ -73,7 +73,7 @@ MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
   const Eigen::Index k = mass.rows();
   if (k == 0) return;
   inertia = space_.basis().cwiseAbs2().transpose() * own_inertia(model.system, l_.mass);
-  units_ = units_of_inertia(mass, inertia);
+  units_ = units_of_inertia(mass, velocity, stiffness, inertia);
   const Eigen::MatrixXd symmetric = (mass + mass.transpose()) / 2;
   if (!shape_.compute(units_.asDiagonal() * symmetric * units_.asDiagonal()))
     throw Refusal{"The inertias overflow."};
