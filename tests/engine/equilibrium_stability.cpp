@@ -605,3 +605,25 @@ TEST_CASE("a bead on a heavy block is not taken for massless") {
     CHECK(std::abs(solution.eigenvalues->front() - Complex(0.25, std::sqrt(96 - 0.25 * 0.25))) < 1e-8);
   }
 }
+
+TEST_CASE("a light part on a stiff spring leaves the motions of the others what they are") {
+  for (const double mass : {0., 1e-12, 1e-16}) {
+    CAPTURE(mass);
+    Mechanism m;
+    m.gravity = Vec3::Zero();
+    m.bodies = {body("shaft", 1, {}, {1, 1, 1}), body("block", 1, {0.1, 0, 0}), body("bead", 1, {0.2, 0, 0}),
+                body("tip", mass, {0.3, 0, 0})};
+    m.joints = {driven(revolute("spin", "ground", "shaft", {}, Vec3::UnitZ()), 2),
+                dampened(sprung(prismatic("x", "shaft", "block", {0.1, 0, 0}, Vec3::UnitX()), 100), 2),
+                sprung(prismatic("y", "block", "bead", {0.2, 0, 0}, Vec3::UnitX()), 100),
+                dampened(sprung(prismatic("z", "bead", "tip", {0.3, 0, 0}, Vec3::UnitX()), 1e3), 0.1)};
+    m.joints[2].coordinates[0].damping_force = 0;
+    m.joints[2].formulas = {{"damping_force", "-0.2 N*tanh(rate/(1 m/s))"}}; // the balance has no energy
+    const Solution solution = solve(m);
+    REQUIRE(solution.status == Status::converged);
+    CHECK(solution.stable == true);
+    REQUIRE(solution.eigenvalues);
+    CHECK(std::ranges::any_of(*solution.eigenvalues,
+                              [](Complex s) { return std::abs(s - Complex(-0.26681, 5.85443)) < 2e-3; }));
+  }
+}
