@@ -117,11 +117,8 @@ void compute_curves(Session& session) {
 
 // Whether dampers move what a map shows: the speed that a torque gives, or where hunting begins.
 Dampers of_dampers(const Session& session) {
-  const bool found = std::ranges::any_of(session.mechanism().joints, [](const Joint& joint) {
-    return std::ranges::any_of(joint.coordinates,
-                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
-  });
-  return found || session.study.map.choice.hunting ? Dampers::with : Dampers::without;
+  return finds_speeds(session.mechanism()) || session.study.map.choice.hunting ? Dampers::with
+                                                                               : Dampers::without;
 }
 
 // What an axis is at first: across a drive's speed; up another slider, or else gravity or a mass.

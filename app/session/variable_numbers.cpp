@@ -18,6 +18,13 @@ bool is_place_of_torque(const Mechanism& mechanism, const std::string& address) 
 
 } // namespace
 
+bool finds_speeds(const Mechanism& mechanism) {
+  return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates,
+                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
+  });
+}
+
 std::vector<std::string> variable_numbers(const Session& session, Dampers dampers) {
   constexpr std::size_t many = 60; // bodies
   std::vector<std::string> all;

@@ -2,6 +2,7 @@
 
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/layout.hpp"
 #include "app/ui/widgets/quantity_field.hpp"
@@ -120,13 +121,15 @@ float control_label_width(const Ui& ui, const ParameterControl& control) {
          (what.empty() ? 0 : 6 * ui.scale + ImGui::CalcTextSize(what.c_str()).x);
 }
 
-// The name and what of it, as far as there is room.
+// The name and what of it, as far as there is room: where it is short, of the name its beginning.
 void control_label(const Ui& ui, const ParameterControl& control, float width) {
   ImGui::AlignTextToFramePadding();
-  const float start = ImGui::GetCursorPosX();
-  clipped_text(control.name, width);
+  const float start = ImGui::GetCursorPosX(), least = 40 * ui.scale;
+  const std::string what = what_shown(control);
+  const float behind = what.empty() ? 0 : 6 * ui.scale + ImGui::CalcTextSize(what.c_str()).x;
+  clipped_text(control.name, std::max(width - behind, std::min(width, least)));
   const float used = ImGui::GetItemRectSize().x;
-  if (const std::string what = what_shown(control); !what.empty() && used + 40 * ui.scale < width) {
+  if (!what.empty() && used + least < width) {
     ImGui::SameLine(0, 6 * ui.scale);
     ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
     clipped_text(what, width - used - 6 * ui.scale);
@@ -212,13 +215,6 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   range_menu(session, ui, control);
   if (control.group == ParameterGroup::pinned) sensitivity_line(session, ui, rates, control);
   ImGui::PopID();
-}
-
-bool finds_speeds(const Mechanism& mechanism) {
-  return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
-    return std::ranges::any_of(joint.coordinates,
-                               [](const Coordinate& c) { return c.drive && finds_speed(*c.drive); });
-  });
 }
 
 bool sliders_moved(const Session& session) {
