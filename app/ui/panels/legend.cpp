@@ -110,8 +110,15 @@ int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImV
   for (const LoadArrow& arrow : shown.scene->arrows.arrows)
     for (const double part : {0.2, 0.4, 0.6, 0.8, 1.})
       within += is_within(arrow.from + part * (arrow.to - arrow.from)) ? 1 : 0;
-  for (const Instance& solid : shown.scene->drawn)
-    within += is_within(solid.position) ? 1 : 0;
+  for (const Instance& solid : shown.scene->drawn) {
+    const Bounds bounds = instance_bounds(solid);
+    bool touched = is_within(solid.position);
+    for (int corner = 0; corner < 8 && !touched; ++corner)
+      touched = is_within({(corner & 1 ? bounds.upper : bounds.lower).x(),
+                           (corner & 2 ? bounds.upper : bounds.lower).y(),
+                           (corner & 4 ? bounds.upper : bounds.lower).z()});
+    within += touched ? 1 : 0;
+  }
   return within;
 }
 

@@ -2,6 +2,7 @@
 #include "app/session/units.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -111,10 +112,19 @@ void StudyPanel::forget_closed(const Session& session) {
   }
 }
 
-std::string range_label(const Session& session, const std::string& label, const std::string& si_unit) {
-  constexpr std::size_t has_room = 3; // letters
+std::string range_label(const Session& session, const Ui& ui, const std::string& label,
+                        const std::string& si_unit, const std::array<double, 2>& ends) {
   const ShownUnit unit = shown_unit(si_unit, session.units);
-  return unit.text.size() > has_room ? label + " (" + unit.text + ")" : label;
+  const float row = ImGui::GetContentRegionAvail().x - label_width(ui) - margin_width(ui);
+  const float room = (row - 6 * ui.scale) / 2 - 2 * 6 * ui.scale - 5 * ui.scale; // in each, without padding
+  const ImFont* digits = ui.fonts.digits;
+  const bool fits = std::ranges::all_of(ends, [&](double end) {
+    const std::string number = short_text(unit.shown(end), 3);
+    return digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, number.c_str()).x +
+               ImGui::CalcTextSize(unit.text.c_str()).x <=
+           room;
+  });
+  return fits || unit.text.empty() ? label : label + " (" + unit.text + ")";
 }
 
 void StudyPanel::fit() {

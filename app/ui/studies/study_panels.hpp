@@ -7,6 +7,8 @@
 #include "app/ui/studies/study_views.hpp"
 #include "app/ui/ui.hpp"
 
+#include <array>
+
 namespace flyball {
 
 class CommandRunner;
@@ -36,8 +38,9 @@ void map_panel(Session& session, Ui& ui, MapView& drawn);
 void spread_panel(Session& session, Ui& ui, SpreadView& drawn);
 void transfer_panel(Session& session, Ui& ui, TransferView& drawn, const CommandRunner& commands);
 
-// Before two half fields, in which a unit of many letters has no room: "Range (N/mm)".
-std::string range_label(const Session& session, const std::string& label, const std::string& si_unit);
+// Before two half fields, with the unit where one of them has no room for it: "Range (N/mm)".
+std::string range_label(const Session& session, const Ui& ui, const std::string& label,
+                        const std::string& si_unit, const std::array<double, 2>& ends);
 
 // The name and the unit of what a plot over time can show.
 struct MotionQuantity {

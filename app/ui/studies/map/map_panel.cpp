@@ -60,7 +60,9 @@ void axis_choice(Session& session, Ui& ui, MapView& drawn, std::size_t which) {
                            fit_plot(drawn.view);
                          }};
   };
-  two_fields(session, ui, range_label(session, "from, to", parameter_unit(session.mechanism(), axis.address)),
+  two_fields(session, ui,
+             range_label(session, ui, "from, to", parameter_unit(session.mechanism(), axis.address),
+                         {axis.from, axis.to}),
              "The range of this axis.", end("from", axis.from, false), end("to", axis.to, true));
 }
 

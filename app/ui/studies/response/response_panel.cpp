@@ -54,8 +54,11 @@ void range_field(Session& session, Ui& ui, const char* name, const char* help, d
 
 void range_row(Session& session, Ui& ui) {
   const std::optional<ParameterControl> control = response_control(session);
-  const float width = row_label(ui, range_label(session, "Range", control ? control->unit : ""),
-                                "Where the curve begins and where it ends.");
+  const float width =
+      row_label(ui,
+                range_label(session, ui, "Range", control ? control->unit : "",
+                            {session.study.response.choice.from, session.study.response.choice.to}),
+                "Where the curve begins and where it ends.");
   const float gap = 6 * ui.scale, each = std::floor((width - gap) / 2);
   range_field(session, ui, "response/from",
               is_resonance(session)
