@@ -90,10 +90,30 @@ struct Peak {
   double bound = 0;
 };
 
+// Of each angle, whether the torque depends on it.
+std::vector<bool> depends_on(const Grid& grid, Eigen::Index motor) {
+  constexpr double rounding = 1e-12; // of the largest
+  double largest = 0;
+  for (const Eigen::VectorXd& torque : grid.torques)
+    largest = std::max(largest, std::abs(torque[motor]));
+  std::vector<bool> out;
+  const auto n = static_cast<std::size_t>(grid.values);
+  for (std::size_t d = 0, stride = 1; d < static_cast<std::size_t>(grid.dimensions); ++d, stride *= n) {
+    bool depends = false;
+    for (std::size_t i = 0; i < grid.torques.size() && !depends; ++i)
+      depends = std::abs(grid.torques[i][motor] - grid.torques[i - i / stride % n * stride][motor]) >
+                rounding * largest;
+    out.push_back(depends);
+  }
+  return out;
+}
+
 // Grid points higher than their neighbours, by what may be there between them, the highest first: a peak
-// rises above its point by no more than twice what a parabola through the neighbours says.
+// rises above its point by no more than twice what a parabola through the neighbours says. Along an angle on
+// which nothing depends one point stands for all.
 std::vector<Peak> peaks_of(const Grid& grid, Eigen::Index motor, double sign) {
   std::vector<Peak> out;
+  const std::vector<bool> depends = depends_on(grid, motor);
   const auto n = static_cast<std::size_t>(grid.values);
   for (std::size_t i = 0; i < grid.torques.size(); ++i) {
     const double here = sign * grid.torques[i][motor];
@@ -104,7 +124,7 @@ std::vector<Peak> peaks_of(const Grid& grid, Eigen::Index motor, double sign) {
       const std::size_t k = i / stride % n, base = i - k * stride;
       const double left = sign * grid.torques[base + (k + n - 1) % n * stride][motor];
       const double right = sign * grid.torques[base + (k + 1) % n * stride][motor];
-      highest = here >= left && here >= right;
+      highest = depends[static_cast<std::size_t>(d)] ? here >= left && here >= right : k == 0;
       if (const double bend = 2 * here - left - right; bend > 0)
         peak.bound += (right - left) * (right - left) / (4 * bend);
     }
