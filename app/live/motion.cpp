@@ -3,7 +3,6 @@
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/linear/interruption.hpp"
-#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 
@@ -65,6 +64,7 @@ std::shared_ptr<const Solution> resting_state(const Run& run,
   SolveOptions options;
   options.details = options.explain = false;
   options.search = 0;
+  options.newton_only = true; // from so near
   options.cancel = cancel;
   for (const CoordinateTrack& track : run.coordinates) {
     if (track.driven || track.dependent) continue;
@@ -73,8 +73,8 @@ std::shared_ptr<const Solution> resting_state(const Run& run,
   }
   try {
     return std::make_shared<const Solution>(Analysis(mechanism).solve(options));
-  } catch (const SceneError&) {
-    return nullptr; // the run goes without
+  } catch (const std::exception&) { // SceneError, or no memory: the run goes without
+    return nullptr;
   }
 }
 
