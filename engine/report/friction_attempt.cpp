@@ -12,6 +12,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/standstill.hpp"
 #include "engine/system/elastic_force.hpp"
+#include "engine/system/joint_coordinates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -227,8 +228,7 @@ class Attempt {
       const double before = r.b;
       r.b -= from_a ? beyond : -beyond / ratio;
       r.a = -ratio * r.b;
-      const Vec3 axis = turned(joint_of(mechanism_, b), s) * joint_of(mechanism_, b).axis.normalized();
-      (r.angle_b ? r.torque : r.force) += (r.b - before) * axis;
+      (r.angle_b ? r.torque : r.force) += (r.b - before) * axis_of(b, s);
     }
     return true;
   }
@@ -256,20 +256,30 @@ class Attempt {
     }
   }
 
-  // A joint's parent from the drawn pose.
-  Mat3 turned(const Joint& joint, const Solution& s) const {
-    const auto parent = std::ranges::find(mechanism_.bodies, joint.bodies[0], &Body::name);
-    if (parent == mechanism_.bodies.end()) return Mat3::Identity();
-    return (s.poses[entry_of(static_cast<int>(parent - mechanism_.bodies.begin()))].rotation *
-            parent->rotation.normalized().conjugate())
+  // A body from the drawn pose.
+  Mat3 turned(const std::string& name, const Solution& s) const {
+    const auto body = std::ranges::find(mechanism_.bodies, name, &Body::name);
+    if (body == mechanism_.bodies.end()) return Mat3::Identity();
+    return (s.poses[entry_of(static_cast<int>(body - mechanism_.bodies.begin()))].rotation *
+            body->rotation.normalized().conjugate())
         .toRotationMatrix();
+  }
+
+  // About or along which a coordinate moves, in the world.
+  Vec3 axis_of(CoordinateReference at, const Solution& s) const {
+    const Joint& joint = joint_of(mechanism_, at);
+    if (joint.type == JointType::universal && at.coordinate == 1)
+      return turned(joint.bodies[1], s) * joint.axis2.normalized();
+    const int slides = joint.type == JointType::free ? 3 : joint.type == JointType::planar ? 2 : 0;
+    const int axis = at.coordinate < slides ? at.coordinate : 2;
+    return turned(joint.bodies[0], s) * joint_frame(joint).axes[entry_of(axis)];
   }
 
   // What holds one. Nothing where that changes as the drives turn.
   std::optional<double> of_fixed(const Joint& joint, const Solution& s) const {
     const auto reaction = std::ranges::find(s.reactions, joint.name, &Reaction::joint);
     if (reaction == s.reactions.end() || reaction->varying) return {};
-    return holding_force(joint, *reaction, turned(joint, s));
+    return holding_force(joint, *reaction, turned(joint.bodies[0], s));
   }
 
   // Puts what was found of drives into the words of friction. False where it is not found what they give.

@@ -577,6 +577,34 @@ TEST_CASE("what is not asked of states that rest on friction says so") {
   CHECK(first.message == rests + "How it changes with numbers is found only of states that need none.");
 }
 
+TEST_CASE("a gear bears along the coordinate that it turns, whichever of its joint's") {
+  const auto gear = [](const std::string& joint, const std::string& kind) {
+    const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Ends",
+      "bodies": [{"name": "A", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+        {"name": "B", "mass": 1, "position": [1, 0, 0], "inertia": [0.1, 0.1, 0.1]}],
+      "joints": [{"name": "brake", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 0, 0],
+          "axis": [0, 0, 1], "friction": {"limit": 1}},
+        {"name": "end", "bodies": ["ground", "B"], "at": [1, 0, 0], )json" +
+                                   joint + R"json(},
+        {"name": "g", "type": "gear", "joints": ["brake", )json" +
+                                   kind + "}]}");
+    const Solution s = Analysis(m).solve();
+    CAPTURE(s.message);
+    REQUIRE(s.status == Status::converged);
+    REQUIRE(s.gears.size() == 1);
+    return s.gears[0];
+  };
+  const GearReaction second = gear(R"("type": "universal", "axes": [[1, 0, 0], [0, 1, 0]],
+        "drive": [null, {"torque": "=0.3 N m", "speed": 0.1}])",
+                                   R"("end.1"], "ratio": 1)");
+  CHECK((second.torque - Vec3(0, -0.3, 0)).norm() < 1e-12);
+  const GearReaction rack = gear(R"("type": "planar", "axis": [0, 0, 1], "x_axis": [0, 1, 0],
+        "spring": [null, {"stiffness": 100}, {"stiffness": 100}],
+        "drive": [{"torque": "=0.3 N", "speed": 0.1}, null, null])",
+                                 R"("end.0"], "kind": "rack", "radius": 0.1)");
+  CHECK((rack.force - Vec3(0, -0.3, 0)).norm() < 1e-12);
+}
+
 TEST_CASE("friction that cannot be is refused") {
   const auto mistake = [](const std::string& friction, const std::string& extra = "") {
     try {
