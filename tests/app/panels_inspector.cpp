@@ -237,6 +237,18 @@ TEST_CASE("a command of files takes what is being typed and runs") {
   }
 }
 
+TEST_CASE("a command of files takes what is being typed in a note, too, before it runs") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  hand.press_widget("inspector/description");
+  hand.type("cast");
+  hand.key('N', true);
+  hand.frames(3);
+  CHECK((hand.app.dialog.showing || hand.app.dialog.wanted == Dialog::unsaved)); // there is work to lose
+  REQUIRE(hand.mechanism().bodies.size() > 1);
+  CHECK(hand.body("ball1").description == "cast");
+}
+
 TEST_CASE("a number is dragged by its label and stepped by the arrow keys") {
   Hand hand;
   hand.choose(PartKind::body, "ball1");

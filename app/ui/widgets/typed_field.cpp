@@ -184,9 +184,20 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
   return was_typing;
 }
 
+namespace {
+
+void do_what_waits(Ui& ui) {
+  while (!ui.fields.later.empty()) // an edit may put off another
+    for (const auto& edit : std::exchange(ui.fields.later, {}))
+      edit();
+}
+
+} // namespace
+
 bool finish_typing(Session& session, Ui& ui) {
   const bool taken = ui.fields.typing.mistake.empty();
   leave(session, ui, true);
+  do_what_waits(ui); // as an edit of a note does
   ImGui::ClearActiveID();
   return taken;
 }
@@ -198,9 +209,7 @@ void later(Ui& ui, std::function<void()> edit) {
 void settle_fields(Session& session, Ui& ui) {
   if (Typing& typing = ui.fields.typing; !typing.name.empty() && ++typing.idle > idle_frames)
     leave(session, ui, false);
-  while (!ui.fields.later.empty()) // an edit may put off another
-    for (const auto& edit : std::exchange(ui.fields.later, {}))
-      edit();
+  do_what_waits(ui);
 }
 
 } // namespace flyball
