@@ -5,6 +5,7 @@
 #include "engine/system/rotation_vector.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -89,6 +90,7 @@ bool runs_into(const Run& run, const Solution& steady, const Solution& other) {
   if (run.time.empty() || other.status != Status::converged || other.stable == false) return false;
   const std::size_t last = run.time.size() - 1;
   const double away = distance_from(run, last, other), from_steady = distance_from(run, last, steady);
+  if (!std::isfinite(from_steady)) return false; // of another mechanism
   return away < near && away < by_far * from_steady && from_steady > same;
 }
 

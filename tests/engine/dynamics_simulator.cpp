@@ -285,5 +285,6 @@ TEST_CASE("the settled detector") {
   CHECK_FALSE(never.time);
   CHECK_THAT(never.message, ContainsSubstring("Not settled after 1 s: theta is "));
   CHECK_FALSE(runs_into(run, steady, steady));
+  CHECK_FALSE(runs_into(run, solve(shipped("governor")), steady)); // of another mechanism
   CHECK_FALSE(find_settled(run, solve(shipped("governor"))).time);
 }
