@@ -150,6 +150,7 @@ void density_tick(Session& session, Ui& ui, const Body& body) {
                 nullptr, mixed))
     edit_body(session, ui, on ? "Take the density off" : "Mass by density", body.name, [on](Body& same) {
       if (same.density.has_value() != on) return; // of several, one that is so already
+      if (!on && !density_of(same)) return;       // or one without shapes
       same.density = on ? std::nullopt : density_of(same);
       std::erase_if(same.formulas, [](const Formula& formula) {
         return formula.key == "density" || formula.key == "mass" || formula.key.starts_with("position") ||

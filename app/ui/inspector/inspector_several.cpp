@@ -15,6 +15,19 @@ namespace {
 // Looking up every part's numbers in every frame; of more parts nobody sets one number.
 constexpr std::size_t most_parts = 200;
 
+// Whether an end of a gear is on an angle, rather than a length.
+bool turns_at(const Mechanism& mechanism, const Joint& gear, std::size_t end) {
+  const auto [joint, i] = find_coordinate(mechanism, gear.joints[end]);
+  return joint >= 0 && is_angle(mechanism.joints[static_cast<std::size_t>(joint)].type, i);
+}
+
+// Whether their numbers are the same, in the same units.
+bool are_alike(const Mechanism& mechanism, const Joint& a, const Joint& b) {
+  if (a.type != b.type || a.kind != b.kind) return false;
+  return a.type != JointType::gear || (turns_at(mechanism, a, 0) == turns_at(mechanism, b, 0) &&
+                                       turns_at(mechanism, a, 1) == turns_at(mechanism, b, 1));
+}
+
 // Those that the rows of the last one picked stand for: of its kind and type, it first.
 std::vector<Part> alike(const Session& session) {
   const Mechanism& mechanism = session.mechanism();
@@ -23,9 +36,7 @@ std::vector<Part> alike(const Session& session) {
   const auto is_alike = [&](const PartId& id) {
     const auto i = static_cast<std::size_t>(id.index), last = static_cast<std::size_t>(ids.back().index);
     if (id.kind != ids.back().kind) return false;
-    if (id.kind == PartKind::joint)
-      return mechanism.joints[i].type == mechanism.joints[last].type &&
-             mechanism.joints[i].kind == mechanism.joints[last].kind;
+    if (id.kind == PartKind::joint) return are_alike(mechanism, mechanism.joints[i], mechanism.joints[last]);
     return id.kind != PartKind::force || mechanism.forces[i].type == mechanism.forces[last].type;
   };
   std::vector<Part> parts;

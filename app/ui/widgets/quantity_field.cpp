@@ -249,7 +249,13 @@ void take_typed(Session& session, const QuantityField& field, const std::string&
   if (const std::optional<NumberWithUnit> own = with_own_unit(field, typed))
     return field.set_with_unit(own->value, own->unit);
   const double value = typed_quantity(session, typed, field).value;
-  if (formula_of(session, field)) return set_all_by_themselves(session, field, value);
+  const auto is_given = [&](const std::string& place) {
+    return expression_at(session.mechanism(), place).has_value();
+  };
+  // Of several, one that an expression gives would not take what is set beside it.
+  const bool some_given =
+      !field.also.empty() && (is_given(place_of(field)) || std::ranges::any_of(field.also, is_given));
+  if (some_given || formula_of(session, field)) return set_all_by_themselves(session, field, value);
   if (field.set) return field.set(value);
   if (!field.also.empty()) return set_all_by_themselves(session, field, value);
   set_number(session, field.address, value);
