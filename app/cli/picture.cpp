@@ -66,7 +66,7 @@ Picture draw_picture(Mechanism mechanism, const std::filesystem::path& scene, co
   app.view.samples = options.antialiased ? 4 : 1;
   app.ui.scale = options.scale;
   app.view.loads = options.loads || !options.free_body.empty();
-  app.view.loads_by_root = options.by_cube_root;
+  app.view.load_lengths = options.load_lengths;
   open_document(app.session, Document(std::move(mechanism), scene));
   if (!options.free_body.empty()) {
     if (body_index(app.session.mechanism(), options.free_body) < 0)

@@ -18,11 +18,11 @@ struct PictureOptions {
   float scale = 1;                // pixels a point has
   Theme theme = Theme::light;
   bool antialiased = true;
-  bool loads = false;        // arrows of what acts
-  bool by_cube_root = false; // their lengths
-  std::string free_body;     // of this body its free-body diagram; empty: of none
-  int mode = 0;              // both ends of its swing beside the equilibrium, counted from 1; 0: none
-  double amplitude = 0.15;   // of it, as of Analysis::mode_poses()
+  bool loads = false;                        // arrows of what acts
+  std::optional<LoadLengths> load_lengths{}; // of them; without: see load_scales()
+  std::string free_body;                     // of this body its free-body diagram; empty: of none
+  int mode = 0;            // both ends of its swing beside the equilibrium, counted from 1; 0: none
+  double amplitude = 0.15; // of it, as of Analysis::mode_poses()
 };
 
 struct Picture {

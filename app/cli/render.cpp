@@ -18,11 +18,11 @@ namespace {
 
 struct RenderOptions {
   std::filesystem::path scene, out;
-  std::string free_body, size = "1280x720", pose = "equilibrium", theme = "light";
+  std::string free_body, lengths = "automatic", size = "1280x720", pose = "equilibrium", theme = "light";
   float scale = 1;
   int mode = 0;
   double amplitude = 0.15;
-  bool interface = false, plain = false, loads = false, by_cube_root = false;
+  bool interface = false, plain = false, loads = false;
 };
 
 Ending run_render(const RenderOptions& options) {
@@ -35,7 +35,9 @@ Ending run_render(const RenderOptions& options) {
                  : options.theme == "light" ? Theme::light
                                             : Theme::high_contrast;
   wanted.loads = options.loads;
-  wanted.by_cube_root = options.by_cube_root;
+  if (options.lengths != "automatic")
+    wanted.load_lengths =
+        options.lengths == "cube-root" ? LoadLengths::by_cube_root : LoadLengths::in_proportion;
   wanted.free_body = options.free_body;
   wanted.antialiased = !options.plain;
   wanted.mode = options.mode;
@@ -86,8 +88,12 @@ void add_render(CLI::App& app, Ending& ending) {
                         "With arrows of reactions, drive torques, springs' forces and inertial loads, all "
                         "forces to one scale and all moments to one");
   command
-      ->add_flag("--cube-root", options->by_cube_root,
-                 "Lengths of arrows by the cube root, so that small forces are seen beside large ones")
+      ->add_option(
+          "--lengths", options->lengths,
+          "Of arrows: in proportion, or by the cube root, which shows small forces beside large ones; "
+          "automatic: in proportion where at least half of them can be seen so")
+      ->check(CLI::IsMember({"automatic", "in-proportion", "cube-root"}))
+      ->capture_default_str()
       ->needs(loads);
   command->add_option("--free-body", options->free_body, "With the free-body diagram of this body");
   CLI::Option* mode =

@@ -32,12 +32,17 @@ bool may_show_loads(const Session& session, const ToolState& tool, const ViewSta
 
 } // namespace
 
+bool shows_roots(const ViewState& view) {
+  if (view.load_lengths) return *view.load_lengths == LoadLengths::by_cube_root;
+  return view.scene.scene && view.scene.scene->arrows.scales.lengths() == LoadLengths::by_cube_root;
+}
+
 bool shows_moment(const Session& session) {
   return shown_moment(session) != nullptr;
 }
 
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
-  frame.load_lengths = view.loads_by_root ? LoadLengths::by_cube_root : LoadLengths::in_proportion;
+  frame.load_lengths = view.load_lengths;
   const PeriodicStudy::Posed* moment = shown_moment(session);
   if (moment && view.loads && !tool.pull && session.mode == Mode::explore) {
     frame.loads_motion = moment->motion.get();

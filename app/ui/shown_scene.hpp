@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace flyball {
@@ -22,7 +23,7 @@ struct SceneSource {
   Theme theme = Theme::light;
   bool loads = false;
   int loads_body = -1;
-  LoadLengths load_lengths = LoadLengths::in_proportion;
+  std::optional<LoadLengths> load_lengths{};
   std::vector<PartId> hidden;
   std::vector<Pose> poses, ghost, motion;
 };

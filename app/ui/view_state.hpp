@@ -23,13 +23,13 @@ struct ViewState {
   std::vector<Part> hidden; // not drawn, nor to be pointed at
   Navigation navigation = Navigation::own;
   bool ghost = true, grid = true, shadow = true;
-  bool legend = true;         // is open
-  bool loads = false;         // arrows of what acts; see load_view.hpp
-  bool loads_by_root = false; // their lengths by the cube root
-  bool alone = false;         // no panels round it, for pictures
-  int samples = 4;            // 1: no anti-aliasing
-  bool fit = true;            // wanted at the next update
-  bool fit_loads = false;     // arrows of loads have come or gone: see fit_loads()
+  bool legend = true;                        // is open
+  bool loads = false;                        // arrows of what acts; see load_view.hpp
+  std::optional<LoadLengths> load_lengths{}; // that a person has chosen; without: see load_scales()
+  bool alone = false;                        // no panels round it, for pictures
+  int samples = 4;                           // 1: no anti-aliasing
+  bool fit = true;                           // wanted at the next update
+  bool fit_loads = false;                    // arrows of loads have come or gone: see fit_loads()
   // The camera before and after it took them into view.
   std::optional<std::array<ViewCamera, 2>> loads_fit;
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says

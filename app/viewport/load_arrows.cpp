@@ -9,6 +9,12 @@ namespace flyball {
 namespace {
 
 constexpr double load_rounding = 1e-9; // beside the largest
+constexpr double head_length = 1.2;    // of a long arrow, in units of the glyphs
+
+// m, of an arrow that can be seen.
+double least_length(const Assembly& assembly) {
+  return 0.4 * head_length * assembly.scale.unit;
+}
 
 // Across a line, to the side that is to the front.
 Vec3 across(const Vec3& line) {
@@ -73,8 +79,18 @@ double LoadScales::size(bool moment, double length) const {
   return full_[moment ? 1 : 0] * (lengths_ == LoadLengths::in_proportion ? share : share * share * share);
 }
 
-LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, LoadLengths lengths) {
-  return {loads, lengths, std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit)};
+LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads,
+                       std::optional<LoadLengths> lengths) {
+  const double longest = std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit);
+  const LoadScales scales(loads, lengths.value_or(LoadLengths::in_proportion), longest);
+  if (lengths) return scales;
+  std::size_t all = 0, seen = 0;
+  for (const Load& load : loads) {
+    const double length = scales.length(load);
+    all += length > 0 ? 1 : 0;
+    seen += length >= least_length(assembly) ? 1 : 0;
+  }
+  return 2 * seen >= all ? scales : LoadScales(loads, LoadLengths::by_cube_root, longest);
 }
 
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
@@ -82,7 +98,7 @@ LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads,
   LoadArrows out;
   out.scales = scales;
   Sketch sketch(out.solids);
-  const double u = assembly.scale.unit, largest_head = 1.2 * u, least = 0.4 * largest_head;
+  const double u = assembly.scale.unit, largest_head = head_length * u, least = least_length(assembly);
   out.least = {scales.size(false, least), scales.size(true, least)};
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const Load& load = loads[i];

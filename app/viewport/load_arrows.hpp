@@ -5,6 +5,7 @@
 #include "app/viewport/sketch.hpp"
 
 #include <array>
+#include <optional>
 
 namespace flyball {
 
@@ -36,7 +37,10 @@ class LoadScales {
   double longest_ = 0; // m
 };
 
-LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads, LoadLengths lengths);
+// Without a choice of lengths: in proportion where at least half of the arrows are long enough to be seen so,
+// else by the cube root.
+LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads,
+                       std::optional<LoadLengths> lengths);
 
 struct LoadArrow {
   std::size_t load = 0; // in the list of loads

@@ -112,7 +112,8 @@ std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double t
   return MotionCollector(assembly, motion).at(Moment(motion.time, time));
 }
 
-LoadScales motion_load_scales(const Assembly& assembly, const Run& motion, LoadLengths lengths) {
+LoadScales motion_load_scales(const Assembly& assembly, const Run& motion,
+                              std::optional<LoadLengths> lengths) {
   std::vector<Load> largest; // of each track
   const auto add = [&](LoadKind kind, bool moment, std::size_t samples, const auto& size_at) {
     double most = 0;

@@ -13,6 +13,7 @@ namespace flyball {
 std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double time);
 
 // Lengths of arrows that are the same through all of the motion.
-LoadScales motion_load_scales(const Assembly& assembly, const Run& motion, LoadLengths lengths);
+LoadScales motion_load_scales(const Assembly& assembly, const Run& motion,
+                              std::optional<LoadLengths> lengths);
 
 } // namespace flyball

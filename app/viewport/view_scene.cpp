@@ -30,7 +30,8 @@ void add_loads(const ViewFrame& frame, const Palette& colors, ViewScene& scene) 
   scene.loads = frame.loads_motion ? loads_at(assembly, *frame.loads_motion, frame.loads_time)
                                    : loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body,
                                               frame.loads_turn);
-  const LoadLengths lengths = diagram ? LoadLengths::in_proportion : frame.load_lengths;
+  const std::optional<LoadLengths> lengths =
+      diagram ? std::optional(LoadLengths::in_proportion) : frame.load_lengths;
   const LoadScales scales = frame.loads_motion ? motion_load_scales(assembly, *frame.loads_motion, lengths)
                                                : load_scales(assembly, scene.loads, lengths);
   scene.arrows = load_arrows(assembly, scene.loads, scales, colors, diagram);

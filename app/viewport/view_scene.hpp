@@ -39,8 +39,8 @@ struct ViewFrame {
   const Run* loads_motion = nullptr;            // instead: of this motion, at
   double loads_time = 0;                        // this moment (s)
   int loads_body = -1;                          // its free-body diagram, in proportion; -1: all loads
-  LoadLengths load_lengths = LoadLengths::in_proportion;
-  BodyColouring colouring; // without: as the mechanism alone says
+  std::optional<LoadLengths> load_lengths{};    // without: see load_scales()
+  BodyColouring colouring;                      // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;

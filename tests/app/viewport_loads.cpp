@@ -295,6 +295,12 @@ TEST_CASE("arrows: one scale for all forces and one for all moments, in proporti
   for (const LoadArrow& arrow : arrows.arrows)
     CHECK((arrow.to - arrow.from).norm() == Approx(scales.length(all[arrow.load])));
   const LoadArrows rooted = load_arrows(assembly, all, roots, colors, false);
+  CHECK(rooted.left_out[0] == 0);
+  CHECK(load_scales(assembly, all, {}).lengths() == LoadLengths::by_cube_root);
+  std::vector<Load> alike;
+  for (const Load& load : all)
+    if (load.kind == LoadKind::inertia) alike.push_back(load);
+  CHECK(load_scales(assembly, alike, {}).lengths() == LoadLengths::in_proportion);
   CHECK(rooted.arrows.size() > arrows.arrows.size() + 3);
 
   const int ball = body_index(mechanism, "ball1");

@@ -305,8 +305,6 @@ TEST_CASE("what acts on the governor is drawn, and on one ball of it") {
   set_mode(hand.app.session, Mode::explore);
   hand.frames(2);
   hand.key('A');
-  hand.app.commands.run("view.loads_by_root");
-  hand.frames(2);
   hand.check("governor-loads");
   hand.choose(PartKind::body, "ball1");
   hand.check("governor-free-body");

@@ -3,6 +3,7 @@
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/hidden_parts.hpp"
+#include "app/ui/load_view.hpp"
 #include "app/ui/panels.hpp"
 
 #include <array>
@@ -168,11 +169,11 @@ const std::array view_commands{
                     "ones, rather than in proportion.",
             .run =
                 [](App& app) {
-                  app.view.loads_by_root = !app.view.loads_by_root;
-                  app.view.loads = app.view.loads || app.view.loads_by_root;
-                  app.view.fit_loads = true;
+                  const bool roots = !app.view.loads || !shows_roots(app.view);
+                  app.view.load_lengths = roots ? LoadLengths::by_cube_root : LoadLengths::in_proportion;
+                  app.view.loads = app.view.fit_loads = true;
                 },
-            .checked = [](const App& app) { return app.view.loads_by_root; }},
+            .checked = [](const App& app) { return app.view.loads && shows_roots(app.view); }},
     Command{.id = "view.grid",
             .title = "Grid",
             .help = "The grid on the floor.",

@@ -215,10 +215,12 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
       draw_mark(context.session, context.ui, shown[i].mark, {at.x + s, top}, {at.x + mark, top + side});
     list.AddText({at.x + (note ? s : width + 7 * s), at.y}, packed(note ? colors.dim : colors.text),
                  shown[i].words.c_str());
-    if (shown[i].by_root) {
+    if (shown[i].chooses) {
       const std::string name = "row" + std::to_string(i);
-      if (ImGui::InvisibleButton(name.c_str(), {room, line}))
-        context.view.loads_by_root = context.view.fit_loads = true;
+      if (ImGui::InvisibleButton(name.c_str(), {room, line})) {
+        context.view.load_lengths = shown[i].chooses;
+        context.view.fit_loads = true;
+      }
     } else {
       ImGui::Dummy({room, line});
     }

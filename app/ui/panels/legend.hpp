@@ -3,7 +3,7 @@
 
 #include "app/ui/layout.hpp"
 #include "app/ui/view_context.hpp"
-#include "app/viewport/loads.hpp"
+#include "app/viewport/load_arrows.hpp"
 
 #include <imgui.h>
 
@@ -20,9 +20,9 @@ struct LegendRow {
   std::string words{}; // "Steady state"
   LoadKind load = LoadKind::reaction;
   bool moment = false;
-  float length = 0;     // pixels, of an arrow
-  std::string help{};   // where it is pointed at
-  bool by_root = false; // a click has lengths of arrows by the cube root
+  float length = 0;                     // pixels, of an arrow
+  std::string help{};                   // where it is pointed at
+  std::optional<LoadLengths> chooses{}; // what a click makes of arrows
 };
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(const ViewContext& context);

@@ -131,15 +131,21 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     if (const int left_out = arrows.left_out[moment ? 1 : 0]; left_out > 0) {
       note(std::to_string(left_out) + " below " + load_size_words(arrows.least[moment ? 1 : 0], moment, 2) +
            " not drawn");
-      rows.back().by_root = true;
+      rows.back().chooses = LoadLengths::by_cube_root;
       rows.back().help = "Too short to be seen. A click shows them: lengths by the cube root (View). With a "
                          "body chosen they are drawn to the scale of that body's loads.";
     }
   }
-  if (rows.size() == before)
+  if (rows.size() == before) {
     note("No forces act");
-  else if (arrows.scales.lengths() == LoadLengths::by_cube_root)
-    note("Twice as long: eight times as much");
+  } else if (!diagram) {
+    const bool roots = arrows.scales.lengths() == LoadLengths::by_cube_root;
+    note(roots ? "Twice as long: eight times as much" : "Lengths in proportion");
+    rows.back().help =
+        roots ? "In proportion most would be too short to be seen. A click shows them so (View)."
+              : "A click has them by the cube root, which shows small ones beside large ones (View).";
+    rows.back().chooses = roots ? LoadLengths::in_proportion : LoadLengths::by_cube_root;
+  }
   if (rows.size() > before && shows_moment(context.session)) note("Of this moment; without inertial loads");
 }
 
