@@ -12,8 +12,9 @@ namespace flyball {
 
 namespace {
 
-// Looking up every part's numbers in every frame; of more parts nobody sets one number.
-constexpr std::size_t most_parts = 200;
+// Every part's numbers are looked up by their names in every frame, which takes longer the more parts the
+// mechanism has; of more parts nobody sets one number.
+constexpr std::size_t most_parts = 200, most_names = 400'000;
 
 // Whether an end of a gear is on an angle, rather than a length.
 bool turns_at(const Mechanism& mechanism, const Joint& gear, std::size_t end) {
@@ -32,7 +33,8 @@ bool are_alike(const Mechanism& mechanism, const Joint& a, const Joint& b) {
 std::vector<Part> alike(const Session& session) {
   const Mechanism& mechanism = session.mechanism();
   const std::vector<PartId> ids = find_parts(mechanism, session.selection());
-  if (ids.empty() || ids.size() > most_parts) return {};
+  const std::size_t all = mechanism.bodies.size() + mechanism.joints.size() + mechanism.forces.size();
+  if (ids.empty() || ids.size() > most_parts || ids.size() * all > most_names) return {};
   const auto is_alike = [&](const PartId& id) {
     const auto i = static_cast<std::size_t>(id.index), last = static_cast<std::size_t>(ids.back().index);
     if (id.kind != ids.back().kind) return false;
