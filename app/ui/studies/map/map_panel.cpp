@@ -104,6 +104,10 @@ void curve_choices(Session& session, Ui& ui) {
           "The curves on which a steady state begins to hunt, softly or hard: a damped pair of eigenvalues "
           "crosses the imaginary axis (Hopf). Dampers can be varied, too."))
     choice.hunting = !choice.hunting;
+  if (choice.hunting && has_friction(session.mechanism())) {
+    paragraph(friction_left_out, colors_of(ui).warn);
+    note_widget(ui.widgets, "map/friction");
+  }
   const std::optional<MapQuantity> shown = map_quantity(session);
   if (shown && !shown->followed) return; // what follows from the others cannot be asked for
   if (check_row(ui, "map/level", "Curve of a constant value", choice.level.has_value(),
@@ -136,10 +140,6 @@ void map_words(Session& session, Ui& ui) {
     paragraph(curves->result.folds->message, colors.dim);
   if (curves && map.choice.hunting && curves->result.hunting && curves->result.hunting->curves.empty())
     paragraph(curves->result.hunting->message, colors.dim);
-  if (map.choice.hunting && has_friction(session.mechanism())) {
-    paragraph(friction_left_out, colors.warn);
-    note_widget(ui.widgets, "map/friction");
-  }
   if (!map.cells.found) return;
   const MapCells& cells = map.cells.found->result;
   std::size_t unsolved = 0, unstable = 0;
