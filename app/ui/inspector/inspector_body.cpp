@@ -224,6 +224,9 @@ void mass_section(Session& session, Ui& ui, InspectorState& inspector, const Bod
     density_rows(session, ui, body);
     return density_tick(session, ui, body);
   }
+  if (std::ranges::any_of(others_edited(session, ui, body),
+                          [](const Body* each) { return each->density.has_value(); }))
+    return density_tick(session, ui, body); // masses of some follow from their densities
   const bool follows = follows_shapes(inspector, body);
   QuantityField mass{.name = "inspector/mass",
                      .value = body.mass,

@@ -480,7 +480,9 @@ void body_end_row(Session& session, Ui& ui, const Part& part, const std::array<s
     if (!is_of_several(ui) && *chosen == bodies[1 - end]) // two ends on one body have no meaning
       swap_bodies(session, ui, part);
     else
-      change_bodies(session, ui, part, [end, body = *chosen](auto& held) { held.bodies[end] = body; });
+      change_bodies(session, ui, part, [end, body = *chosen](auto& held) {
+        if (held.bodies[1 - end] != body) held.bodies[end] = body;
+      });
   }
   if (end == 0) return;
   ImGui::SameLine(0, 0);
