@@ -6,6 +6,7 @@
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/report/messages.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/stability.hpp"
@@ -104,6 +105,7 @@ class Builder {
       throw Refusal{
           "Dry friction holds, or jumps with the direction of a motion: nothing linear tells of it but once "
           "the joints slip."};
+    if (!steady.frictions.empty()) throw Refusal{rests_on_friction(steady, "Linear models are made")};
     if (model_coordinates(steady) > largest_for_eigenvalues)
       throw Refusal{"Linear models are made of at most " + std::to_string(largest_for_eigenvalues) +
                     " coordinates."};

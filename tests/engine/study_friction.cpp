@@ -6,6 +6,7 @@
 #include "engine/study/compare.hpp"
 #include "engine/study/friction_report.hpp"
 #include "engine/study/friction_ribbon.hpp"
+#include "engine/study/linear_model.hpp"
 #include "engine/study/slow_change.hpp"
 #include "engine/study/steady_map.hpp"
 #include "tests/catch.hpp"
@@ -570,6 +571,11 @@ TEST_CASE("what is not asked of states that rest on friction says so") {
   const Comparison compared = compare(m);
   CHECK(compared.status == Status::no_steady_state);
   CHECK(compared.message == rests + "Ways of finding it are compared only of states that need none.");
+  LinearModelOptions slipping;
+  slipping.slipping = true;
+  const std::vector<std::string> in{"force_x(block)"}, out{"slope"};
+  CHECK(linearize(m, in, out, slipping).refusal ==
+        rests + "Linear models are made only of states that need none.");
   const std::vector<FreeNumber> free{{"bodies.block.mass", 1, 5}};
   SteadyMap map(m, free, {}, nullptr);
   Solution first;
