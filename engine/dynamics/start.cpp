@@ -190,7 +190,7 @@ void start_at_found_speeds(const SimulationOptions& options, MotionModel& model,
   std::vector<std::pair<std::string, double>> start;
   for (const CoordinateSolution& c : steady.coordinates) {
     if (c.dependent) continue;
-    if (!c.driven) start.emplace_back(coordinate_label(c), c.value);
+    if (!c.driven || (steady.turned && c.speed)) start.emplace_back(coordinate_label(c), c.value);
     if (!c.speed) continue;
     const int found = coordinate_called(model.system, coordinate_label(c));
     u[model.system

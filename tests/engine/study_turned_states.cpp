@@ -63,6 +63,15 @@ TEST_CASE("two shafts with different torques stand turned so that their spring c
     CHECK_THAT(speed(all.equilibria[0], "q"), WithinRel(6, 1e-12));
     CHECK(coordinate(again.solve(), "q").value == coordinate(s, "q").value);
   }
+  SimulationOptions from_there;
+  from_there.start = Start::equilibrium;
+  from_there.duration = 1;
+  const Run rests = simulate(m, from_there);
+  REQUIRE(rests.coordinates.size() == 2);
+  const CoordinateTrack &p = rests.coordinates[0], &q = rests.coordinates[1];
+  for (std::size_t i = 0; i < rests.time.size(); ++i)
+    CHECK_THAT(q.value[i] - p.value[i],
+               WithinAbs(coordinate(s, "q").value - coordinate(s, "p").value, 1e-12));
   CompareOptions quick;
   quick.repeats = 1;
   quick.tolerances = {1e-5, 1e-10};
