@@ -142,8 +142,9 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     const bool roots = arrows.scales.lengths() == LoadLengths::by_cube_root;
     note(roots ? "Twice as long: eight times as much" : "Lengths in proportion");
     rows.back().help =
-        roots ? "In proportion most would be too short to be seen. A click shows them so (View)."
-              : "A click has them by the cube root, which shows small ones beside large ones (View).";
+        roots
+            ? "By the cube root small ones are seen beside large ones. A click has them in proportion (View)."
+            : "A click has them by the cube root, which shows small ones beside large ones (View).";
     rows.back().chooses = roots ? LoadLengths::in_proportion : LoadLengths::by_cube_root;
   }
   if (rows.size() > before && shows_moment(context.session)) note("Of this moment; without inertial loads");
