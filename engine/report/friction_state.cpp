@@ -125,7 +125,16 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std:
   std::vector<std::size_t> tried;
   for (std::size_t i = 0; i < frictions.size(); ++i)
     if (may_slip(mechanism, frictions[i])) tried.push_back(i);
-  if (tried.size() > most_tried) tried.clear();
+  if (tried.size() > most_tried) { // all ways would be too many: that in which they begin to slip, if none
+                                   // closes a loop, whose rates take seconds to find or not
+    FrictionParts slipping(frictions.size(), Part::none);
+    for (const std::size_t i : tried)
+      slipping[i] = part_at_start(mechanism, frictions[i]);
+    if (std::ranges::none_of(tried,
+                             [&](std::size_t i) { return closes_a_loop(mechanism, frictions[i].joint); }))
+      all.push_back(std::move(slipping));
+    tried.clear();
+  }
   for (const std::size_t i : tried) {
     std::vector<FrictionParts> longer;
     for (const FrictionParts& parts : all)

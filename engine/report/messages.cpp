@@ -1,5 +1,6 @@
 #include "engine/report/messages.hpp"
 
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/solve/unbounded.hpp"
@@ -239,7 +240,10 @@ std::string rubbing_message(const ReportInput& in) {
   const System& system = in.problem.system;
   return "No steady state was found in which dry friction holds " +
          coordinate_label(system, system.links[static_cast<std::size_t>(in.existence.rubs)]) +
-         ", which a torque turns, or slips at a constant rate.";
+         ", which a torque turns, or slips at a constant rate." +
+         (find_frictions(in.mechanism).size() > 3 ? " Of more than three joints that may slip, only all "
+                                                    "together were tried, as they begin, and none."
+                                                  : "");
 }
 
 } // namespace

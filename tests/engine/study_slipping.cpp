@@ -3,6 +3,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/friction_report.hpp"
@@ -312,4 +313,24 @@ TEST_CASE("all steady states: what slips is listed, and bands tell of what frict
   REQUIRE(pendulum.equilibria.size() == 2);
   for (const Solution& s : pendulum.equilibria)
     CHECK(s.frictions.empty());
+}
+
+TEST_CASE("four shafts, each with friction in its bearing, slip on and on") {
+  Mechanism m;
+  m.name = "Four";
+  for (int i = 0; i < 4; ++i) {
+    const std::string n = std::to_string(i);
+    m.bodies.push_back(body("s" + n, 1, {double(i), 0, 0}, {0.1, 0.1, 0.1}));
+    Joint joint = revolute("p" + n, "ground", "s" + n, {double(i), 0, 0}, {0, 1, 0});
+    joint.coordinates[0].friction = Friction{.limit = 0.2};
+    joint.coordinates[0].drive = Drive{.speed = 5, .torque = 0};
+    joint.formulas.push_back({"drive.torque", n + " N m + 2 N m - 0.5 N m s * rate(p" + n + ")"});
+    m.joints.push_back(joint);
+  }
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  for (int i = 0; i < 4; ++i)
+    CHECK_THAT(speed(s, "p" + std::to_string(i)), WithinRel((i + 2 - 0.2) / 0.5, 1e-12));
 }
