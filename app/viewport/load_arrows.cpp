@@ -82,7 +82,11 @@ double LoadScales::size(bool moment, double length) const {
 LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads,
                        std::optional<LoadLengths> lengths) {
   const double longest = std::max(0.36 * assembly.scale.bounds.radius(), 9 * assembly.scale.unit);
-  const LoadScales scales(loads, lengths.value_or(LoadLengths::in_proportion), longest);
+  // By the cube root one large force, as the weight of a spindle, leaves the others short.
+  const double longest_by_root = 1.8 * longest;
+  const bool by_root = lengths == LoadLengths::by_cube_root;
+  const LoadScales scales(loads, lengths.value_or(LoadLengths::in_proportion),
+                          by_root ? longest_by_root : longest);
   if (lengths) return scales;
   std::size_t all = 0, seen = 0;
   for (const Load& load : loads) {
@@ -90,7 +94,7 @@ LoadScales load_scales(const Assembly& assembly, const std::vector<Load>& loads,
     all += length > 0 ? 1 : 0;
     seen += length >= least_length(assembly) ? 1 : 0;
   }
-  return 2 * seen >= all ? scales : LoadScales(loads, LoadLengths::by_cube_root, longest);
+  return 2 * seen >= all ? scales : LoadScales(loads, LoadLengths::by_cube_root, longest_by_root);
 }
 
 LoadArrows load_arrows(const Assembly& assembly, const std::vector<Load>& loads, const LoadScales& scales,
