@@ -39,6 +39,7 @@ void replace_document(Session& session, Document document, std::string_view text
   session.files.beside_refused = false;
   session.files.autosave.remove();
   session.files.conflict = session.files.save_wanted = false;
+  session.files.aside.clear();
   open_document(session, std::move(document));
   session.files.watch = FileWatch(session.document.file(), text);
 }

@@ -38,7 +38,7 @@ struct FileState {
   std::string owner = this_process(); // of autosaves
   Autosaver autosave;
   std::vector<Leftover> leftovers; // offered for recovery
-  std::filesystem::path aside;     // the one discarded last, until something is saved
+  std::filesystem::path aside;     // the one discarded last, until something is saved or opened
 };
 
 // The file's name, or the mechanism's where it has no file.

@@ -86,6 +86,23 @@ TEST_CASE("a measure is added, changed, renamed and removed by hand") {
     d.frames(3);
     CHECK(d.m().measures[0].text == "distance(ball1, ball2)");
   }
+  SECTION("Escape ends what is offered, so that Tab goes on; a name has nothing offered") {
+    d.frames(60);
+    d.click("inspector/measure/rise");
+    d.type("=dist");
+    d.frames(3);
+    REQUIRE(completes(d.app.ui.completion));
+    d.key(key_escape);
+    d.frames(2);
+    CHECK_FALSE(completes(d.app.ui.completion));
+    d.frames(60);
+    d.click("inspector/measure/rise/name");
+    d.type("=dist");
+    d.frames(3);
+    CHECK(d.app.ui.fields.typing.text == "=dist");
+    CHECK(d.app.ui.completion.found.list.empty());
+    d.key(key_escape);
+  }
   SECTION("what is wrong with it is said while it is typed") {
     d.frames(60);
     d.click("inspector/measure/rise");

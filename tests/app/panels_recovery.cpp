@@ -95,6 +95,14 @@ TEST_CASE("work that a crash has left is offered when its file is opened") {
     robot.key(key_enter);
     CHECK(robot.speed_now() == 5);
   }
+  SECTION("discarded: not told of over another file") {
+    robot.click("recover/discard");
+    robot.frames(4);
+    REQUIRE(robot.shows("banner/bring_back"));
+    robot.open(governor_in(folder, "other.json"));
+    robot.frames(4);
+    CHECK_FALSE(robot.shows("banner/bring_back"));
+  }
   SECTION("discarded for good by the next save") {
     robot.click("recover/discard");
     robot.set_speed(6);

@@ -31,7 +31,8 @@ void measure_field(Session& session, Ui& ui, const NamedMeasure& measure, const 
                       set_measure(mechanism, name, with(typed));
                     });
                   },
-              .hint = hint},
+              .hint = hint,
+              .expression = widget == "inspector/measure/" + measure.name},
              width);
 }
 

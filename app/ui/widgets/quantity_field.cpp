@@ -525,6 +525,7 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
       .offer = [&session, field](const std::string& typed) { return add_parameter(session, field, typed); },
       .at_once = field.at_once,
       .drawn_here = false,
+      .expression = true,
       .flags = ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackAlways,
       .callback = step_typed,
       .callback_data = &stepping};

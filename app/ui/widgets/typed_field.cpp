@@ -123,7 +123,7 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
   typing.check = field.check;
   typing.take = field.take;
   check(typing, field);
-  find_completions(ui.completion, session.mechanism(), typing.text, typing.original);
+  if (field.expression) find_completions(ui.completion, session.mechanism(), typing.text, typing.original);
   if (!ImGui::IsItemDeactivated()) {
     move_mark(ui.completion);
     if (!typing.mistake.empty() || !ui.completion.found.list.empty()) show_advice(ui);
@@ -132,9 +132,11 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
     typing.wants_focus = true;
   } else if (takes_offer(typing, entered)) {
     later(ui, std::exchange(typing, {}).offer.take);
+    ui.completion = {};
     ui.keyboard.focus = {};
   } else if (escape_pressed_now()) {
     typing = {};
+    ui.completion = {};
     ui.keyboard.focus = {};
   } else if (entered && !typing.mistake.empty()) {
     typing.wants_focus = true;

@@ -17,9 +17,10 @@ struct TextField {
   TextTaker take;   // called after the panels are drawn, if the text was changed
   std::function<FieldOffer(const std::string&)> offer{}; // of a text that cannot be taken; may be empty
   bool at_once = false;                                  // `take` is called while drawing instead
-  bool drawn_here = true; // the text at rest; otherwise the caller draws something in its place
-  const char* hint = "";  // shown while there is no text
-  int flags = 0;          // of ImGui's InputText
+  bool drawn_here = true;  // the text at rest; otherwise the caller draws something in its place
+  const char* hint = "";   // shown while there is no text
+  bool expression = false; // of what begins with "=" the names that could follow are offered
+  int flags = 0;           // of ImGui's InputText
   int (*callback)(ImGuiInputTextCallbackData*) = nullptr;
   void* callback_data = nullptr;
 };
