@@ -1,6 +1,7 @@
 // The Campbell diagram, followed in the background.
 #include "app/session/campbell.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
@@ -175,6 +176,9 @@ std::vector<std::string> campbell_names(const Session& session, const CampbellPl
       names[l] = "mode " + std::to_string(listed[l] + 1) +
                  names[l].substr(std::min(names[l].find(','), names[l].size()));
     }
+    if (const std::size_t comma = names[l].find(", "); comma != std::string::npos)
+      names[l].replace(comma + 2, std::string::npos,
+                       label_words(session.mechanism(), names[l].substr(comma + 2)));
   }
   return names;
 }

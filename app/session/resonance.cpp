@@ -1,5 +1,6 @@
 #include "app/session/resonance.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/number_text.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
@@ -30,16 +31,16 @@ ResonanceCurve find_resonance(const ResponseRequest& of, bool same_axis,
   return resonance_curve(*of.mechanism, of.address, of.from, of.to, options);
 }
 
-ResponseQuantity quantity_of(const ResonanceOutput& output) {
+// `words`: of its name, where that is a coordinate's.
+ResponseQuantity quantity_of(const ResonanceOutput& output, const std::string& words) {
   switch (output.kind) {
-  case OutputKind::coordinate: return {"value " + output.name, output.name, "Coordinates", output.unit, 1};
+  case OutputKind::coordinate: return {"value " + output.name, words, "Coordinates", output.unit, 1};
   case OutputKind::measure: return {"measure " + output.name, output.name, "Measures", output.unit, 1};
   case OutputKind::drive:
-    return {"drive " + output.name,
-            (output.unit == "N m" ? "drive torque of " : "drive force of ") + output.name, "Drives",
-            output.unit, 1};
+    return {"drive " + output.name, (output.unit == "N m" ? "drive torque of " : "drive force of ") + words,
+            "Drives", output.unit, 1};
   case OutputKind::power:
-    return {"power " + output.name, "drive power of " + output.name, "Drives", output.unit, 1};
+    return {"power " + output.name, "drive power of " + words, "Drives", output.unit, 1};
   case OutputKind::force:
     return {"force " + output.name, "force through " + output.name, "Reactions", output.unit, 1};
   case OutputKind::moment:
@@ -108,7 +109,8 @@ std::vector<ResponseQuantity> resonance_quantities(const Session& session) {
   if (!point) return out;
   std::vector<ResponseQuantity> loads; // forces by themselves, then moments
   for (const ResonanceOutput& output : point->outputs)
-    (output.kind == OutputKind::moment ? loads : out).push_back(quantity_of(output));
+    (output.kind == OutputKind::moment ? loads : out)
+        .push_back(quantity_of(output, label_words(session.mechanism(), output.name)));
   add_quantities(out, loads);
   return out;
 }

@@ -129,5 +129,18 @@ TEST_CASE("coordinates are told in words") {
   CHECK(coordinate_words("tilt", 1, 2, true) == "tilt, angle at the child");
   CHECK(coordinate_words("tube", 1, 2, false) == "tube, slide");
   CHECK(joint_words("rotor.free") == "rotor");
+
+  Mechanism mechanism;
+  mechanism.bodies.emplace_back().name = "rotor";
+  mechanism.joints.resize(2);
+  mechanism.joints[0].name = "tilt";
+  mechanism.joints[0].type = JointType::universal;
+  mechanism.joints[1].name = "slide";
+  mechanism.joints[1].type = JointType::prismatic;
+  CHECK(label_words(mechanism, "tilt.1") == "tilt, angle at the child");
+  CHECK(label_words(mechanism, "tilt.0.speed") == "tilt, angle.speed");
+  CHECK(label_words(mechanism, "slide") == "slide");
+  CHECK(label_words(mechanism, "rotor.free.5") == "rotor, rotation z");
+  CHECK(label_words(mechanism, "elsewhere.2") == "elsewhere.2");
   CHECK(joint_words("free1") == "free1");
 }
