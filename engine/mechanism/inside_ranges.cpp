@@ -4,6 +4,7 @@
 #include "engine/mechanism/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace flyball {
@@ -13,7 +14,11 @@ std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<con
   for (const NumberRange& range : ranges) {
     const auto [least, most] = std::minmax(range.from, range.to);
     double value = get_parameter(mechanism, range.address);
-    if (!(value > least && value < most) || value == 0) value = least + 0.37 * (most - least);
+    const double width = most - least;
+    if (!(value > least && value < most) || value == 0) {
+      value = least + 0.37 * width;
+      if (std::abs(value) < 1e-3 * width) value = least + 0.63 * width;
+    }
     values.push_back({range.address, value});
   }
   std::optional<Mechanism> inside(mechanism);

@@ -371,8 +371,8 @@ class HoldingAttempt {
         of_spring(k) + geared_springs(held, held.link(held.find(mechanism_, independent_[k])).drive);
     if (torque->varying && !torque->range) {
       out.message = "What holding takes is not found: what " + joint.joint +
-                    " takes changes with the phase of drives that are too many, or slide, to try all that "
-                    "they can take.";
+                    " takes changes with the phase of drives that slide, or have too many phases together to "
+                    "try all.";
       return std::nullopt;
     }
     if (!torque->range) return torque->value + own;

@@ -3,6 +3,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/turning_part.hpp"
+#include "engine/search/most_turned.hpp"
 #include "engine/solve/unbounded.hpp"
 #include "engine/system/implied_rates.hpp"
 
@@ -230,9 +231,12 @@ std::string open_loop_message(const ReportInput& in) {
     text += "; the joints marked with \"cut\" were left as marked";
   text += ".";
   if (turns)
-    text +=
-        " Its loop could turn with the drives, what springs hold at rest in it twisted; no such state was "
-        "found. A motion shows whether there is one.";
+    text += " Its loop could turn with the drives, what springs hold at rest in it twisted; " +
+            (in.problem.system.nv > most_turned_coordinates
+                 ? "with more than " + std::to_string(most_turned_coordinates) +
+                       " coordinates such states are not looked for"
+                 : std::string("no such state was found")) +
+            ". A motion shows whether there is one.";
   return text;
 }
 

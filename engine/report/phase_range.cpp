@@ -108,9 +108,10 @@ std::vector<bool> depends_on(const Grid& grid, Eigen::Index motor) {
   return out;
 }
 
-// Grid points higher than their neighbours, by what may be there between them, the highest first: a peak
-// rises above its point by no more than twice what a parabola through the neighbours says. Along an angle on
-// which nothing depends one point stands for all.
+// Grid points higher than their neighbours, by what may be there between them, the highest first: along each
+// angle a peak rises above its point by no more than twice what a parabola through the neighbours says; on a
+// narrow ridge across several angles it may be more. Along an angle on which nothing depends one point stands
+// for all.
 std::vector<Peak> peaks_of(const Grid& grid, Eigen::Index motor, double sign) {
   std::vector<Peak> out;
   const std::vector<bool> depends = depends_on(grid, motor);

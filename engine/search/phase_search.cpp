@@ -6,6 +6,7 @@
 #include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/search/find_equilibrium.hpp"
+#include "engine/search/most_turned.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/constraint_row.hpp"
@@ -22,7 +23,6 @@
 namespace flyball {
 namespace {
 
-constexpr int most_coordinates = 60;
 constexpr double counts = 1e-6;     // of the largest effect of an angle
 constexpr double first_drift = 0.2; // of the angles, in the first of slow steps
 
@@ -447,10 +447,10 @@ class PhaseSearch {
     return {};
   }
 
-  // Of Newton-Raphson on the balance, in all: so many that a refusal takes a second or two.
+  // Of Newton-Raphson on the balance, in all: so many that a refusal takes a few seconds.
   int most_iterations() const {
     const double n = given_.system.nv + given_.system.rows;
-    return static_cast<int>(std::clamp(2.5e8 / (n * n * n), 300., 6000.));
+    return static_cast<int>(std::clamp(2.5e8 / (n * n * n), 100., 6000.));
   }
 
   // Whether something of which the angle counts stands still.
@@ -487,7 +487,7 @@ class PhaseSearch {
 bool may_stand_turned(const Problem& problem) {
   const System& system = problem.system;
   const bool momenta = std::ranges::any_of(system.torques, &DriveTorqueElement::keeps_momentum);
-  return !system.torques.empty() && !momenta && system.nv <= most_coordinates &&
+  return !system.torques.empty() && !momenta && system.nv <= most_turned_coordinates &&
          !problem.parameters.phase_free;
 }
 

@@ -1,5 +1,6 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/scene.hpp"
 
 #include "tests/catch.hpp"
@@ -7,6 +8,7 @@
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -111,6 +113,19 @@ TEST_CASE("Addresses reach the fields they name, with units") {
   }
   CHECK(addresses.front() == "parameters.L");
   CHECK(addresses.back() == "simulation.duration");
+}
+
+TEST_CASE("Numbers inside ranges are not zero, wherever the ranges lie about it") {
+  Mechanism m = read_scene(everything);
+  set_parameter(m, "gravity.0", 0);
+  for (const double from : {-1., -0.63, -0.37, -0.2, 0.}) {
+    CAPTURE(from);
+    const NumberRange range{"gravity.0", from, from + 1};
+    const double value = get_parameter(inside_ranges(m, {&range, 1}).value(), "gravity.0");
+    CHECK(value > from);
+    CHECK(value < from + 1);
+    CHECK(std::abs(value) > 0.1);
+  }
 }
 
 TEST_CASE("An absent optional number is set into being") {

@@ -512,6 +512,32 @@ TEST_CASE("what holding takes where a torque asks for the coordinate that fricti
   CHECK_THAT(holding.message, ContainsSubstring("does not hold it there, with spin at 36 rad/s: b slips"));
 }
 
+TEST_CASE("what holding takes at every phase of two drives that take many turns to return together") {
+  // A slide on the outer one of two arms at 4 and 6.3 rad/s: every 20 pi s, after 40 and 63 turns.
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Arms", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "h1", "mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.01]},
+      {"name": "h2", "mass": 1, "position": [0.3, 0, 0], "inertia": [0.01, 0.01, 0.01]},
+      {"name": "b", "mass": 1, "position": [0.4, 0, 0], "inertia": [0.01, 0.01, 0.01]}],
+    "joints": [{"name": "p", "type": "revolute", "bodies": ["ground", "h1"], "at": [0, 0, 0],
+        "axis": [0, 0, 1], "drive": {"speed": 4}},
+      {"name": "q", "type": "revolute", "bodies": ["h1", "h2"], "at": [0.3, 0, 0], "axis": [0, 0, 1],
+        "drive": {"speed": 6.3}},
+      {"name": "s", "type": "prismatic", "bodies": ["h2", "b"], "at": [0.4, 0, 0], "axis": [1, 0, 0],
+        "friction": {"limit": 25.21}}]})json");
+  double most = 0;
+  constexpr int steps = 1000000;
+  for (int i = 0; i < steps; ++i) {
+    const double t = 20 * std::numbers::pi * i / steps;
+    most = std::max(
+        most, std::abs(9.80665 * std::sin(10.3 * t) - 0.1 * 10.3 * 10.3 - 0.3 * 4 * 4 * std::cos(6.3 * t)));
+  }
+  CHECK(most > 25.21);
+  const Holding holding = find_holding(m, {});
+  INFO(holding.message);
+  CHECK_THAT(std::abs(holding.joints.at(0).force.value()), WithinRel(most, 1e-7));
+  CHECK(Analysis(m).solve().status == Status::no_steady_state);
+}
+
 TEST_CASE("what holding takes of a spring behind a gear") {
   const double stiffness = 100, free = 0.2, ratio = -0.5; // b = ratio a
   const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Geared", "gravity": [0, 0, 0],

@@ -6,6 +6,7 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/search/most_turned.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/goals.hpp"
@@ -328,6 +329,35 @@ TEST_CASE("a planetary set drives a load through a coupling, its sun by a torque
   for (const char* shaft : {"carrier", "ring", "load"})
     CHECK_THAT(speed(at_speed, shaft), WithinRel(speed(by_torque, shaft), 1e-9));
   CHECK_THAT(value(at_speed, "cp"), WithinRel(coupled, 1e-9));
+}
+
+TEST_CASE("coupled shafts with many slides on them, and with more than are looked at", "[phase][coupling]") {
+  const auto with_slides = [](int count) {
+    Mechanism m;
+    m.bodies = {body("a", 1, {0, 0, 0}, {0.2, 0.2, 0.3}), body("b", 1, {0, 0, 0.5}, {0.2, 0.2, 0.15})};
+    m.joints = {
+        torque_driven(hinge("p", "ground", "a"), 5, "5 N m - 1 N m s * rate(p)"),
+        torque_driven(revolute("q", "ground", "b", {0, 0, 0.5}, {0, 0, 1}), 3, "-0.2 N m s * rate(q)"),
+        dampened(sprung(revolute("c", "a", "b", {0, 0, 0.5}, {0, 0, 1}), 10), 0.1)};
+    for (int i = 0; i < count; ++i) {
+      const std::string name = "r" + std::to_string(i);
+      m.bodies.push_back(body(name, 0.01, {0.1, 0, 0}, {0, 0, 0}));
+      m.joints.push_back(sprung(prismatic(name, "a", name, {0.1, 0, 0}, {1, 0, 0}), 10 + i));
+    }
+    return m;
+  };
+  const Solution s = Analysis(with_slides(70)).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const double w = 5 / 1.2;
+  CHECK_THAT(speed(s, "p"), WithinRel(w, 1e-11));
+  CHECK_THAT(speed(s, "q"), WithinRel(w, 1e-11));
+  CHECK_THAT(value(s, "c"), WithinRel(-0.2 * w / 10, 1e-10));
+  CHECK_THAT(value(s, "r0"), WithinRel(0.01 * 0.1 * w * w / (10 - 0.01 * w * w), 1e-9));
+  const Solution larger = Analysis(with_slides(most_turned_coordinates)).solve();
+  CHECK(larger.status == Status::no_steady_state);
+  CHECK_THAT(larger.message,
+             ContainsSubstring("with more than 200 coordinates such states are not looked for"));
 }
 
 TEST_CASE("two shafts with play between them turn together against its flank", "[phase][coupling]") {
