@@ -61,17 +61,17 @@ std::shared_ptr<const Solution> resting_state(const Run& run,
   constexpr double still = 0.1; // of a radian or the reach, in the run's last tenth
   if (!run.damped || run.time.size() < 2) return nullptr;
   const std::size_t last = run.time.size() - 1, first = last - last / 10;
-  SolveOptions options;
-  options.details = options.explain = false;
-  options.search = 0;
-  options.newton_only = true; // from so near
-  options.cancel = cancel;
-  for (const CoordinateTrack& track : run.coordinates) {
-    if (track.driven || track.dependent) continue;
-    if (!(std::abs(track.value[first] - track.value[last]) < still * track.scale)) return nullptr;
-    options.start.emplace_back(coordinate_label(track), track.value[last]);
-  }
   try {
+    SolveOptions options;
+    options.details = options.explain = false;
+    options.search = 0;
+    options.newton_only = true; // from so near
+    options.cancel = cancel;
+    for (const CoordinateTrack& track : run.coordinates) {
+      if (track.driven || track.dependent) continue;
+      if (!(std::abs(track.value[first] - track.value[last]) < still * track.scale)) return nullptr;
+      options.start.emplace_back(coordinate_label(track), track.value[last]);
+    }
     return std::make_shared<const Solution>(Analysis(mechanism).solve(options));
   } catch (const std::exception&) { // SceneError, or no memory: the run goes without
     return nullptr;
@@ -126,6 +126,7 @@ Motion compute_motion(const MotionRequest& request, const TaskContext<Motion>& c
       }
     }
     Motion motion{so_far(), true, {}, {}};
+    context.publish({motion.run, false, {}, {}}); // there already while that is solved for
     motion.rests_in = resting_state(*motion.run, request.mechanism, &context.cancel);
     return motion;
   } catch (const std::exception& error) { // SceneError, or no memory

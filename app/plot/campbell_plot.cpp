@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -89,18 +90,19 @@ void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch&
 
 // Lines of so many oscillations a turn, where unbalance and the like would excite.
 void add_orders(Plot& plot, PlotRange speeds, std::span<const double> orders, double factor, double highest) {
+  double width = 1.2; // points; each next one wider, to tell them apart
   for (const double order : orders) {
     PlotCurve line{.name = order_text(order) + " speed",
                    .points = {},
                    .line = PlotLine::dotted,
                    .color = plot_color::neutral,
-                   .width = 1.2};
+                   .width = std::exchange(width, std::min(width + 1, 4.))};
     for (int i = 0; i <= 200; ++i) {
       const double speed = speeds[0] + (speeds[1] - speeds[0]) * i / 200,
                    y = order * std::abs(speed) * factor;
       line.points.push_back({speed, y <= highest ? y : no_value});
     }
-    // Told at its end, for they look alike.
+    // Told at its end, too: the legend's samples are short.
     const auto last =
         std::ranges::find_if(line.points.rbegin(), line.points.rend(),
                              [](const std::array<double, 2>& p) { return std::isfinite(p[1]) && p[1] > 0; });

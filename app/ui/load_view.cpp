@@ -32,8 +32,12 @@ bool may_show_loads(const Session& session, const ToolState& tool, const ViewSta
 
 } // namespace
 
+bool shows_diagram(const ViewState& view) {
+  return view.scene.source.loads && view.scene.source.loads_body >= 0;
+}
+
 bool shows_roots(const ViewState& view) {
-  if (view.load_lengths) return *view.load_lengths == LoadLengths::by_cube_root;
+  if (view.load_lengths && !shows_diagram(view)) return *view.load_lengths == LoadLengths::by_cube_root;
   return view.scene.scene && view.scene.scene->arrows.scales.lengths() == LoadLengths::by_cube_root;
 }
 

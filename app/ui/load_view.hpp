@@ -15,6 +15,8 @@ struct ViewState;
 // is selected its free-body diagram, else those of the whole mechanism. Of a periodic motion those of the
 // whole mechanism at the moment that is shown.
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame);
+// Whether they are one body's free-body diagram, which is in proportion.
+bool shows_diagram(const ViewState& view);
 // Whether their lengths are by the cube root.
 bool shows_roots(const ViewState& view);
 // Whether they would be those of a moment of a periodic motion.

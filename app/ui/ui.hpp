@@ -46,6 +46,8 @@ struct Ui {
   SectionState sections;
   SliderPress slider_press;
   PlotFile plot_file_wanted{}; // by a command, of the first plot that is drawn next
+  // A plot was drawn in the open study when that was drawn last.
+  bool plot_drawn = false;
   std::shared_ptr<PlotToSave> plot_to_save; // asked for in a plot's menu, until the dialog takes it
 };
 

@@ -72,6 +72,16 @@ TEST_CASE("a motion in the background is the motion") {
   }
 }
 
+TEST_CASE("a whole run is published before the state that it rests in is looked for") {
+  const std::atomic<bool> cancel{false};
+  Motion last;
+  const auto publish = [&](Motion motion) { last = std::move(motion); };
+  const Motion end = compute_motion({shared(shipped("governor")), lasting(3), nullptr},
+                                    {.cancel = cancel, .progress = {}, .publish = publish});
+  CHECK(last.run == end.run);
+  CHECK_FALSE(last.finished);
+}
+
 TEST_CASE("a motion ends where it would take too much memory, and says so") {
   MotionRequest request{shared(shipped("governor")), lasting(1e9), nullptr};
   request.most_memory = 8'000'000;

@@ -2,11 +2,13 @@
 #include "app/document/document.hpp"
 #include "app/session/periodic.hpp"
 #include "app/ui/camera_glide.hpp"
+#include "app/ui/commands.hpp"
 #include "app/ui/load_view.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/panels/legend.hpp"
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/snapshot.hpp"
+#include "app/ui/view_frame.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "temporary_folder.hpp"
@@ -57,6 +59,12 @@ TEST_CASE("a key shows what acts, and takes it away again") {
   // Beside the shaft's weight hardly anything could be seen in proportion.
   CHECK(has_row(app, "eight times as much"));
   CHECK_FALSE(has_row(app, "not drawn"));
+  // So it stays while a slider is held.
+  const auto lengths = [&] { return view_frame(app.session, app.ui, app.tool, app.view).load_lengths; };
+  CHECK_FALSE(lengths());
+  app.ui.slider_press.dragging = true;
+  CHECK(lengths() == LoadLengths::by_cube_root);
+  app.ui.slider_press.dragging = false;
   const std::vector<LegendRow> rows = legend_rows(app.context());
   const auto row = std::ranges::find_if(rows, [](const LegendRow& each) { return each.chooses.has_value(); });
   REQUIRE(row != rows.end());
@@ -83,6 +91,7 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
   select(app.session, {{Part{PartKind::body, "ball1"}}});
   robot.frames(2);
   CHECK(has_row(app, "Free body: ball1"));
+  CHECK_FALSE(app.commands.enabled(command("view.loads_by_root"))); // always in proportion
   const ViewScene& scene = *shown_scene(app.context());
   CHECK(std::ranges::count(scene.loads, LoadKind::weight, &Load::kind) == 1);
   for (const Instance& instance : scene.free_body)

@@ -240,6 +240,10 @@ TEST_CASE(
     }
     CHECK(told == 4);
   }
+  const auto width_of = [&](const char* line) {
+    return std::ranges::find(drawn.plot.curves, line, &PlotCurve::name)->width;
+  };
+  CHECK(width_of("1× speed") < width_of("2× speed"));
   REQUIRE(drawn.critical);
   REQUIRE_FALSE(drawn.critical->empty());
   std::vector<double> unbalance;

@@ -826,4 +826,9 @@ TEST_CASE("a command saves the plot that is shown, as a right click on it does")
   app.commands.run("study.save_csv");
   robot.frames(4);
   CHECK(app.ui.widgets.contains("save_plot/save"));
+  robot.key(key_escape);
+  robot.frames(2);
+  open_study(app.session, StudyKind::states); // a list
+  robot.frames(2);
+  CHECK_FALSE(app.commands.enabled(command("study.save_csv")));
 }

@@ -19,8 +19,7 @@ bool is_study_shown(const App& app) {
 }
 
 bool shows_plot(const App& app) {
-  const StudyKind open = app.session.study.open;
-  return app.session.mode == Mode::explore && open != StudyKind::none && open != StudyKind::states;
+  return app.session.mode == Mode::explore && app.session.study.open != StudyKind::none && app.ui.plot_drawn;
 }
 
 // What a right click on a plot offers, too.

@@ -173,7 +173,9 @@ const std::array view_commands{
                   app.view.load_lengths = roots ? LoadLengths::by_cube_root : LoadLengths::in_proportion;
                   app.view.loads = app.view.fit_loads = true;
                 },
-            .checked = [](const App& app) { return app.view.loads && shows_roots(app.view); }},
+            .enabled = [](const App& app) { return !shows_diagram(app.view); },
+            .checked = [](const App& app) { return app.view.loads && shows_roots(app.view); },
+            .lacks = "a body's diagram is in proportion."},
     Command{.id = "view.grid",
             .title = "Grid",
             .help = "The grid on the floor.",

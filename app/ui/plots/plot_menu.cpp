@@ -40,6 +40,7 @@ void scale_item(const PlotFrame& frame, int axis) {
 } // namespace
 
 void plot_menu(const PlotFrame& frame) {
+  frame.ui.plot_drawn = true;
   PlotFile wanted = std::exchange(frame.ui.plot_file_wanted, PlotFile::none);
   if (ImGui::BeginPopup("menu")) {
     if (item(frame, "fit", "Fit")) fit_plot(frame.view);

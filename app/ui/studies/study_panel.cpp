@@ -78,6 +78,7 @@ void StudyPanel::draw(Session& session, Ui& ui, const CommandRunner& commands, c
   }
   ImGui::SetCursorPos({rect.width - side - 8 * s, top});
   const bool closed = icon_button(ui, "study/close", icon::close, "Close");
+  ui.plot_drawn = false;
   switch (session.study.open) {
   case StudyKind::none: break;
   case StudyKind::motion: motion_panel(session, ui, shown_.motion, commands); break;

@@ -241,9 +241,12 @@ std::optional<double> slider_place_wanted(Ui& ui, const std::string& name, doubl
     if (io.KeyShift) return now + static_cast<double>(io.MouseDelta.x / span) / 10;
     return static_cast<double>((at - press.grip - left) / span);
   }
-  if (ImGui::IsItemDeactivated() && !press.dragging && !press.on_knob) {
-    press.place = static_cast<double>((press.from - left) / span);
-    press.since = ImGui::GetTime();
+  if (ImGui::IsItemDeactivated()) {
+    if (!press.dragging && !press.on_knob) {
+      press.place = static_cast<double>((press.from - left) / span);
+      press.since = ImGui::GetTime();
+    }
+    press.dragging = false;
   }
   if (!press.place || ImGui::GetTime() - *press.since < static_cast<double>(io.MouseDoubleClickTime))
     return std::nullopt;
