@@ -113,6 +113,7 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
 }
 
 Eigen::VectorXd own_inertia(const System& system, const Eigen::MatrixXd& mass) {
+  if (system.nv == 0) return Eigen::VectorXd(0);
   Eigen::VectorXd out = mass.diagonal().head(system.nv).cwiseMax(0);
   for (const Link& link : system.links)
     if (link.type == LinkType::spherical && link.v >= 0)
