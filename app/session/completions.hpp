@@ -19,8 +19,8 @@ struct Completions {
   std::vector<Completion> list; // the word itself first, where it is one of them
 };
 
-// Of the word that ends at the cursor (bytes): names that begin as it does, upper and lower case alike. Between
-// the brackets of a function the parts that it asks for come first. Nothing inside numbers and units.
+// Of the word that ends at the cursor (bytes): names that begin as it does, upper and lower case alike.
+// Between the brackets of a function the parts that it asks for come first. Nothing inside numbers and units.
 Completions completions_at(const Mechanism& mechanism, std::string_view text, std::size_t cursor);
 
 } // namespace flyball

@@ -18,7 +18,7 @@
 
 namespace flyball {
 
-struct PlotToSave; // see plot_save.hpp
+struct PlotToSave;   // see plot_save.hpp
 enum class PlotFile; // see plot_view.hpp
 
 // A key that went down. Kept as it happened: Dear ImGui 1.86 only sees which keys are down when a frame
@@ -33,9 +33,9 @@ struct Ui {
   Theme theme = Theme::light; // that is shown
   ThemeChoice theme_choice = ThemeChoice::system;
   ThemeChoice theme_kept = ThemeChoice::system; // for every run: not one that was asked for this run alone
-  Theme system_theme = Theme::light; // that the desktop has
-  float scale = 1;                   // pixels a point has
-  double zoom = 1;                   // that a person has chosen, times what the display has
+  Theme system_theme = Theme::light;            // that the desktop has
+  float scale = 1;                              // pixels a point has
+  double zoom = 1;                              // that a person has chosen, times what the display has
   UiFonts fonts;
   WidgetMap widgets;
   KeyboardState keyboard;

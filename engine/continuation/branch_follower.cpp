@@ -18,6 +18,7 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace flyball {
 namespace {
@@ -88,13 +89,6 @@ Mechanism begun(const Mechanism& mechanism, const std::string& address, double f
   }
 }
 
-// Of what the system is compiled.
-Mechanism inside(const Mechanism& mechanism, const std::string& address, double from, double to) {
-  const NumberRange range{address, from, to};
-  auto out = inside_ranges(mechanism, {&range, 1});
-  return out ? std::move(*out) : begun(mechanism, address, from, to);
-}
-
 } // namespace
 
 Eigen::VectorXd configuration_of(const Problem& problem, const std::vector<CoordinateSolution>& coordinates) {
@@ -154,7 +148,9 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_for_drives(inside(mechanism, address, from, to))),
+    : options_(options),
+      system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{address, from, to}})
+                                     .value_or(begun(mechanism, address, from, to)))),
       family_(system_, begun(mechanism, address, from, to), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form

@@ -292,8 +292,8 @@ class Diagram {
     return stay;
   }
 
-  // Newton-Raphson may have stopped at another state than the answer that solving gives, which has its branch,
-  // too.
+  // Newton-Raphson may have stopped at another state than the answer that solving gives, which has its
+  // branch, too.
   void from_answer(const Eigen::VectorXd& start) {
     const auto z = steady_state(follower_.problem_at(from_), start, false);
     if (!z) return;

@@ -62,8 +62,8 @@ struct ResponseDiagram {
   std::vector<SpecialPoint> special;
   std::vector<double> searched; // values of the parameter at which all equilibria were looked for
   int starts = 0;               // Newton-Raphson runs of that search, which is bounded and may miss some
-  // The one connected with the drawn pose is of states that stand turned (Solution::turned). It is not followed
-  // along a number that changes which angles are tied to each other, as a gear's ratio does.
+  // The one connected with the drawn pose is of states that stand turned (Solution::turned). It is not
+  // followed along a number that changes which angles are tied to each other, as a gear's ratio does.
   bool turned = false;
   double run_time_s = 0;
 };

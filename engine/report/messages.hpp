@@ -25,8 +25,8 @@ std::string failure_message(const ReportInput& input, Workspace& w);
 // Of a converged solution whose other parts are filled; `rank`: of the constraint equations.
 std::string solution_message(const ReportInput& input, int rank, const Solution& solution);
 
-// Of a state that rests on dry friction, for what is not asked of such states: `asked` begins the sentence on it,
-// as "Rates of change are known".
+// Of a state that rests on dry friction, for what is not asked of such states: `asked` begins the sentence on
+// it, as "Rates of change are known".
 std::string rests_on_friction(const Solution& solution, std::string_view asked);
 
 // Looks for what runs away (find_unbounded) where `out` has no answer or an unstable one; names it in

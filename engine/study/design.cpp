@@ -18,22 +18,20 @@
 #include "engine/study/wanted.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 namespace flyball {
 namespace {
-
-Mechanism inside(const Mechanism& mechanism, const NumberRange& range) {
-  auto out = inside_ranges(mechanism, {&range, 1});
-  return out ? std::move(*out) : with_parameter(mechanism, range.address, range.from);
-}
 
 class Designer {
  public:
   Designer(const Mechanism& mechanism, const std::string& address, double from, double to,
            const std::string& coordinate, double value, const DesignOptions& options)
       : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
-        options_(options), system_(compile_for_drives(inside(mechanism, {address, from, to}))),
+        options_(options),
+        system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{address, from, to}})
+                                       .value_or(with_parameter(mechanism, address, from)))),
         wanted_(find_wanted(mechanism, system_, coordinate)) {}
 
   DesignAnswer run() {

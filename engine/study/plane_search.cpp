@@ -25,7 +25,9 @@ std::string_view word(PlaneCurveType type) {
 PlaneSearch::PlaneSearch(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
                          const PlaneOptions& options)
     : mechanism_(mechanism), x_(x), y_(y), options_(options), begin_(std::chrono::steady_clock::now()),
-      system_(compile_for_drives(inside())) {
+      system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{x.address, x.from, x.to},
+                                                                     NumberRange{y.address, y.from, y.to}})
+                                     .value_or(at_corner()))) {
   if (!options.at.empty()) {
     for (const double value : options.at)
       lines_.push_back({0, value});
@@ -180,12 +182,6 @@ PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left
   }
   out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   return std::move(out_);
-}
-
-Mechanism PlaneSearch::inside() const {
-  const std::array ranges{NumberRange{x_.address, x_.from, x_.to}, NumberRange{y_.address, y_.from, y_.to}};
-  auto out = inside_ranges(mechanism_, ranges);
-  return out ? std::move(*out) : at_corner();
 }
 
 Mechanism PlaneSearch::at_corner() const {

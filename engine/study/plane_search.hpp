@@ -61,7 +61,6 @@ class PlaneSearch {
 
  private:
   double part_before() const { return static_cast<double>(line_) / static_cast<double>(lines_.size()); }
-  Mechanism inside() const; // of what the system is compiled
   Mechanism at_corner() const;
 
   const Mechanism& mechanism_;
@@ -70,7 +69,7 @@ class PlaneSearch {
   std::chrono::steady_clock::time_point begin_;
   System system_;
   std::vector<Line> lines_;
-  std::size_t line_ = 0; // that is searched
+  std::size_t line_ = 0;                // that is searched
   int left_out_ = 0, not_followed_ = 0; // starts
   std::vector<TracedCurve> traced_;
   PlaneCurves out_;

@@ -3,6 +3,7 @@
 
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/text.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <string>
 
@@ -30,6 +31,30 @@ inline Mechanism bead_on_rod(double speed, double limit) {
       {"name": "slide", "type": "prismatic", "bodies": ["rod", "bead"], "at": [0.25, 0, 0], "axis": [1, 0, 0],
       "coordinate": 0.25, "spring": {"stiffness": 400, "free": 0.2}, "friction": {"limit": )" +
                     number_text(limit) + "}}]}");
+}
+
+// The shipped governor with friction in its collar (N) and in the hinges of its arms (N m).
+inline Mechanism rubbing_governor(double collar, double hinges) {
+  Mechanism m = shipped("governor");
+  for (Joint& joint : m.joints) {
+    if (joint.name == "slide") joint.coordinates[0].friction.emplace().limit = collar;
+    if (hinges > 0 && (joint.name == "arm1" || joint.name == "arm2"))
+      joint.coordinates[0].friction.emplace().limit = hinges;
+  }
+  return m;
+}
+
+// Two shafts, each in a bearing of its own, 5 N m - 1 N m s w and -0.2 N m s w, and a joint between them.
+inline Mechanism motor_and_load(const std::string& coupling) {
+  return read_scene(R"json({"flyball": 2, "name": "Motor and load",
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
+      {"name": "b", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.2, 0.3, 0.2]}],
+    "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=5 N m - 1 N m s*rate(pa)", "speed": 5}},
+      {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=-0.2 N m s*rate(pb)", "speed": 3}},
+      {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0.05, 0], "axis": [0, 1, 0], )json" +
+                    coupling + "}]}");
 }
 
 // A block of 2 kg on a spring of 50 N/m, slack at zero, with friction of 4 N: it rests within 0.08 m.

@@ -44,23 +44,6 @@ const std::string paddles =
 
 } // namespace
 
-namespace {
-
-// Two shafts, each in a bearing of its own, 5 N m - 1 N m s w and -0.2 N m s w, and a joint between them.
-Mechanism motor_and_load(const std::string& coupling) {
-  return read_scene(R"json({"flyball": 2, "name": "Motor and load",
-    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
-      {"name": "b", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.2, 0.3, 0.2]}],
-    "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
-        "drive": {"torque": "=5 N m - 1 N m s*rate(pa)", "speed": 5}},
-      {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
-        "drive": {"torque": "=-0.2 N m s*rate(pb)", "speed": 3}},
-      {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0.05, 0], "axis": [0, 1, 0], )json" +
-                    coupling + "}]}");
-}
-
-} // namespace
-
 TEST_CASE("a clutch between two shafts in bearings of their own locks or slips") {
   const double limit = GENERATE(0.5, 0.9, 1.9);
   CAPTURE(limit);

@@ -101,16 +101,8 @@ TEST_CASE("the branch of a block on a conveyor ends where that stands, in a slip
 }
 
 TEST_CASE("a clutch between two shafts slips up to where both turn alike, to the last digits") {
-  // 5 N m - w of one and 0.2 w of the other: alike at 25/6 rad/s, with 5/6 N m in the clutch.
-  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Clutch", "gravity": [0, 0, 0],
-    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.2, 0.3, 0.2]},
-      {"name": "b", "mass": 1, "position": [0, 0.1, 0], "inertia": [0.2, 0.3, 0.2]}],
-    "joints": [{"name": "pa", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
-        "drive": {"torque": "=5 N m - 1 N m s*rate(pa)", "speed": 5}},
-      {"name": "pb", "type": "revolute", "bodies": ["ground", "b"], "at": [0, 0.1, 0], "axis": [0, 1, 0],
-        "drive": {"torque": "=-0.2 N m s*rate(pb)", "speed": 3}},
-      {"name": "c", "type": "revolute", "bodies": ["a", "b"], "at": [0, 0.05, 0], "axis": [0, 1, 0],
-        "friction": {"limit": 0.5}}]})json");
+  // Alike at 25/6 rad/s, with 5/6 N m in the clutch.
+  const Mechanism m = motor_and_load(half);
   for (const double to : {2., 0.9}) {
     const ResponseDiagram d = follow_response(m, "joints.c.friction.limit", 0.1, to);
     INFO(d.message);

@@ -39,16 +39,16 @@ struct VectorColumns {
     label = std::clamp(0.25f * room, 60 * ui.scale, 140 * ui.scale);
     each = std::max((room - label - unit) / 3, 30 * ui.scale);
   }
-  // As many digits as there is room for.
+  // As many digits as there is room for, with a sign or without.
   std::string fitting(const Ui& ui, double value, double largest, const std::string& before) const {
     constexpr int most = 9, fewest = 3;
     const ImFont* font = ui.fonts.digits;
-    std::string text;
-    for (int digits = most; digits >= fewest; --digits) {
-      text = before + component_text(value, largest, digits);
-      if (font->CalcTextSizeA(font->FontSize, 1e9f, 0, text.c_str()).x <= each - 8 * ui.scale) break;
+    int digits = most;
+    for (; digits > fewest; --digits) {
+      const std::string longest = before + component_text(-std::abs(value), largest, digits);
+      if (font->CalcTextSizeA(font->FontSize, 1e9f, 0, longest.c_str()).x <= each - 8 * ui.scale) break;
     }
-    return text;
+    return before + component_text(value, largest, digits);
   }
   void cell(const Ui& ui, float start, int column, const std::string& text, const ImVec4& color) const {
     const ImFont* font = ui.fonts.digits;
