@@ -77,8 +77,8 @@ struct Simulator::State {
   std::optional<Bridge> bridge;
   Eigen::VectorXd y, q, s;
 
-  void open(const Mechanism& mechanism, const SimulationOptions& how) {
-    auto made = std::make_shared<MotionModel>(make_motion_model(mechanism, damped));
+  void open(MotionModel compiled, const SimulationOptions& how) {
+    auto made = std::make_shared<MotionModel>(std::move(compiled));
     Eigen::VectorXd u;
     find_start(how, *made, q, u);
     take(std::move(made));
@@ -554,13 +554,22 @@ struct Simulator::State {
 
 Simulator::Simulator(const Mechanism& mechanism, const SimulationOptions& options)
     : state_(std::make_unique<State>(options)) {
+  open(options, [&] { return make_motion_model(mechanism, options.damped); });
+}
+Simulator::Simulator(const MotionModel& model, const SimulationOptions& options)
+    : state_(std::make_unique<State>(options)) {
+  open(options, [&] { return model; });
+}
+
+template <class Compile>
+void Simulator::open(const SimulationOptions& options, const Compile& compile) {
   State& x = *state_;
   const auto clock = std::chrono::steady_clock::now();
   x.watch.allow(options.time_limit);
   x.run.damped = options.damped;
   try {
     const Interruptible scope(options.cancel); // what is decomposed on the way can be large
-    x.open(mechanism, options);
+    x.open(compile(), options);
   } catch (const SceneError&) {
     x.stepper.reset();
     if (!x.interrupt()) throw;

@@ -12,6 +12,8 @@ class Simulator {
   // of motion or a start that cannot be taken. Cancelled, or out of time, before there is a start it keeps a
   // run without samples that says so, which cannot be gone on with.
   Simulator(const Mechanism& mechanism, const SimulationOptions& options);
+  // Of a model compiled before, with dampers as `options.damped` says: for many motions of one mechanism.
+  Simulator(const MotionModel& model, const SimulationOptions& options);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
   Simulator& operator=(Simulator&&) noexcept;
@@ -34,6 +36,9 @@ class Simulator {
 
  private:
   struct State;
+  template <class Compile>
+  void open(const SimulationOptions& options, const Compile& compile);
+
   std::unique_ptr<State> state_;
 };
 

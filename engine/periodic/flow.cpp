@@ -26,7 +26,7 @@ double usual_evaluations(int coordinates) {
 } // namespace
 
 Flow::Flow(const Mechanism& mechanism, double patience, const std::atomic<bool>* cancel)
-    : mechanism_(mechanism), model_(make_motion_model(mechanism, true)),
+    : model_(make_motion_model(mechanism, true)),
       most_(static_cast<long>(patience * usual_evaluations(model_.system.nv))), cancel_(cancel) {}
 
 SimulationOptions Flow::from_state(const FlowState& state, double tolerance) const {
@@ -45,7 +45,7 @@ SimulationOptions Flow::from_state(const FlowState& state, double tolerance) con
 // Where a motion with these options begins.
 std::optional<FlowState> Flow::begin(const SimulationOptions& options, double time) {
   try {
-    const Simulator simulator(mechanism_, options);
+    const Simulator simulator(model_, options);
     if (!simulator.run().time.empty()) return sampled(model_, simulator.run(), 0, time);
   } catch (const SceneError& error) {
     trouble_ = error.what();
@@ -80,7 +80,7 @@ std::optional<Passage> Flow::pass(const FlowState& from, double duration, double
   try {
     SimulationOptions options = from_state(from, tolerance);
     options.duration = duration;
-    Simulator simulator(mechanism_, options);
+    Simulator simulator(model_, options);
     const double begin = simulator.time();
     const bool well = simulator.advance(begin + duration, true);
     const Run& run = simulator.run();
@@ -119,7 +119,7 @@ Run Flow::sampled_run(SimulationOptions options, double duration, int samples) {
   try {
     options.duration = duration;
     options.rate = samples / duration;
-    Simulator simulator(mechanism_, options);
+    Simulator simulator(model_, options);
     const bool well = simulator.advance(simulator.time() + duration * (1 + 1e-12));
     const Run& run = simulator.run();
     evaluations_ += run.statistics.evaluations;

@@ -56,7 +56,6 @@ class Flow {
   SimulationOptions from_state(const FlowState& state, double tolerance) const;
   Run sampled_run(SimulationOptions options, double duration, int samples);
 
-  Mechanism mechanism_;
   MotionModel model_;
   long most_, evaluations_ = 0;
   const std::atomic<bool>* cancel_;
