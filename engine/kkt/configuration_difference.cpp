@@ -11,9 +11,41 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 
-// The division, which few differences need, takes many times as long as the rest.
+// std::remainder(angle, turn), whose division takes many times as long as the rest: up to two turns less one
+// is exact.
 double without_turns(double angle) {
-  return std::abs(angle) <= turn / 2 ? angle : std::remainder(angle, turn);
+  const double size = std::abs(angle);
+  if (size <= turn / 2) return angle;
+  const double less_one = size - turn;
+  if (std::abs(less_one) < turn / 2) return angle < 0 ? -less_one : less_one;
+  return std::remainder(angle, turn);
+}
+
+bool leaves_turns_out(const Problem& problem, std::size_t l) {
+  const Link& link = problem.system.links[l];
+  return link.type == LinkType::revolute && !finds_speed(link) &&
+         !turns_matter(problem.system, problem.parameters, static_cast<int>(l));
+}
+
+// `without(l)`: whether turns of the link do not count.
+template <class Without>
+void take_difference(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                     const Without& without, Eigen::VectorXd& out) {
+  out.setZero(problem.system.nv);
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
+    const Link& link = problem.system.links[l];
+    if (link.v < 0) continue;
+    if (link.type == LinkType::spherical) {
+      const auto rotation = [&](const Eigen::VectorXd& q) {
+        return Quat(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
+      };
+      out.segment<3>(link.v) = log_rotation<double>(rotation(to) * rotation(from).conjugate());
+      continue;
+    }
+    double d = to[link.q] - from[link.q];
+    if (without(l)) d = without_turns(d);
+    out[link.v] = d / problem.scaling.column[link.v];
+  }
 }
 
 // Visits the scaled distances (v, entries, distance) coordinate by coordinate. `all_turns`: whole turns of
@@ -34,8 +66,7 @@ void distances(const Problem& problem, const Eigen::VectorXd& a, const Eigen::Ve
       continue;
     }
     double d = a[link.q] - b[link.q];
-    if (link.type == LinkType::revolute && !finds_speed(link) &&
-        (all_turns || !turns_matter(problem.system, problem.parameters, static_cast<int>(l))))
+    if (link.type == LinkType::revolute && !finds_speed(link) && (all_turns || leaves_turns_out(problem, l)))
       d = without_turns(d);
     visit(link.v, 1, d / problem.scaling.column[link.v]);
   }
@@ -65,24 +96,21 @@ bool same_but_for_turns(const Problem& problem, const Eigen::VectorXd& a, const 
 
 Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
                                   const Eigen::VectorXd& to) {
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(problem.system.nv);
-  for (std::size_t l = 0; l < problem.system.links.size(); ++l) {
-    const Link& link = problem.system.links[l];
-    if (link.v < 0) continue;
-    if (link.type == LinkType::spherical) {
-      const auto rotation = [&](const Eigen::VectorXd& q) {
-        return Quat(q[link.q], q[link.q + 1], q[link.q + 2], q[link.q + 3]);
-      };
-      out.segment<3>(link.v) = log_rotation<double>(rotation(to) * rotation(from).conjugate());
-      continue;
-    }
-    double d = to[link.q] - from[link.q];
-    if (link.type == LinkType::revolute && !finds_speed(link) &&
-        !turns_matter(problem.system, problem.parameters, static_cast<int>(l)))
-      d = without_turns(d);
-    out[link.v] = d / problem.scaling.column[link.v];
-  }
+  Eigen::VectorXd out;
+  take_difference(
+      problem, from, to, [&](std::size_t l) { return leaves_turns_out(problem, l); }, out);
   return out;
+}
+
+ScaledDifference::ScaledDifference(const Problem& problem) : problem_(problem) {
+  for (std::size_t l = 0; l < problem.system.links.size(); ++l)
+    without_turns_.push_back(leaves_turns_out(problem, l));
+}
+
+void ScaledDifference::take(const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                            Eigen::VectorXd& out) const {
+  take_difference(
+      problem_, from, to, [&](std::size_t l) { return without_turns_[l] != 0; }, out);
 }
 
 double squared_distance(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {

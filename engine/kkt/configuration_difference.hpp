@@ -22,6 +22,18 @@ bool same_but_for_turns(const Problem& problem, const Eigen::VectorXd& a, const 
 Eigen::VectorXd scaled_difference(const Problem& problem, const Eigen::VectorXd& from,
                                   const Eigen::VectorXd& to);
 
+// The same many times with the same numbers, which are looked at once.
+class ScaledDifference {
+ public:
+  // `problem` must stay as it is.
+  explicit ScaledDifference(const Problem& problem);
+  void take(const Eigen::VectorXd& from, const Eigen::VectorXd& to, Eigen::VectorXd& out) const;
+
+ private:
+  const Problem& problem_;
+  std::vector<char> without_turns_; // by link
+};
+
 // The sum of squares of scaled distances, rotations by their angles.
 double squared_distance(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 

@@ -23,18 +23,6 @@ double iteration_cost(const Problem& problem) {
                  3 * m * n * (m + n));
 }
 
-// The derivative of the logarithm of the deflation operator prod_i (1 + 1 / |x - r_i|^2) along a scaled step.
-double deflation_slope(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& scaled_step,
-                       const std::vector<Unknowns>& roots) {
-  double slope = 0;
-  for (const Unknowns& root : roots) {
-    const Eigen::VectorXd away = scaled_difference(problem, root.q, q);
-    const double square = std::max(away.squaredNorm(), 1e-30);
-    slope -= 2 * away.dot(scaled_step) / (square * (1 + square));
-  }
-  return slope;
-}
-
 class Searcher {
  public:
   Searcher(const Problem& problem, const Eigen::VectorXd& drawn, const SearchOptions& options, Workspace& w)
@@ -287,6 +275,18 @@ class Searcher {
     }
   }
 
+  // The derivative of the logarithm of the deflation operator prod_i (1 + 1 / |x - r_i|^2), the r_i being the
+  // equilibria known, along a scaled step.
+  double deflation_slope(const Eigen::VectorXd& q, const Eigen::VectorXd& scaled_step) {
+    double slope = 0;
+    for (const Unknowns& known : list_.states) {
+      difference_.take(known.q, q, away_);
+      const double square = std::max(away_.squaredNorm(), 1e-30);
+      slope -= 2 * away_.dot(scaled_step) / (square * (1 + square));
+    }
+    return slope;
+  }
+
   // Newton-Raphson on the balance times the deflation operator: the same direction, another length (Farrell
   // et al., section 3.2). True where it came near an equilibrium that is not known.
   bool deflated_newton(Unknowns& z) {
@@ -302,7 +302,7 @@ class Searcher {
       find_step(p_, whole, z, w_);
       const double size = largest_size(w_.scaled_step);
       if (!std::isfinite(size) || size == 0) return false;
-      const double slope = deflation_slope(p_, z.q, w_.scaled_step, list_.states);
+      const double slope = deflation_slope(z.q, w_.scaled_step);
       double length = 1 / (1 - slope);
       if (!std::isfinite(length)) return false;
       length = std::clamp(length, -2., 2.);
@@ -319,6 +319,8 @@ class Searcher {
   const SearchOptions& options_;
   Workspace& w_;
   const double cost_; // s, of an iteration
+  const ScaledDifference difference_{p_};
+  Eigen::VectorXd away_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double spent_ = 0; // s
   int spread_ = 0;   // starts
