@@ -121,6 +121,26 @@ std::string motion_words(const Session& session, const MotionRun* motion) {
   return !motion || !motion->run || motion->run->damped ? "Motion, damped" : "Motion, without dampers";
 }
 
+std::string settled_words(const Session& session) {
+  const MotionRun* shown = shown_motion(session);
+  if (!session.motion.settled || !shown) return {};
+  const Settled& settled = *session.motion.settled;
+  if (!settled.farthest || !std::isfinite(settled.distance)) return settled.message;
+  constexpr double nearly = 0.02; // of a radian or the mechanism's size: a plot hardly shows it
+  const FarCoordinate& far = *settled.farthest;
+  const ShownUnit unit =
+      far.speed ? rate_unit(far.angle, session.units) : coordinate_unit(far.angle, session.units);
+  const std::string away = coordinate_words(far) + " is " + short_text(unit.factor * far.away, 2) +
+                           (unit.text == "°" ? "" : " ") + unit.text + " from the steady state.";
+  if (settled.held) return "Friction holds it where it has come to rest: " + away;
+  if (settled.time) return "Settled after " + short_text(*settled.time, 4) + " s; at the end " + away;
+  const std::vector<double>& times = shown->run->time;
+  const std::string after = " after " + short_text(times.back() - times.front(), 4) + " s: " + away;
+  if (settled.distance < nearly) return "Nearly settled" + after;
+  if (session.answer.solution.stable == false) return "Not settled, as the steady state is unstable;" + after;
+  return "Not settled" + after;
+}
+
 std::string elsewhere_words(const Session& session) {
   if (!session.motion.elsewhere) return {};
   const Solution& there = *session.motion.elsewhere;

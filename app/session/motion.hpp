@@ -83,6 +83,9 @@ std::string motion_words(const Session& session, const MotionRun* motion);
 std::string elsewhere_words(const Session& session);
 // Goes to that one.
 void go_elsewhere(Session& session);
+// Whether the shown run has settled, in the units of the screen: "Nearly settled after 12 s: arm1 is 0.063°
+// from the steady state."; empty where that is not known.
+std::string settled_words(const Session& session);
 // Why there is no motion, or no more of it; of two each says which it is.
 std::vector<std::string> motion_problems(const Session& session);
 // Whether there are dampers to be left out.

@@ -79,6 +79,14 @@ std::string words(const Farthest& farthest) {
   return name + " is " + rounded_text(farthest.away, 2) + " " + unit + " from the direct solution";
 }
 
+std::optional<FarCoordinate> coordinate_of(const Farthest& farthest) {
+  if (!farthest.track) return std::nullopt;
+  const CoordinateTrack& track = *farthest.track;
+  FarCoordinate out{track.joint, track.index, track.count, track.angle, farthest.speed, farthest.away};
+  if (track.rotation) out.index = 0, out.count = 1;
+  return out;
+}
+
 } // namespace
 
 double distance_from(const Run& run, std::size_t sample, const Solution& steady) {
@@ -103,6 +111,7 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
   }
   const Farthest farthest = farthest_from(run, run.time.size() - 1, steady);
   out.distance = farthest.scaled;
+  out.farthest = coordinate_of(farthest);
   std::size_t first = run.time.size();
   while (first > 0) {
     const double away = distance_from(run, first - 1, steady);
@@ -111,6 +120,7 @@ Settled find_settled(const Run& run, const Solution& steady, double within) {
   }
   const std::string distance = words(farthest);
   if (first == run.time.size() && is_held(run)) {
+    out.held = true;
     out.message = "Friction holds it where it has come to rest: " + distance + ".";
     return out;
   }

@@ -6,13 +6,24 @@
 
 namespace flyball {
 
+// The coordinate of a sample that is farthest from the steady state; a rotation as a whole.
+struct FarCoordinate {
+  std::string joint;
+  int index = 0, count = 1;
+  bool angle = false;
+  bool speed = false; // it is the speed that differs
+  double away = 0;    // rad or m; of a speed a second
+};
+
 struct Settled {
   // s, since the start of the run: the first sample from which on every one is within `within` of the steady
   // state.
   std::optional<double> time;
+  bool held = false;   // it has come to rest where friction holds it, and not there
   double distance = 0; // of the last sample
   double within = 0;
-  std::string message; // a sentence
+  std::optional<FarCoordinate> farthest; // of the last sample; nothing where none differs
+  std::string message;                   // a sentence
 };
 
 // How far a sample is from a steady state: the largest difference of a free coordinate, in radians or

@@ -9,6 +9,7 @@
 #include "engine/dynamics/joined.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
@@ -82,6 +83,32 @@ TEST_CASE("the motion begins when it is asked for, and ends in the steady state"
   for (std::size_t i = 0; i < app.session.poses.size(); ++i)
     apart = std::max(apart, (app.session.motion.poses[i].position - app.session.poses[i].position).norm());
   CHECK(apart > 0.02);
+}
+
+TEST_CASE("how near a motion has come is told in the units of the screen, and a plot's eye agrees") {
+  MotionRobot robot;
+  Session& session = robot.app.session;
+  REQUIRE(session.motion.settled);
+  const double away =
+      std::abs(track(run_of(robot.app), "arm1").value.back() - value(session.answer.solution, "arm1"));
+  REQUIRE(away > 1e-4);
+  REQUIRE(away < 0.02);
+  const auto told = [&](double factor, const std::string& unit) {
+    return "Nearly settled after 12 s: arm1 is " + short_text(factor * away, 2) + unit +
+           " from the steady state.";
+  };
+  CHECK(settled_words(session) == told(180 / std::acos(-1), "°"));
+  session.units.angle = AngleUnit::radian;
+  CHECK(settled_words(session) == told(1, " rad"));
+  session.motion.duration = 1;
+  restart_motion(session);
+  robot.frames(3);
+  CHECK_THAT(settled_words(session), Catch::Matchers::StartsWith("Not settled after 1 s: "));
+  session.motion.duration = 60;
+  restart_motion(session);
+  robot.frames(3);
+  CHECK_THAT(settled_words(session), Catch::Matchers::StartsWith("Settled after "));
+  CHECK_THAT(settled_words(session), Catch::Matchers::EndsWith(" rad from the steady state."));
 }
 
 TEST_CASE("a motion that settles in another steady state says in which, and shows it") {

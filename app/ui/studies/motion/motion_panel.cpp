@@ -83,8 +83,8 @@ void integration_choices(Session& session, Ui& ui) {
   double tolerance = motion.tolerance;
   if (plain_quantity_field(
           session, ui, "motion/tolerance", "Tolerance", "",
-          "Of the error of a step, relative to a radian and the mechanism's reach: 1e-3 to 1e-14.", tolerance,
-          Least::above_zero)) {
+          "Of the error of a step: angles in rad, lengths as parts of the mechanism's size; 1e-3 to 1e-14.",
+          tolerance, Least::above_zero)) {
     motion.tolerance = std::clamp(tolerance, 1e-14, 1e-3);
     anew(session, ui);
   }
@@ -147,7 +147,8 @@ void outcome(Session& session, Ui& ui) {
       later(ui, [&session] { go_elsewhere(session); });
     help_on_hover("The view, the results and the studies are of the steady state that the motion runs into.");
   } else if (session.motion.settled) {
-    paragraph(session.motion.settled->message, session.motion.settled->time ? colors.good : colors.text);
+    const bool arrived = session.motion.settled->time.has_value();
+    paragraph(settled_words(session), arrived ? colors.good : colors.text);
     note_widget(ui.widgets, "motion/settled");
   } else if (!converged(session) && !solving(session)) {
     paragraph("There is no steady state to settle in.", colors.dim);
