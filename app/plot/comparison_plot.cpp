@@ -46,6 +46,50 @@ int color_of(Integrator method) {
   return plot_color::neutral;
 }
 
+struct TimedError {
+  double time = 0, error = 0;
+  std::string note;
+};
+
+// The runs of each integrator: joined are those than which none is both sooner and nearer, the others are
+// small. To join all of one duration shows mostly how uneven run times are.
+template <typename ErrorOf>
+void add_motions(Plot& plot, const Comparison& comparison, const ErrorOf& error_of) {
+  std::vector<Integrator> methods;
+  for (const MotionCurve& motion : comparison.motion)
+    if (std::ranges::find(methods, motion.method) == methods.end()) methods.push_back(motion.method);
+  for (const Integrator method : methods) {
+    std::vector<TimedError> runs;
+    for (const MotionCurve& motion : comparison.motion) {
+      if (motion.method != method) continue;
+      for (const MotionMark& p : motion.points)
+        if (const double error = error_of(p); std::isfinite(error) && p.run_time_s > 0)
+          runs.push_back({p.run_time_s, std::max(error, least_error),
+                          fmt::format("{:.3g} s simulated, tolerance {:.0e}", motion.duration, p.tolerance)});
+    }
+    if (runs.empty()) continue;
+    std::ranges::sort(runs, [](const TimedError& a, const TimedError& b) {
+      return a.time != b.time ? a.time < b.time : a.error < b.error;
+    });
+    PlotCurve best, others;
+    best.name = others.name = title_of(method);
+    best.color = others.color = color_of(method);
+    best.shape = others.shape = shape_of(method);
+    best.width = 1.4;
+    others.line = PlotLine::none;
+    others.shape_size = 3;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (TimedError& run : runs) {
+      PlotCurve& curve = run.error < nearest ? best : others;
+      nearest = std::min(nearest, run.error);
+      curve.points.push_back({run.time, run.error});
+      curve.notes.push_back(std::move(run.note));
+    }
+    plot.curves.push_back(std::move(best));
+    if (!others.points.empty()) plot.curves.push_back(std::move(others));
+  }
+}
+
 } // namespace
 
 Plot comparison_plot(const std::string& title, const Comparison& comparison,
@@ -64,38 +108,27 @@ Plot comparison_plot(const std::string& title, const Comparison& comparison,
     plot.y.label = "error of " + printable(shown.name);
     plot.y.unit = shown.unit;
   }
-  for (const MotionCurve& motion : comparison.motion) {
-    PlotCurve curve;
-    curve.name = title_of(motion.method);
-    curve.color = color_of(motion.method);
-    curve.shape = shape_of(motion.method);
-    curve.shape_size = 4;
-    curve.width = 1;
-    for (const MotionMark& p : motion.points)
-      if (const double error = error_of(p); std::isfinite(error) && p.run_time_s > 0)
-        curve.points.push_back({p.run_time_s, std::max(error, least_error)});
-    if (curve.points.empty()) continue;
-    // Which curve is of which duration shows at its cheap end.
-    if (motion.method == Integrator::bdf)
-      plot.marks.push_back({.at = curve.points.front(),
-                            .label = fmt::format("{:.3g} s", motion.duration),
-                            .shape = PlotShape::none});
-    plot.curves.push_back(std::move(curve));
-  }
+  add_motions(plot, comparison, error_of);
   PlotCurve direct;
-  direct.name = "direct, by iteration";
+  direct.name = "direct solution, by iteration";
   direct.color = plot_color::blue;
   direct.shape = PlotShape::circle;
   direct.width = 2;
   for (const DirectMark& m : comparison.direct)
-    if (const double error = error_of(m); std::isfinite(error) && m.run_time_s > 0)
+    if (const double error = error_of(m); std::isfinite(error) && m.run_time_s > 0) {
       direct.points.push_back({m.run_time_s, std::max(error, least_error)});
+      direct.notes.push_back(fmt::format("{} iteration{}", m.iterations, m.iterations == 1 ? "" : "s"));
+    }
   plot.curves.push_back(std::move(direct));
   if (const double error = error_of(comparison.answer);
       std::isfinite(error) && comparison.answer.run_time_s > 0)
     plot.marks.push_back({.at = {comparison.answer.run_time_s, std::max(error, least_error)},
                           .label = "with all checks",
                           .color = plot_color::blue});
+  if (const auto& best = comparison.best; best && !measure && best->motion_s > 0)
+    plot.marks.push_back({.at = {best->motion_s, std::max(best->error, least_error)},
+                          .label = "nearest motion",
+                          .color = color_of(best->method)});
   return plot;
 }
 

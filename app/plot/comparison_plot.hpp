@@ -1,5 +1,5 @@
-// Error against run time as a plot: a mark for each iteration of the direct solution, a curve for each
-// integrator and simulated duration over its tolerances; and the same as a table.
+// Error against run time as a plot: a mark for each iteration of the direct solution and for each run of the
+// motion, those joined that no other of the integrator beats in both; and the same as a table.
 #pragma once
 
 #include "app/plot/plot.hpp"

@@ -144,6 +144,8 @@ void place_labels(const Plot& plot, PlotLayout& layout, const PlotMetrics& metri
   std::vector<Obstacle> taken;
   for (const PlotPlaced& mark : layout.marks)
     taken.push_back({around(mark.x, mark.y, 4 * metrics.scale), &mark});
+  for (const auto* words : {&layout.x_label, &layout.y_label}) // which may lie inside
+    if (*words) taken.push_back({(*words)->box, nullptr});
   for (PlotPlaced& placed : layout.references) {
     const PlotReference& reference = plot.references[placed.index];
     if (reference.label.empty() || reference.in_legend) continue;
@@ -173,6 +175,8 @@ std::optional<PlotText> label_beside(const PlotLayout& layout, double x, double 
   for (const auto* placed : {&layout.references, &layout.marks})
     for (const PlotPlaced& p : *placed)
       if (p.label) taken.push_back({p.label->box, nullptr});
+  for (const auto* words : {&layout.x_label, &layout.y_label})
+    if (*words) taken.push_back({(*words)->box, nullptr});
   return best_place(layout, places_beside(x, y, text, (mark_radius + 3) * metrics.scale, metrics), taken,
                     nullptr);
 }

@@ -102,9 +102,16 @@ struct Builder {
       --wanted;
     if (wanted > 1 || fits(1)) {
       if (ticks.size() >= enough) return ticks;
-      for (int more = wanted + 1; more <= most; ++more)
-        if (fits(more) && ticks.size() >= enough) return ticks;
-      fits(wanted);
+      // As many numbers as have room: a wide step may have none or one of its multiples in sight.
+      int best = wanted;
+      std::size_t count = ticks.size();
+      for (int more = wanted + 1; more <= most; ++more) {
+        if (!fits(more) || ticks.size() <= count) continue;
+        if (ticks.size() >= enough) return ticks;
+        best = more;
+        count = ticks.size();
+      }
+      fits(best);
       return ticks;
     }
     for (std::size_t i = 1; i < ticks.size(); ++i)
@@ -174,8 +181,9 @@ struct Builder {
     if (rows > 0) top += rows * (words_height + 4 * s()) + 4 * s();
     if (top == pad) top = std::max(top, digits / 2 + 2 * s());
     const bool x_below = least_sides.x_below;
-    const std::string x_words = words && !x_below ? axis_text(plot.x.label, plot.x.unit) : "",
-                      y_words = words ? axis_text(plot.y.label, plot.y.unit) : "";
+    const std::string x_text = x_below ? "" : axis_text(plot.x.label, plot.x.unit),
+                      y_text = axis_text(plot.y.label, plot.y.unit);
+    const std::string x_words = words ? x_text : "", y_words = words ? y_text : "";
     const double x_labels = std::max(8 * s(), digits / 2 + s()); // below the frame
     const double below = x_below
                              ? digits / 2 + 2 * s()
@@ -212,6 +220,7 @@ struct Builder {
     out.x_ticks.clear();
     if (out.area.width() > 1) lay_x_ticks(x_labels);
     lay_words(title, pad, x_words, y_words);
+    if (detail == Detail::without_words) lay_words_inside(x_text, y_text);
     out.legend.clear();
     rows = detail == Detail::bare ? 0 : lay_legend(legend_top);
   }
@@ -247,6 +256,25 @@ struct Builder {
     else if (!y_words.empty())
       out.y_label = upright(y_words, 0.8 * pad + line(PlotFont::words) / 2, (area.top + area.bottom) / 2,
                             area.height());
+  }
+
+  // Where there is no room beside the frame, in its corners: numbers without a unit say nothing.
+  void lay_words_inside(const std::string& x_words, const std::string& y_words) {
+    const PlotBox inner = out.area.grown(-4 * s());
+    const double height = line(PlotFont::words);
+    if (inner.height() < height) return;
+    const auto corner = [&](const std::string& words, double x, double top, double anchor, double room) {
+      PlotText placed =
+          text(PlotFont::words, cut_text(metrics, PlotFont::words, words, room), x, top, anchor);
+      placed.backed = true; // curves cross it
+      return placed;
+    };
+    const bool one_line = inner.height() < 2 * height + 4 * s();
+    const double each = one_line ? inner.width() / 2 - 4 * s() : inner.width();
+    if (PlotText y = corner(y_words, inner.left, inner.top, -1, each); !y.text.empty())
+      out.y_label = std::move(y);
+    if (PlotText x = corner(x_words, inner.right, inner.bottom - height, 1, each); !x.text.empty())
+      out.x_label = std::move(x);
   }
 
   PlotBar lay_bar(double top, double bottom, double right) const {

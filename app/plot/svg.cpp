@@ -245,21 +245,20 @@ struct Drawing {
       for (const PlotTick& tick : *ticks)
         if (tick.label) text(*tick.label, colors.dim);
     for (const auto* t : {&layout.title, &layout.x_label, &layout.y_label})
-      if (*t) text(**t, colors.text);
+      if (*t) (*t)->backed ? label(**t) : text(**t, colors.text);
   }
 
   // A label stands on the curves' colours: a rim of the ground keeps it readable, and where they cross it
   // more of it.
-  void label(const PlotPlaced& placed) {
-    if (!placed.label) return;
-    if (const PlotBox box = placed.label->box.grown(label_ground_room); placed.label->backed)
+  void label(const PlotText& words) {
+    if (const PlotBox box = words.box.grown(label_ground_room); words.backed)
       out += fmt::format(
           "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" fill-opacity=\"{}\"/>\n",
           px(box.left), px(box.top), px(box.width()), px(box.height()), hex(colors.area), label_ground);
     out +=
         fmt::format("<g paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"3\" stroke-linejoin=\"round\">",
                     hex(colors.area));
-    text(*placed.label, colors.text);
+    text(words, colors.text);
     out += "</g>\n";
   }
 
@@ -268,13 +267,13 @@ struct Drawing {
       shape(plot.marks[m.index].shape, m.x, m.y, 9, curve_color(plot.marks[m.index].color, ground), true);
     for (const auto* placed : {&layout.references, &layout.marks})
       for (const PlotPlaced& p : *placed)
-        label(p);
+        if (p.label) label(*p.label);
     if (!plot.marker) return;
     const double x = layout.x.pixel(plot.marker->x), y = layout.y.pixel(plot.marker->y);
     if (!layout.area.grown(0.5).contains(x, y)) return;
     shape(PlotShape::circle, x, y, 11, curve_color(plot_color::neutral, ground), false);
     if (!plot.marker->label.empty())
-      label({0, x, y, label_beside(layout, x, y, plot.marker->label, metrics)});
+      if (const auto beside = label_beside(layout, x, y, plot.marker->label, metrics)) label(*beside);
   }
 };
 

@@ -14,6 +14,8 @@ namespace {
 
 constexpr float toolbar_height = 68, narrow_width = 1060; // points
 constexpr float key_step = 10;                            // points that a key moves a line between panels
+// Points that a study and then the view are to have while nobody has chosen: below that plots say little.
+constexpr float study_height = 290, view_beside_study = 200;
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
@@ -98,7 +100,10 @@ Layout layout_of(const Session& session, const Ui& ui, const PanelSizes& sizes, 
   float below = std::max(height - top, 1.f);
   layout.toolbar = {0, 0, width, top};
   if (!building && session.study.open != StudyKind::none) {
-    const float study = std::round(below * sizes.study_share);
+    float study = below * sizes.study_share;
+    if (!sizes.study_chosen)
+      study = std::max(study, std::min(study_height * s, below - view_beside_study * s));
+    study = std::round(study);
     below -= study;
     layout.study = {0, top + below, width, study};
   }
@@ -144,7 +149,10 @@ void drag_splitters(Session& session, Ui& ui, PanelSizes& sizes, const Layout& l
     const PanelRect& study = layout.study;
     const float moved = splitter(ui, "splitter/study", {study.x, study.y, study.width, 1}, false);
     const float whole = study.height + side.height;
-    sizes.study_share = std::clamp(sizes.study_share - moved / whole, 0.2f, 0.75f);
+    if (moved != 0) {
+      sizes.study_share = std::clamp((study.height - moved) / whole, 0.2f, 0.75f);
+      sizes.study_chosen = true;
+    }
   }
   const PanelRect& lower = layout.results.height > 0 ? layout.results : layout.inspector;
   if (lower.height == side.height) return;

@@ -30,6 +30,7 @@ struct PanelSizes {
   float inspector_share =
       0.55f;                 // of the height, for the inspector above the results, or the outline above it
   float study_share = 0.42f; // of the height, for the studies below the view
+  bool study_chosen = false; // by the person; until then a study in a low window takes more
 };
 
 Layout layout_of(const Session& session, const Ui& ui, const PanelSizes& sizes, float width, float height);

@@ -173,6 +173,26 @@ TEST_CASE("the motion is paused, stepped and scrubbed") {
   CHECK(app.session.playback.time > before);
 }
 
+TEST_CASE("in a small window the transport has a line of its own, and the plots have room") {
+  Robot robot({800, 600});
+  robot.key('M');
+  robot.frames(3);
+  const WidgetRect scrub = robot.widget("motion/scrub"), close = robot.widget("study/close"),
+                   tab = robot.widget("study/compare"), plot = robot.widget("plot/motion/plot1/area");
+  CHECK(scrub.to.x - scrub.from.x > 150);
+  CHECK(scrub.from.y > tab.to.y);
+  CHECK(scrub.from.y > close.from.y);
+  CHECK(scrub.to.x < 800 - 60); // the time that is shown stands behind it
+  CHECK(robot.widget("motion/play").from.x > 300);
+  CHECK(plot.to.y - plot.from.y > 80);
+  robot.drag("motion/scrub", {0.1f, 0.5f}, {0.5f, 0.5f});
+  CHECK(robot.app.session.playback.time == Approx(6).margin(0.7));
+  // A line that the person has drawn stays.
+  const WidgetRect line = robot.widget("splitter/study");
+  robot.drag(line.center(), {line.center().x, line.center().y + 60});
+  CHECK(robot.widget("splitter/study").center().y == Approx(line.center().y + 60).margin(3));
+}
+
 TEST_CASE("a loop begins again, and slow motion is slow") {
   MotionRobot robot;
   App& app = robot.app;

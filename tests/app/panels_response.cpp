@@ -832,3 +832,25 @@ TEST_CASE("a command saves the plot that is shown, as a right click on it does")
   robot.frames(2);
   CHECK_FALSE(app.commands.enabled(command("study.save_csv")));
 }
+
+TEST_CASE("the marker's grip gives way to labels") {
+  ResponseRobot robot("rotor_oil_whip");
+  int beside_label = 0;
+  for (int n = 20; n <= 240; n += 10) {
+    change_parameter(robot.app.session, "parameters.n", n);
+    robot.frames(2);
+    const WidgetRect grip = robot.widget("plot/response/pull"), area = robot.widget("plot/response/area");
+    const PlotLayout& l = robot.layout();
+    const double x = static_cast<double>(area.from.x) - l.area.left,
+                 y = static_cast<double>(area.from.y) - l.area.top;
+    const PlotBox box{static_cast<double>(grip.from.x) - x, static_cast<double>(grip.from.y) - y,
+                      static_cast<double>(grip.to.x) - x, static_cast<double>(grip.to.y) - y};
+    for (const PlotPlaced& mark : l.marks)
+      if (mark.label) {
+        INFO(n << ": " << mark.label->text);
+        CHECK_FALSE(mark.label->box.overlaps(box));
+        beside_label += box.left < mark.label->box.right && mark.label->box.left < box.right;
+      }
+  }
+  CHECK(beside_label > 0); // it is put to the test
+}

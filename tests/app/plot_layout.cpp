@@ -6,6 +6,7 @@
 #include "app/plot/layout_heat.hpp"
 #include "app/plot/nearest.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -119,6 +120,36 @@ TEST_CASE("an ordinary picture has ticks on both axes, and all its labels", "[pl
     CHECK(layout.y_label->upright);
     CHECK(layout.legend.size() == plot.curves.size());
   }
+}
+
+TEST_CASE("a low plot has numbers on its axes, and its units inside the frame", "[plot]") {
+  int inside = 0;
+  for (const PlotRange range : {PlotRange{0.05, 0.45}, {0.083, 0.47}, {-3e-8, 4e-8}, {35.2, 39.4}, {0, 300}})
+    for (double height = 70; height < 200; height += 1) {
+      Plot plot;
+      plot.x = {.label = "time", .unit = "s", .room = 0};
+      plot.y = {.label = "lift of the sleeve", .unit = "m", .range = range};
+      plot.curves = {{"", {{0, range[0]}, {10, range[1]}}}};
+      plot.marks = {{{5, (range[0] + range[1]) / 2}, "fold"}};
+      const PlotLayout layout = plot_layout(plot, {}, 400, height, {});
+      INFO(range[0] << " to " << range[1] << ", " << height);
+      if (layout.area.height() < 42) continue;
+      check_apart(layout);
+      const auto numbers =
+          std::ranges::count_if(layout.y_ticks, [](const PlotTick& t) { return t.label.has_value(); });
+      CHECK(numbers >= (layout.area.height() < 82 ? 1 : 2));
+      REQUIRE(layout.y_label);
+      REQUIRE(layout.x_label);
+      CHECK_THAT(layout.y_label->text, Catch::Matchers::EndsWith("[m]"));
+      CHECK(layout.x_label->text == "time [s]");
+      const PlotBox& box = layout.y_label->box;
+      if (!layout.area.contains(box.left, box.top)) continue;
+      ++inside;
+      CHECK(layout.area.contains(box.right, box.bottom));
+      CHECK(layout.area.contains(layout.x_label->box.right, layout.x_label->box.bottom));
+      CHECK(layout.y_label->backed);
+    }
+  CHECK(inside > 20);
 }
 
 TEST_CASE("a plot of nothing and a picture of no size are laid out", "[plot]") {

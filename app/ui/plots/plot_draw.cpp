@@ -323,8 +323,13 @@ void draw_plot(const PlotPen& pen, const Plot& plot, const PlotLook& look, const
   for (const auto* ticks : {&layout.x_ticks, &layout.y_ticks})
     for (const PlotTick& tick : *ticks)
       if (tick.label) draw_text(pen, *tick.label, packed_color(colors.dim));
-  for (const auto* text : {&layout.title, &layout.x_label, &layout.y_label})
-    if (*text) draw_text(pen, **text, packed_color(colors.text));
+  for (const auto* text : {&layout.title, &layout.x_label, &layout.y_label}) {
+    if (!*text) continue;
+    if ((*text)->backed)
+      draw_label(pen, **text, colors);
+    else
+      draw_text(pen, **text, packed_color(colors.text));
+  }
   draw_legend(pen, plot, look, layout, colors);
   for (const PlotPlaced& m : layout.marks)
     draw_shape(pen, plot.marks[m.index].shape, m.x, m.y, 9,

@@ -37,15 +37,27 @@ bool is_pulled(const PlotFrame& frame) {
   return frame.view.drag == PlotView::Drag::pull;
 }
 
-// Above the marker, or below where there is no room; none where it is out of sight.
+bool on_a_label(const PlotLayout& layout, const PlotBox& box) {
+  for (const auto* placed : {&layout.references, &layout.marks})
+    for (const PlotPlaced& p : *placed)
+      if (p.label && p.label->box.overlaps(box, 0)) return true;
+  return false;
+}
+
+// Above the marker, or below where there is no room or a label; none where it is out of sight.
 std::optional<PlotBox> grip_box(const PlotFrame& frame) {
   if (!frame.plot.marker || frame.plot.marker->pull.empty()) return std::nullopt;
   const PlotBox& area = frame.layout.area;
   const PixelPoint at = is_pulled(frame) ? wanted_pixel(frame) : marker_pixel(frame);
   if (!area.grown(1).contains(at[0], at[1])) return std::nullopt;
   const double s = frame.layout.scale, half = grip_height * s / 2;
-  const double y = at[1] - grip_away * s - half >= area.top ? at[1] - grip_away * s : at[1] + grip_away * s;
-  return PlotBox{at[0] - grip_width * s / 2, y - half, at[0] + grip_width * s / 2, y + half};
+  const auto box = [&](double y) {
+    return PlotBox{at[0] - grip_width * s / 2, y - half, at[0] + grip_width * s / 2, y + half};
+  };
+  const PlotBox above = box(at[1] - grip_away * s), below = box(at[1] + grip_away * s);
+  if (above.top < area.top) return below;
+  const bool crowded = below.bottom <= area.bottom && on_a_label(frame.layout, above);
+  return crowded && !on_a_label(frame.layout, below) ? below : above;
 }
 
 void follow_grip(const PlotFrame& frame) {

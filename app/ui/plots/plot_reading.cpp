@@ -88,6 +88,9 @@ std::vector<PlotReadingLine> lines_at(const PlotFrame& frame, const PixelPoint& 
     lines.push_back({curve.name.empty() ? "point" : curve.name, "", "", color_of(hit->curve)});
     lines.push_back(axis_line(frame, 0, hit->x));
     lines.push_back(axis_line(frame, 1, hit->y));
+    if (const auto i = static_cast<std::size_t>(hit->index);
+        i < curve.notes.size() && !curve.notes[i].empty())
+      lines.push_back({curve.notes[i], "", ""});
     draw_shape(frame.pen, PlotShape::circle, layout.x.pixel(hit->x), layout.y.pixel(hit->y),
                curve.shape_size + 6, color_of(hit->curve),
                packed_color(plot_colors(frame.pen.ground).area, 0));

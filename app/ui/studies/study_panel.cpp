@@ -13,6 +13,8 @@ namespace flyball {
 
 namespace {
 
+constexpr float least_transport = 400; // points; a slider shorter than that finds no moment
+
 struct Tab {
   StudyKind study;
   const char* name;
@@ -70,18 +72,23 @@ void StudyPanel::draw(Session& session, Ui& ui, const CommandRunner& commands, c
   for (const Tab& each : tabs)
     if (tab(session, ui, each) && each.study != session.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
+  bool transport_below = false; // where the tabs leave too little room
   if (session.study.open == StudyKind::motion && session.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
-    ImGui::SetCursorPosX(from);
-    motion_transport(session, ui, rect.width - side - 24 * s - from);
-    ImGui::SameLine();
+    const float room = rect.width - side - 24 * s - from;
+    transport_below = room < least_transport * s;
+    if (!transport_below) {
+      ImGui::SetCursorPosX(from);
+      motion_transport(session, ui, room);
+      ImGui::SameLine();
+    }
   }
   ImGui::SetCursorPos({rect.width - side - 8 * s, top});
   const bool closed = icon_button(ui, "study/close", icon::close, "Close");
   ui.plot_drawn = false;
   switch (session.study.open) {
   case StudyKind::none: break;
-  case StudyKind::motion: motion_panel(session, ui, shown_.motion, commands); break;
+  case StudyKind::motion: motion_panel(session, ui, shown_.motion, commands, transport_below); break;
   case StudyKind::compare: compare_panel(session, ui, shown_.compare); break;
   case StudyKind::response: response_panel(session, ui, shown_.response); break;
   case StudyKind::states: states_panel(session, ui); break;

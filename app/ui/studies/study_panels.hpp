@@ -28,7 +28,9 @@ class StudyPanel {
   StudyViews shown_;
 };
 
-void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands);
+// `with_transport`: above the plots.
+void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands,
+                  bool with_transport);
 void motion_transport(Session& session, Ui& ui, float width); // play, scrub; in the present line, pixels
 void compare_panel(Session& session, Ui& ui, CompareView& drawn);
 void response_panel(Session& session, Ui& ui, ResponseView& drawn);

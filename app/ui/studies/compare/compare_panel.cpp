@@ -1,12 +1,15 @@
 // Error against run time: the direct solution and the motion, measured on the scene as it is now.
 #include "app/plot/comparison_plot.hpp"
+#include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,31 +19,87 @@ namespace {
 
 constexpr float words_width = 292; // points
 
+// The measure that is shown; nothing: the coordinates.
+std::optional<std::size_t> shown_measure(const Session& session, const Comparison& c) {
+  const auto found = std::ranges::find(c.measures, session.study.compare.shown, &MeasureSolution::name);
+  if (found == c.measures.end()) return {};
+  return static_cast<std::size_t>(found - c.measures.begin());
+}
+
+// The error of a mark, of the coordinates or of a measure; not a number where it has none.
+template <typename Mark>
+double compared_error(const Mark& mark, const std::optional<std::size_t>& measure) {
+  if (!measure) return mark.error;
+  return *measure < mark.measure_errors.size() ? mark.measure_errors[*measure]
+                                               : std::numeric_limits<double>::quiet_NaN();
+}
+
+// The run that ends nearest.
+struct NearestRun {
+  const MotionCurve* of = nullptr;
+  const MotionMark* run = nullptr;
+};
+NearestRun nearest_run(const Comparison& c, const std::optional<std::size_t>& measure) {
+  NearestRun nearest;
+  for (const MotionCurve& curve : c.motion)
+    for (const MotionMark& mark : curve.points) {
+      const double error = compared_error(mark, measure);
+      if (std::isfinite(error) && (!nearest.run || error < compared_error(*nearest.run, measure)))
+        nearest = {&curve, &mark};
+    }
+  return nearest;
+}
+
+// Two digits: run times are worth no more.
+std::string times_text(double ratio) {
+  const double unit = std::pow(10, std::max(0., std::floor(std::log10(ratio)) - 1));
+  return std::to_string(std::llround(std::round(ratio / unit) * unit));
+}
+
 void found(const Session& session, Ui& ui, const Comparison& c) {
   const UiColors& colors = colors_of(ui);
   const NumberStyle& numbers = session.options.numbers;
   if (c.status != Status::converged) return paragraph(c.message, colors.bad);
-  row(ui, "Direct solution", duration_text(c.answer.run_time_s, numbers), "",
-      "From the drawn pose to the accepted answer, existence and stability included.");
-  row(ui, "its error", magnitude_text(c.answer.error, numbers), "",
-      "The largest of all coordinates, in radians "
-      "or relative to the mechanism's reach.");
-  row(ui, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
-      "The reference is the direct solution iterated in extended precision; so far its last correction moved "
-      "it.");
+  const std::optional<std::size_t> measure = shown_measure(session, c);
+  const std::string unit = measure ? written_unit(c.measures[*measure].unit) : "";
+  if (c.best) {
+    const double ratio = c.best->ratio();
+    ImGui::PushFont(ui.fonts.strong);
+    paragraph("The direct solution is as near about " + times_text(std::max(ratio, 1 / ratio)) +
+                  (ratio < 1 ? " times later than the motion." : " times sooner than the motion."),
+              colors.good);
+    ImGui::PopFont();
+    note_widget(ui.widgets, "compare/ratio");
+    help_on_hover("When the motion that comes nearest is there, and when the direct solution was as near. Of "
+                  "the coordinates.");
+  }
   if (!c.complete || !c.best) paragraph(c.message, colors.warn);
-  if (!c.best) return;
-  row(ui, "Motion at its best", duration_text(c.best->motion_s, numbers), "",
-      "The run whose end comes nearest to the reference.");
-  row(ui, "its error", magnitude_text(c.best->error, numbers), "");
-  ImGui::PushFont(ui.fonts.strong);
-  const double speed_ratio = c.best->ratio();
-  paragraph("The direct solution is as near " +
-                std::to_string(std::lround(std::max(speed_ratio, 1 / speed_ratio))) +
-                (speed_ratio < 1 ? " times later." : " times sooner."),
-            colors.good);
-  ImGui::PopFont();
-  note_widget(ui.widgets, "compare/ratio");
+  heading(ui, "Direct solution");
+  row(ui, "Run time", duration_text(c.answer.run_time_s, numbers), "",
+      "From the drawn pose to the accepted answer, existence and stability included; the median of repeats, "
+      "without reading and compiling the scene.");
+  const double error = compared_error(c.answer, measure);
+  row(ui, "Error", std::isfinite(error) ? magnitude_text(error, numbers) : "-", unit.c_str(),
+      "Against the same solution iterated in extended precision.");
+  if (!measure)
+    row(ui, "Reference", "± " + magnitude_text(c.reference_error, numbers), "",
+        "So far the last correction moved that.");
+  if (const NearestRun nearest = nearest_run(c, measure); nearest.run) {
+    heading(ui, "Motion that comes nearest");
+    row(ui, "Run time", duration_text(nearest.run->run_time_s, numbers), "",
+        "Of the run whose end comes nearest to the reference.");
+    row(ui, "Error", magnitude_text(compared_error(*nearest.run, measure), numbers), unit.c_str());
+    row(ui, "Simulated", short_text(nearest.of->duration, 3), "s", "Of the mechanism's time.");
+    row(ui, "Tolerance", short_text(nearest.run->tolerance, 1), "", "Of the error of a step.");
+  }
+  ImGui::Dummy({0, 2 * ui.scale});
+  paragraph(std::string(measure ? ""
+                                : "Errors are the largest of all coordinates: angles in rad, lengths as "
+                                  "parts of the mechanism's size. ") +
+                "Each dot is a run; a line joins those of one integrator that none beats in both time and "
+                "error. Point at a dot to read it.",
+            colors.dim);
+  note_widget(ui.widgets, "compare/words");
 }
 
 constexpr const char* all_coordinates = "all coordinates";
@@ -56,13 +115,6 @@ void shown_choice(Session& session, Ui& ui, const Comparison& c) {
           name_choice_row(ui, "compare/shown", "Show", names, shown.empty() ? all_coordinates : shown,
                           "The coordinates, of which the largest error counts, or a measure."))
     shown = *other == all_coordinates ? "" : *other;
-}
-
-// The measure that is shown; nothing: the coordinates.
-std::optional<std::size_t> shown_measure(const Session& session, const Comparison& c) {
-  const auto found = std::ranges::find(c.measures, session.study.compare.shown, &MeasureSolution::name);
-  if (found == c.measures.end()) return {};
-  return static_cast<std::size_t>(found - c.measures.begin());
 }
 
 void words(Session& session, Ui& ui) {
@@ -81,7 +133,9 @@ void words(Session& session, Ui& ui) {
   if (!measured.found) {
     paragraph(
         "The direct solution, one Newton-Raphson iteration after the other, and the damped motion with every "
-        "integrator over tolerances and durations: what error is left after which time.",
+        "integrator over tolerances and durations: what error is left after which time. Some hundred runs, "
+        "each "
+        "repeated.",
         colors.dim);
     return;
   }

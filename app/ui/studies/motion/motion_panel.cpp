@@ -6,6 +6,7 @@
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panels.hpp"
 #include "app/ui/studies/study_panels.hpp"
+#include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
@@ -190,8 +191,8 @@ void accuracy(const Session& session, Ui& ui) {
 void progress_bar(const Session& session, Ui& ui) {
   const double whole = session.motion.duration, done = computed_motion(session).value_or(0);
   const std::string words = short_text(done, 2) + " of " + short_text(whole, 4) + " s";
-  ImGui::ProgressBar(static_cast<float>(std::clamp(done / whole, 0., 1.)),
-                     {std::max(ImGui::GetContentRegionAvail().x, 1.f), 0}, words.c_str());
+  bar_with_words(ui, static_cast<float>(std::clamp(done / whole, 0., 1.)),
+                 std::max(ImGui::GetContentRegionAvail().x, 1.f), words);
   note_widget(ui.widgets, "motion/progress");
   help_on_hover(("Computed so far: " + words + ".").c_str());
 }
@@ -369,7 +370,8 @@ void motion_transport(Session& session, Ui& ui, float width) {
   ImGui::EndDisabled();
 }
 
-void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands) {
+void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, const CommandRunner& commands,
+                  bool with_transport) {
   const float s = ui.scale;
   ImGui::BeginChild("choices", {motion_choices_width * s, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
@@ -380,6 +382,7 @@ void motion_panel(Session& session, Ui& ui, std::array<MotionPlot, 2>& plots, co
   ImGui::BeginChild("plots", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   if (session.motion.on) {
+    if (with_transport) motion_transport(session, ui, ImGui::GetContentRegionAvail().x);
     draw_plots(session, ui, plots);
   } else {
     paragraph("Run again shows the motion.", colors_of(ui).dim);
