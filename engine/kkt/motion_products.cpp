@@ -26,15 +26,16 @@ Eigen::VectorXd any_motion(int size) {
 
 void MotionProducts::linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
                                const Residual<double>& residual) {
-  with_momenta_ = true;
+  with_momenta_ = with_stiffness_ = true;
   take_in(problem, z, k, residual);
   number_momenta();
   velocity_matters_ = has_dampers_ || (problem.parameters.moving && coriolis_matters());
 }
 
 void MotionProducts::linearize_forces(const Problem& problem, const Unknowns& z, const Kinematics<double>& k,
-                                      const Residual<double>& residual) {
+                                      const Residual<double>& residual, bool with_stiffness) {
   with_momenta_ = false;
+  with_stiffness_ = with_stiffness;
   take_in(problem, z, k, residual);
 }
 
@@ -45,7 +46,7 @@ void MotionProducts::take_in(const Problem& problem, const Unknowns& z, const Ki
   has_dampers_ = false;
   add_links(problem, z.q, k, residual);
   add_body_forces(problem, k);
-  add_pairs(problem, z, k);
+  if (with_stiffness_) add_pairs(problem, z, k);
   add_dampers(problem, k);
   set_rows(problem, k);
 }
@@ -72,19 +73,21 @@ void MotionProducts::add_links(const Problem& problem, const Eigen::VectorXd& q,
 void MotionProducts::set_body(const Problem& problem, const Kinematics<double>& k, Node& n) {
   const auto l = static_cast<std::size_t>(n.link);
   const LinkParameters& lp = problem.parameters.links[l];
-  n.stiffness.setZero();
   n.damping.setZero();
   BodyInertia& body = n.body;
-  set_body_stiffness(problem.parameters, l, k, body, n.stiffness);
+  if (with_stiffness_)
+    set_body_stiffness(problem.parameters, l, k, body, n.stiffness);
+  else
+    set_body_inertia(problem.parameters, l, k, body);
   body.turning = 0;
   if (body.massless()) return;
-  n.stiff = n.heavy = true;
-  n.root_of_mass = std::sqrt(lp.mass);
-  n.centre = k.links[l].R * lp.com;
-  n.root_of_inertia.setZero();
-  if (lp.has_inertia && with_momenta_) {
+  n.stiff = with_stiffness_;
+  n.heavy = true;
+  if (with_momenta_) {
     const Mat3& r = k.links[l].R;
-    n.root_of_inertia = square_root(r * lp.inertia * r.transpose());
+    n.root_of_mass = std::sqrt(lp.mass);
+    n.centre = r * lp.com;
+    n.root_of_inertia = lp.has_inertia ? square_root(r * lp.inertia * r.transpose()) : Mat3(Mat3::Zero());
   }
   if (!problem.parameters.moving) return;
   n.damped = true;
@@ -123,8 +126,10 @@ void MotionProducts::add_body_forces(const Problem& problem, const Kinematics<do
     const int at = node_at(e.link);
     if (at < 0) continue;
     Node& n = node(at);
-    add_body_force(e, f, k, n.stiffness);
-    n.stiff = true;
+    if (with_stiffness_) {
+      add_body_force(e, f, k, n.stiffness);
+      n.stiff = true;
+    }
     if (!is_of_air(f.type)) continue;
     add_air_damping(e, f, k, n.damping);
     n.damped = has_dampers_ = true;

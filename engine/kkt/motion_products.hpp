@@ -22,9 +22,10 @@ class MotionProducts {
   void linearize(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
                  const Residual<double>& residual);
 
-  // The same for velocity(), stiffness() and inertia() alone, at a part of the cost.
+  // The same for velocity() and inertia() alone, and stiffness() where it is asked for, at a part of the
+  // cost.
   void linearize_forces(const Problem& problem, const Unknowns& z, const Kinematics<double>& kinematics,
-                        const Residual<double>& residual);
+                        const Residual<double>& residual, bool with_stiffness);
 
   int coordinates() const { return coordinates_; }
 
@@ -106,7 +107,8 @@ class MotionProducts {
   void inwards(Eigen::VectorXd& out, Own own);
 
   int coordinates_ = 0, rows_ = 0, momentum_count_ = 0;
-  bool velocity_matters_ = false, has_dampers_ = false, with_momenta_ = true;
+  bool velocity_matters_ = false, has_dampers_ = false;
+  bool with_momenta_ = true, with_stiffness_ = true;
   std::vector<Node> nodes_; // of mobile links, parents before children
   std::vector<int> node_of_link_;
   std::vector<Pair> pairs_;

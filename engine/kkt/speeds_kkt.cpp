@@ -22,10 +22,10 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
   const System& system = problem.system;
   const Eigen::VectorXd& unit = problem.scaling.column;
   tree_.linearize(problem, z, at);
-  products_.linearize_forces(problem, z, at.kinematics, at.residual);
   size_ = system.nv;
   rows_ = 0;
   laws_alone_ = problem.parameters.phase_free;
+  products_.linearize_forces(problem, z, at.kinematics, at.residual, !laws_alone_);
   mass_ = tree_.mass();
   speeds_.clear();
   for (const DriveTorqueElement& torque : system.torques)

@@ -63,72 +63,46 @@ Eigen::MatrixXd HouseholderQr::q() const {
 
 bool CompleteOrthogonal::compute(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance) {
   unknowns_ = a.cols();
-  empty_ = a.size() == 0;
-  if (empty_) return true;
-  if (!a.allFinite()) return false;
-  large_ = std::min(a.rows(), a.cols()) >= large::from;
-  if (large_) return compute_large(a, relative_tolerance);
-  if (relative_tolerance)
-    decomposition_.setThreshold(*relative_tolerance);
-  else
-    decomposition_.setThreshold(Eigen::Default);
-  decomposition_.compute(a);
-  return true;
-}
-
-Eigen::Index CompleteOrthogonal::rank() const {
-  return empty_ ? 0 : large_ ? rank_ : decomposition_.rank();
-}
-
-void CompleteOrthogonal::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  if (empty_)
-    x.setZero(unknowns_);
-  else if (large_)
-    solve_large(b, x);
-  else
-    x = decomposition_.solve(b);
-}
-
-Eigen::MatrixXd CompleteOrthogonal::solve(const Eigen::MatrixXd& b) const {
-  if (empty_) return Eigen::MatrixXd::Zero(unknowns_, b.cols());
-  if (!large_) return decomposition_.solve(b);
-  Eigen::MatrixXd out(unknowns_, b.cols());
-  Eigen::VectorXd x;
-  for (Eigen::Index j = 0; j < b.cols(); ++j) {
-    interruption_point();
-    solve_large(b.col(j), x);
-    out.col(j) = x;
-  }
-  return out;
-}
-
-bool CompleteOrthogonal::compute_large(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance) {
+  rank_ = 0;
+  if (a.size() == 0) return true;
   if (!qr_.compute(a)) return false;
   const double epsilon = std::numeric_limits<double>::epsilon();
   rank_ = qr_.rank(relative_tolerance.value_or(epsilon * static_cast<double>(std::min(a.rows(), a.cols()))));
-  if (rank_ == unknowns_) return true;
+  if (rank_ == unknowns_ || rank_ == 0) return true;
   const Eigen::MatrixXd r = qr_.matrix().topRows(rank_).triangularView<Eigen::Upper>();
   return rows_.compute(r.transpose());
 }
 
-void CompleteOrthogonal::solve_large(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  Eigen::VectorXd right = b;
-  qr_.apply_q_transposed(right, rank_);
-  Eigen::VectorXd permuted = Eigen::VectorXd::Zero(unknowns_);
-  auto head = permuted.head(rank_);
+void CompleteOrthogonal::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  right_ = b;
+  x.setZero(unknowns_);
+  if (rank_ == 0) return;
+  qr_.apply_q_transposed(right_, rank_);
+  permuted_.setZero(unknowns_);
+  auto head = permuted_.head(rank_);
   if (rank_ == unknowns_) {
-    head = right.head(rank_);
+    head = right_.head(rank_);
     qr_.matrix().topLeftCorner(rank_, rank_).triangularView<Eigen::Upper>().solveInPlace(head);
-  } else if (rank_ > 0) { // R_1 y = c is R'^T (Q'^T y) = P'^T c
+  } else { // R_1 y = c is R'^T (Q'^T y) = P'^T c
     for (Eigen::Index i = 0; i < rank_; ++i)
-      head[i] = right[rows_.permutation()[i]];
+      head[i] = right_[rows_.permutation()[i]];
     const auto transposed = rows_.matrix().topLeftCorner(rank_, rank_).transpose();
     transposed.triangularView<Eigen::Lower>().solveInPlace(head);
-    rows_.apply_q(permuted, rank_);
+    rows_.apply_q(permuted_, rank_);
   }
-  x.resize(unknowns_);
   for (Eigen::Index i = 0; i < unknowns_; ++i)
-    x[qr_.permutation()[i]] = permuted[i];
+    x[qr_.permutation()[i]] = permuted_[i];
+}
+
+Eigen::MatrixXd CompleteOrthogonal::solve(const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd out(unknowns_, b.cols());
+  Eigen::VectorXd x;
+  for (Eigen::Index j = 0; j < b.cols(); ++j) {
+    interruption_point();
+    solve(b.col(j), x);
+    out.col(j) = x;
+  }
+  return out;
 }
 
 std::optional<Eigen::MatrixXd> orthonormal_completion(const Eigen::MatrixXd& columns) {

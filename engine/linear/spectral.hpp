@@ -106,20 +106,14 @@ class CompleteOrthogonal {
  public:
   // Pivots below this share of the largest count as zero. False where an entry is not finite.
   [[nodiscard]] bool compute(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance = {});
-  Eigen::Index rank() const;
-  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
-  Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
+  Eigen::Index rank() const { return rank_; }
+  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& b);
 
  private:
-  bool compute_large(const Eigen::MatrixXd& a, std::optional<double> relative_tolerance);
-  void solve_large(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
-
-  bool empty_ = true;
-  Eigen::Index unknowns_ = 0;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition_;
-  bool large_ = false; // then A P = Q R, and where the rank is short R_1^T P' = Q' R' of its first rows
-  PivotedQr qr_, rows_;
-  Eigen::Index rank_ = 0;
+  Eigen::Index unknowns_ = 0, rank_ = 0;
+  PivotedQr qr_, rows_; // A P = Q R, and where the rank is short R_1^T P' = Q' R' of its first rows
+  Eigen::VectorXd right_, permuted_;
 };
 
 // A square matrix (n, n), by LU with partial pivoting.

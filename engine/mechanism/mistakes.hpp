@@ -42,7 +42,8 @@ void find_belt_warnings(const Mechanism& mechanism, Mistakes& warnings);
 void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_force_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
 void find_air_mistakes(const Mechanism& mechanism, Mistakes& mistakes);
-// Of one of them by itself, whatever the names of other parts.
+// Of one of them by itself, whatever the names of other parts; of a joint without the laws of its drives,
+// which no number can make wrong.
 void find_mistakes_of(const Body& body, const std::string& path, Mistakes& mistakes);
 void find_mistakes_of_joint(const Mechanism& mechanism, std::size_t joint, Mistakes& mistakes);
 void find_mistakes_of(const Mechanism& mechanism, const Force& force, const std::string& path,

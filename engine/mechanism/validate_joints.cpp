@@ -54,16 +54,26 @@ void find_torque_mistakes(const Mechanism& mechanism, std::size_t j, std::size_t
     mistakes.expect(joint.coordinates[i].damping == 0 && !joint.coordinates[i].damping_force,
                     coordinate_path(mechanism, j, "damping", i),
                     "expected zero: where a damper resists the drive no momentum is kept");
-  if (!finds_speed(drive)) return;
-  mistakes.expect(drive.speed != 0 || momentum, path + ".speed",
-                  "expected a speed other than zero, at which the search for the steady one begins");
-  const bool angle = is_angle(joint.type, static_cast<int>(i));
-  for (const char* which : {"torque", "load"}) {
-    const Formula* law = drive_law(mechanism, joint, static_cast<int>(i), which);
-    try {
-      if (law) check_drive_law(mechanism, *law, angle, path + "." + which);
-    } catch (const SceneError& error) {
-      mistakes.add(error.where(), error.expected());
+  if (finds_speed(drive))
+    mistakes.expect(drive.speed != 0 || momentum, path + ".speed",
+                    "expected a speed other than zero, at which the search for the steady one begins");
+}
+
+// Of names and dimensions in the laws of such drives, in which numbers have no part.
+void find_drive_law_mistakes(const Mechanism& mechanism, std::size_t j, Mistakes& mistakes) {
+  const Joint& joint = mechanism.joints[j];
+  const auto count = static_cast<std::size_t>(coordinate_count(joint.type));
+  for (std::size_t i = 0; i < std::min(count, joint.coordinates.size()); ++i) {
+    if (!joint.coordinates[i].drive || !finds_speed(*joint.coordinates[i].drive)) continue;
+    const bool angle = is_angle(joint.type, static_cast<int>(i));
+    for (const char* which : {"torque", "load"}) {
+      const Formula* law = drive_law(mechanism, joint, static_cast<int>(i), which);
+      try {
+        if (law)
+          check_drive_law(mechanism, *law, angle, coordinate_path(mechanism, j, "drive", i) + "." + which);
+      } catch (const SceneError& error) {
+        mistakes.add(error.where(), error.expected());
+      }
     }
   }
 }
@@ -303,6 +313,7 @@ void find_joint_mistakes(const Mechanism& mechanism, Mistakes& mistakes) {
     else
       find_two_body_mistakes(mechanism, numbers, joint.bodies, path, mistakes);
     find_mistakes_of_joint(mechanism, j, mistakes);
+    find_drive_law_mistakes(mechanism, j, mistakes);
   }
 }
 

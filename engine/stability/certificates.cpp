@@ -69,8 +69,7 @@ std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
   const auto measured = [&](const Eigen::MatrixXd& a) {
     return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
   };
-  const Eigen::MatrixXd mass = measured(motion.mass), velocity = measured(motion.velocity),
-                        stiffness = measured(motion.stiffness);
+  const Eigen::MatrixXd mass = measured(motion.mass);
   SymmetricEigen shape;
   if (!shape.compute((mass + mass.transpose()) / 2)) return {};
   Eigen::Index massless = 0;
@@ -78,7 +77,8 @@ std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
          shape.values()[massless] < tolerance::massless * std::max(mass.norm(), 1e-300))
     ++massless;
   if (massless == 0) return false;
-  const Eigen::MatrixXd z = shape.vectors().leftCols(massless),
+  const Eigen::MatrixXd velocity = measured(motion.velocity), stiffness = measured(motion.stiffness),
+                        z = shape.vectors().leftCols(massless),
                         r = shape.vectors().rightCols(mass.rows() - massless);
   SymmetricEigen local;
   if (!local.compute(z.transpose() * (stiffness + stiffness.transpose()) * z / 2)) return {};

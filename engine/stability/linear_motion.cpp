@@ -40,6 +40,13 @@ void make_stiffness_of_motion(const System& system, Eigen::MatrixXd& jacobian) {
   }
 }
 
+// Whether the constraints of the balance ask anything of the speeds that are found.
+bool loops_hold_speeds(const System& system, const Eigen::MatrixXd& constraint) {
+  return std::ranges::any_of(system.torques, [&](const DriveTorqueElement& torque) {
+    return !constraint.col(system.links[static_cast<std::size_t>(torque.link)].v).isZero(0);
+  });
+}
+
 } // namespace
 
 LinearMotion linear_motion(const Problem& problem, const Eigen::VectorXd& q, double t, Workspace& w) {
@@ -82,19 +89,23 @@ ReducedMotion reduced_motion(const Problem& problem, const Unknowns& z, Workspac
     const Scaling scaling = motion_scaling(problem);
     out.unit = scaling.column;
     const Eigen::VectorXd terms = w.magnitudes.force.cwiseProduct(out.unit);
-    ConstraintSpace space;
-    Eigen::MatrixXd jacobian(system.rows, system.nv);
-    if (system.rows > 0)
-      jacobian = scaling.row.asDiagonal() *
-                 constraints_of_motion(system, problem.parameters, w.kinematics, l.constraint) *
-                 scaling.column.asDiagonal();
-    space.factor(jacobian, rank_tolerance(problem, w.residual.phi), row_rounding);
-    out.basis = space.basis();
+    const bool tied = loops_tie_angles(problem, w.kinematics);
+    if (tied || loops_hold_speeds(system, l.constraint)) {
+      const Eigen::MatrixXd jacobian =
+          scaling.row.asDiagonal() *
+          constraints_of_motion(system, problem.parameters, w.kinematics, l.constraint) *
+          scaling.column.asDiagonal();
+      ConstraintSpace space;
+      space.factor(jacobian, rank_tolerance(problem, w.residual.phi), row_rounding);
+      out.basis = space.basis();
+    } else { // in either unit of the speeds
+      out.basis = w.dense.constraints().basis();
+    }
     const Eigen::VectorXd change = scaling.column.cwiseQuotient(problem.scaling.column);
     Eigen::MatrixXd stiffness = change.asDiagonal() * w.dense.stiffness() * change.asDiagonal();
     make_stiffness_of_motion(system, stiffness);
     const PhaseStiffness phases = phase_stiffness(problem, z, w.elsewhere());
-    out.of_angles = !phases.entries.empty() || loops_tie_angles(problem, w.kinematics);
+    out.of_angles = !phases.entries.empty() || tied;
     for (std::size_t i = 0; i < phases.entries.size(); ++i) {
       const int v = phases.entries[i];
       stiffness.col(v) =

@@ -81,6 +81,33 @@ TEST_CASE("least squares of least norm with large matrices of any rank") {
   }
 }
 
+TEST_CASE("least squares of least norm with small matrices of any shape and rank") {
+  CompleteOrthogonal ours; // one for all: it keeps its storage
+  for (const auto& [rows, columns, rank] : {std::array<Eigen::Index, 3>{3, 3, 3},
+                                            {3, 3, 2},
+                                            {5, 3, 3},
+                                            {5, 3, 1},
+                                            {2, 4, 2},
+                                            {4, 6, 3},
+                                            {3, 3, 0}}) {
+    CAPTURE(rows, columns, rank);
+    const Eigen::MatrixXd a = random_matrix(rows, rank, 31) * random_matrix(rank, columns, 32),
+                          b = random_matrix(rows, 2, 33);
+    REQUIRE(ours.compute(a, 1e-10));
+    CHECK(ours.rank() == rank);
+    // By singular values.
+    const auto parts = singular_vectors(a);
+    REQUIRE(parts);
+    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(columns, 2);
+    for (Eigen::Index i = 0; i < rank; ++i)
+      expected += parts->right.col(i) * (parts->left.col(i).transpose() * b) / parts->values[i];
+    CHECK((ours.solve(b) - expected).norm() <= 1e-10 * expected.norm());
+    Eigen::VectorXd x;
+    ours.solve(b.col(1), x);
+    CHECK((x - expected.col(1)).norm() <= 1e-10 * expected.norm());
+  }
+}
+
 TEST_CASE("columns of a large matrix are orthogonalised with pivots") {
   const Eigen::MatrixXd a = random_matrix(n + 30, 60, 8) * random_matrix(60, n, 9);
   PivotedQr qr;
