@@ -25,9 +25,9 @@ PlotCurve part_like(const HopfPoint& point) {
             .width = 2.2};
   switch (point.loss()) {
   case HopfLoss::soft:
-    return {.name = "hunting begins softly", .points = {}, .color = plot_color::green, .width = 2.8};
+    return {.name = "hunting begins, soft", .points = {}, .color = plot_color::green, .width = 2.8};
   case HopfLoss::hard:
-    return {.name = "hunting begins hard", .points = {}, .color = plot_color::purple, .width = 2.8};
+    return {.name = "hunting begins, hard", .points = {}, .color = plot_color::purple, .width = 2.8};
   case HopfLoss::undecided: break;
   }
   return {.name = "hunting begins", .points = {}, .color = plot_color::neutral, .width = 2.2};

@@ -65,8 +65,8 @@ bool button_clicked(const KeyboardState& keyboard) {
   const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
   const ImVec2 at = ImGui::GetIO().MousePos;
   return std::ranges::any_of(keyboard.stops, [&](const KeyStop& stop) {
-    return (stop.use == KeyUse::press || stop.use == KeyUse::aside) && stop.window == window &&
-           at.x >= stop.from.x && at.x < stop.to.x && at.y >= stop.from.y && at.y < stop.to.y;
+    return is_pressed(stop.use) && stop.window == window && at.x >= stop.from.x && at.x < stop.to.x &&
+           at.y >= stop.from.y && at.y < stop.to.y;
   });
 }
 

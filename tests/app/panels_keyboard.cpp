@@ -410,6 +410,29 @@ TEST_CASE("F6 goes round all regions, and Tab in the view goes on switching Buil
   CHECK(app.view.camera.distance < distance);
 }
 
+TEST_CASE("the tabs of the studies are one stop, the open one, and arrows go along them") {
+  Typist hand;
+  App& app = hand.app;
+  hand.key('C');
+  hand.frames(3);
+  REQUIRE(app.session.study.open == StudyKind::response);
+  hand.go_to("study");
+  CHECK(hand.at() == "study/response");
+  hand.key(keys::tab);
+  CHECK_FALSE(hand.at() == "study/states");
+  hand.key(keys::tab, false, true);
+  CHECK(hand.at() == "study/response");
+  hand.key(keys::right);
+  CHECK(hand.at() == "study/states");
+  hand.key(keys::right);
+  CHECK(hand.at() == "study/modes");
+  CHECK(app.session.study.open == StudyKind::response); // Enter opens
+  hand.key(key_enter);
+  hand.frames(2);
+  CHECK(app.session.study.open == StudyKind::modes);
+  CHECK(hand.at() == "study/modes");
+}
+
 TEST_CASE("a dialog keeps the keys to itself and gives them back") {
   Typist hand;
   App& app = hand.app;

@@ -320,3 +320,17 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   robot.frames(3);
   CHECK(app.session.study.modes.campbell.diagram.found != followed);
 }
+
+TEST_CASE("in a small window the list of modes and the diagram's choices are whole") {
+  Robot robot({800, 600});
+  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
+  robot.frames(3);
+  robot.key('O');
+  robot.frames(5);
+  const WidgetRect list = robot.widget("modes/row/1"), drive = robot.widget("campbell/drive"),
+                   last = robot.widget("campbell/radians"), area = robot.widget("plot/campbell/area");
+  CHECK(list.to.x <= drive.from.x);
+  CHECK(last.to.x <= 792);
+  CHECK(last.to.x - last.from.x > ImGui::CalcTextSize("rad/s").x + 8); // not cut
+  CHECK(area.to.y - area.from.y > 80);
+}

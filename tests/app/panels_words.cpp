@@ -98,6 +98,15 @@ TEST_CASE("the help of a study's tab covers nothing of the study") {
   robot.frames(200);
   REQUIRE(tooltip());
   CHECK(tooltip()->Pos.y + tooltip()->Size.y <= tab.from.y);
+  // Pressed, it has said what there was to say, until the pointer comes again.
+  robot.click("study/states");
+  robot.frames(200);
+  CHECK_FALSE(tooltip());
+  robot.point({tab.center().x, tab.center().y + 200});
+  robot.frames(2);
+  robot.point(tab.center());
+  robot.frames(200);
+  CHECK(tooltip());
 }
 
 TEST_CASE("where nothing resists the chip says it as the results do") {

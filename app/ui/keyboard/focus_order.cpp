@@ -23,6 +23,11 @@ std::ptrdiff_t rank_of_region(std::string_view region) {
   return std::ranges::find(region_order, region) - region_order.begin();
 }
 
+// Whether Tab stops at one of the two alone: rows of a list, tabs side by side.
+bool in_one_stop(const KeyStop& a, const KeyStop& b) {
+  return a.use == b.use && (a.use == KeyUse::row || a.use == KeyUse::tab) && a.window == b.window;
+}
+
 // Of a list only one row: the chosen one, that where the keyboard was, or the first.
 std::vector<const KeyStop*> tab_stops(const KeyboardState& state, const std::string& region,
                                       const KeyStop* from) {
@@ -35,8 +40,7 @@ std::vector<const KeyStop*> tab_stops(const KeyboardState& state, const std::str
   };
   for (const KeyStop& stop : state.stops) {
     if ((stop.use == KeyUse::aside && &stop != from) || region_of(stop) != region) continue;
-    if (stop.use == KeyUse::row && !stops.empty() && stops.back()->use == KeyUse::row &&
-        stops.back()->window == stop.window) {
+    if (!stops.empty() && in_one_stop(stop, *stops.back())) {
       if (worth(stop) > worth(*stops.back())) stops.back() = &stop;
       continue;
     }

@@ -295,7 +295,7 @@ void follow_clicks(Ui& ui) {
     const ImVec2 at = io.MousePos;
     const bool within = at.x >= stop.from.x && at.x < stop.to.x && at.y >= stop.from.y && at.y < stop.to.y;
     if (!within || !under || stop.window != under) continue;
-    if (stop.use == KeyUse::press || stop.use == KeyUse::aside) continue; // done with by the click
+    if (is_pressed(stop.use)) continue; // done with by the click
     state.at = stop.name;
     state.region = region_of(stop);
   }
@@ -308,8 +308,7 @@ void find_another(Ui& ui) {
   const std::vector<KeyStop>& stops = ui.widgets.stops;
   const KeyStop* nearest = nullptr;
   for (std::size_t i = 0; i < stops.size(); ++i)
-    if (region_of(stops[i]) == state.region && stops[i].use != KeyUse::aside &&
-        stops[i].use != KeyUse::press && (!nearest || i <= state.place))
+    if (region_of(stops[i]) == state.region && !is_pressed(stops[i].use) && (!nearest || i <= state.place))
       nearest = &stops[i];
   if (nearest && state.opening == state.at && nearest->use == KeyUse::type) return go(ui, *nearest, true);
   if (nearest)

@@ -24,7 +24,7 @@ struct RangeWords {
   std::string prefix; // of the widgets' names
   std::string name;   // of the widget
   std::string title, help;
-  std::string less;       // what the numbers leave out, "less -1 turns a period"
+  std::string less;       // what the numbers leave out, "beside its even -1 turns a period"
   bool amplitude = false; // is told, too
 };
 
@@ -77,7 +77,7 @@ bool by_torque(const Mechanism& m, const PeriodicTorque& t) {
 
 std::string advance_words(const PeriodicCoordinate& c, const ShownUnit& unit) {
   if (!c.goes_on()) return "";
-  return "less " +
+  return "beside its even " +
          (c.angle ? short_text(c.advance / (2 * std::numbers::pi), digits) + " turns"
                   : short_text(unit.shown(c.advance), digits) + " " + unit.text) +
          " a period";

@@ -43,7 +43,8 @@ bool tab(const Session& session, Ui& ui, const Tab& wanted) {
   const ImVec2 text = ImGui::CalcTextSize(wanted.title), from = ImGui::GetCursorScreenPos();
   const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
   const bool pressed = ImGui::InvisibleButton(wanted.name, size);
-  note_widget(ui.widgets, wanted.name);
+  note_widget(ui.widgets, wanted.name, KeyUse::tab);
+  if (on) mark_chosen(ui.widgets);
   help_above(wanted.help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddText({from.x + 8 * s, from.y + 4 * s},

@@ -15,8 +15,12 @@ bool pointed_long() {
   if (!same) {
     state->item = item;
     state->since = state->clock;
+    state->done = false;
   }
   state->frame = frame;
+  for (const bool down : ImGui::GetIO().MouseDown)
+    state->done = state->done || down;
+  if (state->done) return false;
   const double left = state->since + TooltipState::patience - state->clock;
   if (left > 0) state->due = std::min(state->due, left);
   return left <= 0;

@@ -15,12 +15,14 @@ struct TooltipState {
   ImVec2 item{};     // the upper left corner of what is pointed at, in pixels
   double since = 0;  // by the clock
   int frame = -2;    // of ImGui, in which it was last pointed at
+  bool done = false; // it has been pressed since: help would lie over what comes of that
   ImGuiID keyed = 0; // the item that the keyboard is at, where that is shown: it counts as pointed at
   // s until help is due; infinite where none is, or it shows already.
   double due = std::numeric_limits<double>::infinity();
 };
 
-// Whether the last item, which is pointed at, has been so for long enough. Without a state: at once.
+// Whether the last item, which is pointed at, has been so for long enough, and not pressed. Without a state:
+// at once.
 bool pointed_long();
 // Whether the keyboard is at the last item, and the mouse at none.
 bool keyed_item();

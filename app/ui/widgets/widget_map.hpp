@@ -23,6 +23,7 @@ enum class KeyUse {
   press, // Enter and Space press it
   aside, // the same, but Tab passes it by and only arrows go there
   row,   // the same; of the rows of a list Tab stops at one
+  tab,   // Enter and Space press it; of tabs side by side Tab stops at the chosen one
   type,  // Tab begins to type there
   slide, // arrows move its number, digits type it
   plot,  // arrows move what is read off, plus and minus zoom
@@ -38,6 +39,11 @@ struct KeyStop {
   bool chosen = false; // where a list is entered
   std::string address; // of the mechanism's number that it shows, where it shows one
 };
+
+// Whether a click or Enter does all that there is to do with it.
+inline bool is_pressed(KeyUse use) {
+  return use == KeyUse::press || use == KeyUse::aside || use == KeyUse::tab;
+}
 
 // Names are paths: "toolbar/play", "parameters/joints.spin.drive.speed", "results/reactions", "view".
 struct WidgetMap : std::map<std::string, WidgetRect, std::less<>> {

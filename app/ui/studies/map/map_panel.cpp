@@ -99,10 +99,11 @@ void curve_choices(Session& session, Ui& ui) {
   if (check_row(ui, "map/folds", "Folds and crossings", choice.folds,
                 "The curves on which equilibria meet and vanish, or branches cross."))
     choice.folds = !choice.folds;
-  if (check_row(
-          ui, "map/hunting", "Boundary of hunting", choice.hunting,
-          "The curves on which a steady state begins to hunt, softly or hard: a damped pair of eigenvalues "
-          "crosses the imaginary axis (Hopf). Dampers can be varied, too."))
+  if (check_row(ui, "map/hunting", "Boundary of hunting", choice.hunting,
+                "The curves on which a steady state begins to hunt: a damped pair of eigenvalues crosses the "
+                "imaginary axis (Hopf).\nSoft (supercritical): beyond it the swings grow from nothing. Hard "
+                "(subcritical): they are large at once, and before it a push can start them.\nDampers can be "
+                "varied, too."))
     choice.hunting = !choice.hunting;
   if (choice.hunting && has_friction(session.mechanism())) {
     paragraph(friction_left_out, colors_of(ui).warn);

@@ -23,15 +23,35 @@ std::vector<double> values_of(const MapAxis& axis) {
   return values;
 }
 
-// A slanting line through each unstable cell; those of neighbours meet.
+// Which unstable cells are hatched: those on every so many diagonals, so that fine cells do not become one
+// colour, and all of a run along x that none of these crosses.
+std::vector<bool> hatched_cells(const MapCells& cells, std::size_t across, std::size_t up) {
+  constexpr double most = 16; // slanting lines one above the other
+  const auto every = static_cast<std::size_t>(std::max(1., std::round(static_cast<double>(up) / most)));
+  std::vector<bool> hatched(cells.size());
+  for (std::size_t j = 0; j < up; ++j)
+    for (std::size_t i = 0; i < across;) {
+      std::size_t end = i;
+      bool crossed = false;
+      for (; end < across && cells[j * across + end].stable == false; ++end)
+        crossed = crossed || (end + up * every - j) % every == 0;
+      for (std::size_t k = i; k < end; ++k)
+        hatched[j * across + k] = !crossed || (k + up * every - j) % every == 0;
+      i = std::max(end, i + 1);
+    }
+  return hatched;
+}
+
+// A slanting line through each of them; those of neighbours meet.
 PlotCurve hatching(const MapCells& cells, const std::vector<double>& x, const std::vector<double>& y) {
   PlotCurve hatch{
       .name = "unstable", .points = {}, .color = plot_color::vermillion, .width = 1, .hatching = true};
   if (x.size() < 2 || y.size() < 2) return hatch;
+  const std::vector<bool> hatched = hatched_cells(cells, x.size(), y.size());
   const double half_x = (x[1] - x[0]) / 2, half_y = (y[1] - y[0]) / 2;
   for (std::size_t j = 0; j < y.size(); ++j)
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (cells[j * x.size() + i].stable != false) continue;
+      if (!hatched[j * x.size() + i]) continue;
       hatch.points.push_back({x[i] - half_x, y[j] - half_y});
       hatch.points.push_back({x[i] + half_x, y[j] + half_y});
       hatch.points.push_back({no_value_here, no_value_here});

@@ -22,7 +22,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float list_width = 400;       // points
+constexpr float list_width = 376;       // points
 constexpr double modes_patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
@@ -130,12 +130,12 @@ void list(Session& session, Ui& ui, const FoundModes& found, float height) {
       "", "Of the undamped motion with this shape.", "Of the undamped motion with this shape.",
       "The damping ratio: 0 swings for ever, 1 does not swing at all, below 0 it grows.",
       "Of the eigenvalue: disturbances go as e to this times the time. Growing ones are marked."};
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {5 * ui.scale, 2 * ui.scale});
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4 * ui.scale, 2 * ui.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors.panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
   if (ImGui::BeginTable("modes", 5, table_flags, {0, height})) {
     ImGui::TableSetupScrollFreeze(0, 1);
-    constexpr std::array widths{22.f, 88.f, 76.f, 72.f, 100.f};
+    constexpr std::array widths{20.f, 78.f, 70.f, 62.f, 88.f};
     for (std::size_t i = 0; i < titles.size(); ++i)
       ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * ui.scale);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
@@ -261,7 +261,9 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   const float s = ui.scale;
   const std::vector<std::string> speeds = drive_speeds(session.mechanism());
   constexpr float others = 360; // points, of the range and the units
-  ImGui::SetNextItemWidth(std::clamp(ImGui::GetContentRegionAvail().x - others * s, 70 * s, 140 * s));
+  const float room = ImGui::GetContentRegionAvail().x;
+  const bool narrow = room < (others + 70) * s; // then "from" goes without saying
+  ImGui::SetNextItemWidth(std::clamp(room - others * s, 70 * s, 140 * s));
   ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
   if (ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
     for (const std::string& speed : speeds) {
@@ -283,9 +285,11 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
     ImGui::SameLine(0, 10 * s);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextColored(colors_of(ui).dim, "%s", word);
-    ImGui::SameLine(0, 6 * s);
+    if (*word) {
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextColored(colors_of(ui).dim, "%s", word);
+      ImGui::SameLine(0, 6 * s);
+    }
     quantity_field(session, ui,
                    {.name = name,
                     .value = range[which],
@@ -301,9 +305,9 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
                           changed.to = std::max(ends[0], ends[1]);
                           fit_plot(drawn.view);
                         }},
-                   84 * s);
+                   (narrow ? 80 : 84) * s);
   };
-  end("campbell/from", "from", 0);
+  end("campbell/from", narrow ? "" : "from", 0);
   end("campbell/to", "to", 1);
 
   for (const bool hertz : {true, false}) {
