@@ -134,7 +134,7 @@ void add_modes(CLI::App& app, Ending& ending) {
       ->capture_default_str();
   command
       ->add_option("--amplitude", options->amplitude,
-                   "Of the coordinate that moves most: rad, or parts of the mechanism's reach")
+                   "Of the coordinate that moves most: rad, or parts of the mechanism's size")
       ->needs(movie)
       ->check(above_zero())
       ->capture_default_str();

@@ -105,7 +105,7 @@ void add_render(CLI::App& app, Ending& ending) {
           ->excludes("--free-body");
   command
       ->add_option("--amplitude", options->amplitude,
-                   "Of the coordinate that moves most in the mode: rad, or parts of the mechanism's reach")
+                   "Of the coordinate that moves most in the mode: rad, or parts of the mechanism's size")
       ->check(above_zero())
       ->needs(mode)
       ->capture_default_str();

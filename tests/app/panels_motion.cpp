@@ -173,6 +173,32 @@ TEST_CASE("the motion is paused, stepped and scrubbed") {
   CHECK(app.session.playback.time > before);
 }
 
+TEST_CASE("a motion that runs away without its dampers leaves the other one in sight") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("rotor_oil_whip"));
+  robot.frames(3);
+  robot.key('M');
+  robot.frames(3);
+  REQUIRE(app.session.motion.runs[1].run);
+  const std::vector<double>&damped = track(*app.session.motion.runs[0].run, "up").value,
+        &undamped = track(*app.session.motion.runs[1].run, "up").value;
+  const auto [least, most] = std::ranges::minmax(damped);
+  const auto [low, high] = std::ranges::minmax(undamped);
+  REQUIRE(high - low > 20 * (most - least)); // it does
+  const Plot plot = motion_plot(app.session, "value up");
+  REQUIRE(plot.y.range);
+  CHECK((*plot.y.range)[0] < least);
+  CHECK((*plot.y.range)[1] > most);
+  CHECK((*plot.y.range)[1] - (*plot.y.range)[0] < 3 * (most - least));
+  // One whose swings merely last has the axis that shows both.
+  open_scene(app.session, shipped_file("governor"));
+  robot.frames(3);
+  show_motion(app.session, true);
+  robot.frames(3);
+  CHECK_FALSE(motion_plot(app.session, "value arm1").y.range);
+}
+
 TEST_CASE("in a small window the transport has a line of its own, and the plots have room") {
   Robot robot({800, 600});
   robot.key('M');

@@ -84,7 +84,7 @@ TEST_CASE("the plots are over hertz or radians a second") {
   TransferRobot robot;
   const double hertz = robot.view().magnitude.curves.at(0).points.front()[0];
   CHECK(robot.view().magnitude.x.unit == "Hz");
-  robot.click("transfer/hertz");
+  robot.click("transfer/radians");
   robot.frames(2);
   CHECK(robot.view().magnitude.x.unit == "rad/s");
   CHECK(robot.view().phase.x.unit == "rad/s");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace flyball {
 
@@ -140,6 +141,30 @@ std::optional<double> steady_value(const Session& session, const std::string& ke
   return std::nullopt;
 }
 
+// From the least to the most of the points; nothing where there are none.
+std::optional<PlotRange> extent_of(const PlotCurve& curve) {
+  if (curve.points.empty()) return std::nullopt;
+  const auto [least, most] =
+      std::ranges::minmax_element(curve.points, {}, [](const auto& point) { return point[1]; });
+  return PlotRange{(*least)[1], (*most)[1]};
+}
+
+// Without its dampers a motion may run away: then the axis is that of the damped one, which would be a flat
+// line beside it, and the other leaves the frame.
+void keep_damped_in_sight(Plot& plot) {
+  constexpr double much = 10; // times as far
+  if (plot.curves.size() != 2) return;
+  const std::optional<PlotRange> damped = extent_of(plot.curves[0]), undamped = extent_of(plot.curves[1]);
+  if (!damped || !undamped) return;
+  PlotRange wanted = *damped;
+  for (const PlotReference& reference : plot.references)
+    wanted = {std::min(wanted[0], reference.at), std::max(wanted[1], reference.at)};
+  const double span = wanted[1] - wanted[0], all = (*undamped)[1] - (*undamped)[0];
+  if (!(span > 0) || !(all > much * span)) return;
+  constexpr double room = 0.08; // of the span, at either end
+  plot.y.range = PlotRange{wanted[0] - room * span, wanted[1] + room * span};
+}
+
 } // namespace
 
 std::vector<MotionQuantity> motion_quantities(const Session& session, const Run& run) {
@@ -209,6 +234,7 @@ Plot motion_plot(const Session& session, const std::string& quantity) {
       plot.references.push_back(
           {.axis = 1, .at = *steady, .label = "steady", .color = plot_color::blue, .in_legend = true});
   }
+  if (both) keep_damped_in_sight(plot);
   show_axis(plot, 1, plot.y.unit, session.units);
   // The undamped run lies below the damped one.
   std::ranges::stable_sort(plot.curves, {}, [](const PlotCurve& c) { return c.width; });

@@ -1,6 +1,7 @@
 // The transfer function of one input and one output: what is chosen, what it says, Bode's plots, poles and
 // zeros.
 #include "app/plot/transfer_plot.hpp"
+#include "app/session/periodic.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
@@ -68,10 +69,13 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
              "What acts: a number, or a torque or force that is added.");
   signal_row(session, ui, "transfer/output", "Output", transfer_outputs(session), state.choice.output,
              "What is looked at.");
-  bool hertz = drawn.hertz;
-  if (text_button(ui, "transfer/hertz", hertz ? "in rad/s" : "in Hz")) drawn.hertz = !hertz;
-  help_on_hover("The unit of frequencies.");
-  ImGui::SameLine();
+  for (const bool hertz : {true, false}) {
+    if (text_button(ui, hertz ? "transfer/hertz" : "transfer/radians", hertz ? "Hz" : "rad/s",
+                    drawn.hertz == hertz))
+      drawn.hertz = hertz;
+    help_on_hover("The unit of frequencies.");
+    ImGui::SameLine(0, (hertz ? 2 : 8) * ui.scale);
+  }
   const bool any = has_transfer(session);
   ImGui::BeginDisabled(!any);
   if (text_button(ui, "transfer/save", "Export the model…")) commands.run("file.model");
@@ -89,7 +93,11 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
   } else if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
   else if (!converged(session) && !solving(session))
-    paragraph("There is no steady state to make a model about.", colors.warn);
+    paragraph(periodic_motion(session)
+                  ? "A linear model is about a steady state, and there is none: it moves periodically with "
+                    "the drives. Response shows that over a number."
+                  : "There is no steady state to make a model about.",
+              colors.warn);
   if (!any) return;
   if (has_friction(session.mechanism())) {
     paragraph(friction_left_out, colors.warn);
