@@ -115,7 +115,8 @@ void choose_first(Session& session) {
   choose_response(session, (drive == session.parameters.end() ? session.parameters.front() : *drive).address);
 }
 
-// At first a length, as of a collar, for what moves it; else the first coordinate.
+// At first a speed that is found, as of an engine under its load; else a length, as of a collar, for what
+// moves it; else the first coordinate.
 void choose_first_quantity(Session& session) {
   ResponseState& state = session.study.response;
   const std::vector<ResponseQuantity> all = offered_quantities(session);
@@ -127,9 +128,13 @@ void choose_first_quantity(Session& session) {
   // Without an answer not everything is offered that may be so again.
   if (all.empty() || (!state.choice.quantity.empty() && !converged(session) && !periodic_motion(session)))
     return;
-  const auto length = std::ranges::find_if(
-      all, [](const ResponseQuantity& each) { return each.unit == "m" && each.key.starts_with("value "); });
-  state.shown = length == all.end() ? all.front() : *length;
+  const auto first_in = [&](std::string_view unit) {
+    return std::ranges::find_if(all, [&](const ResponseQuantity& each) {
+      return each.unit == unit && each.key.starts_with("value ");
+    });
+  };
+  const auto speed = first_in("rad/s"), length = first_in("m");
+  state.shown = speed != all.end() ? *speed : length != all.end() ? *length : all.front();
   state.choice.quantity = state.shown.key;
 }
 

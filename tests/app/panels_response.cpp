@@ -576,6 +576,21 @@ TEST_CASE("design mode: at which speed is the governor's collar at 0.12 m?") {
              ContainsSubstring("with speed of spin from 0 to") && ContainsSubstring(" rad/s:"));
 }
 
+TEST_CASE("of an engine its speed over the load is drawn at first: the droop curve") {
+  ResponseRobot robot("governor_engine");
+  REQUIRE(robot.state().choice.address == "joints.spin.drive.load");
+  CHECK(robot.state().choice.quantity == "value spin.speed");
+  const std::vector<PlotCurve>& curves = robot.drawn().plot.curves;
+  REQUIRE_FALSE(curves.empty());
+  std::vector<std::array<double, 2>> points = curves.front().points;
+  REQUIRE(points.size() > 2);
+  std::ranges::sort(points);
+  CHECK(points.front()[0] == Approx(-25));
+  CHECK(points.front()[1] == Approx(11.74560).epsilon(1e-6));
+  CHECK(points.back()[0] == Approx(25));
+  CHECK(points.back()[1] == Approx(10.29396).epsilon(1e-6));
+}
+
 TEST_CASE("Find asks for a speed that is found: under which load does the engine turn at 12 rad/s?") {
   ResponseRobot robot("governor_engine");
   App& app = robot.app;
