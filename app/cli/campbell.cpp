@@ -10,6 +10,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -189,7 +190,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
       follow.progress = progress->reporter();
       diagram =
           campbell_diagram(mechanism, range.address,
-                           follow_branches(mechanism, range.address, range.from, range.to, follow), orders);
+                           follow_response(mechanism, range.address, range.from, range.to, follow), orders);
     } catch (const SceneError& error) {
       throw options->scene.in_file(error);
     }

@@ -71,6 +71,7 @@ std::string model_text(const Mechanism& mechanism, const LinearModel& model) {
   } else {
     out += "  no static gain: something integrates\n";
   }
+  if (const std::string text = friction_text(model); !text.empty()) out += "  " + printable(text) + "\n";
   const double error = model.output_error.size() > 0 ? model.output_error.maxCoeff() : 0;
   return out + fmt::format("  relative error of the outputs {:.1e}, {:.1f} ms\n", error,
                            (model.steady.run_time_s + model.run_time_s) * 1e3);
@@ -158,8 +159,10 @@ void add_linearize(CLI::App& app, Ending& ending) {
   command->add_flag("--nearest", arguments->nearest, "About the plain Newton-Raphson answer, stable or not");
   command->add_flag("--phases", arguments->phases,
                     "Angles of shafts that torques drive are states, too: they integrate");
-  command->add_flag("--slipping", arguments->slipping,
-                    "Of the motion once joints with dry friction slip: their hold is left out");
+  command->add_flag(
+      "--slipping", arguments->slipping,
+      "Of the motion once joints with dry friction slip: their hold is left out, and they are no "
+      "longer rigid");
   command->add_flag("--json", arguments->json, "Print a JSON object");
   command->footer("Example: flyball linearize governor.json --inputs joints.spin.drive.speed --outputs slide "
                   "-o governor.m");

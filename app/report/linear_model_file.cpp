@@ -106,7 +106,9 @@ std::string script_head(const Mechanism& mechanism, const LinearModel& model, co
                   printable(mechanism.name));
   out += model.explicit_form ? "x' = A x + B u, y = C x + D u.\n"
                              : "E x' = A x + B u, y = C x + D u; E is singular, some bodies have no mass.\n";
-  if (has_friction(mechanism))
+  if (const std::string text = friction_text(model); !text.empty())
+    out += fmt::format("{} {}\n", sign, printable(text));
+  else if (has_friction(mechanism))
     out +=
         fmt::format("{} Of the motion once joints with dry friction slip: their hold is left out.\n", sign);
   for (const LinearModel::State& state : model.states)
@@ -260,6 +262,18 @@ std::optional<LinearModelFormat> linear_model_format(std::string_view extension)
   return {};
 }
 
+std::string friction_text(const LinearModel& model) {
+  const auto list = [](const std::vector<std::string>& names) {
+    return word_list(std::vector<std::string_view>(names.begin(), names.end()), "and");
+  };
+  std::string out;
+  if (!model.held.empty()) out = "Linear model with " + list(model.held) + " held by dry friction.";
+  if (!model.slipping.empty())
+    out += (out.empty() ? "" : " ") + list(model.slipping) +
+           (model.slipping.size() > 1 ? " slip" : " slips") + " on, against constant friction.";
+  return out;
+}
+
 OrderedJson linear_model_json(const Mechanism& mechanism, const LinearModel& model) {
   OrderedJson out;
   out["name"] = mechanism.name;
@@ -268,10 +282,19 @@ OrderedJson linear_model_json(const Mechanism& mechanism, const LinearModel& mod
                              ? "x' = A x + B u, y = C x + D u."
                              : "Bodies without mass follow the others at once: E x' = A x + B u alone."
                        : model.refusal;
+  if (const std::string text = friction_text(model); any && !text.empty())
+    out["message"] = out["message"].get<std::string>() + " " + text;
   for (const char* key : {"states", "inputs", "outputs", "A", "B", "C", "D", "descriptor", "poles", "zeros",
                           "static_gain", "stable", "residual", "run_time_s"})
     out[key] = nullptr;
+  if (has_friction(mechanism))
+    for (const char* key : {"held_by_friction", "slips"})
+      out[key] = nullptr;
   if (!any) return out;
+  if (has_friction(mechanism)) {
+    out["held_by_friction"] = model.held;
+    out["slips"] = model.slipping;
+  }
   const auto list = [&](const char* key, const auto& signals) {
     out[key] = OrderedJson::array();
     for (const auto& signal : signals)
@@ -299,7 +322,7 @@ OrderedJson linear_model_json(const Mechanism& mechanism, const LinearModel& mod
   out["poles"] = complex_json(model.poles);
   out["zeros"] = zeros_json(model);
   if (model.gain) out["static_gain"] = matrix_json(*model.gain);
-  if (model.steady.stable) out["stable"] = *model.steady.stable;
+  if (model.stable) out["stable"] = *model.stable;
   out["residual"] = finite_json(model.steady.residual);
   out["run_time_s"] = model.steady.run_time_s + model.run_time_s;
   return out;

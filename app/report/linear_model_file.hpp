@@ -23,6 +23,9 @@ std::optional<LinearModelFormat> linear_model_format(std::string_view extension)
 // its reason, and null for the rest.
 nlohmann::ordered_json linear_model_json(const Mechanism& mechanism, const LinearModel& model);
 
+// What dry friction does in it, sentences; empty where nothing rests on friction.
+std::string friction_text(const LinearModel& model);
+
 // Of a model that is not refused.
 std::string linear_model_file(const Mechanism& mechanism, const LinearModel& model, LinearModelFormat format);
 

@@ -105,6 +105,7 @@ struct Simulator::State {
     touching.assign(stops.size(), false);
     bearing_turns.forget();
     flips = list_flips(model->system, model->parameters);
+    const Eigen::VectorXd asked = q;
     restructure(t, u);
     if (!equations->evaluate(t, q, s))
       throw SceneError("", "the equations of motion have no solution at the start: " + equations->unsolved());
@@ -117,7 +118,10 @@ struct Simulator::State {
     run.method_reason = choice.reason;
     stepped_to = t;
     slips.clear();
-    if (free) settle_frictions(t, equations->velocity().head(model->system.nv));
+    if (free) { // which may hold what has no mass where it is, and without friction went to its balance
+      q = asked;
+      settle_frictions(t, u);
+    }
     use_method(choice.method);
     ode->pack(q, s, energies, y);
     start_stepper(t);

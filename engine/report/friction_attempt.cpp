@@ -87,7 +87,8 @@ class Attempt {
   std::optional<StateOnFriction> solve_with(std::span<const CoordinateReference> at_rest,
                                             const SolveOptions& options) const try {
     const Standstill still = driven(at_rest);
-    StateOnFriction out{Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, {}};
+    StateOnFriction out{
+        Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, implied_, {}};
     SolveOptions inner = options;
     inner.friction = inner.warm = false;
     inner.details = true; // what holding takes
@@ -422,8 +423,8 @@ std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
 }
 
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
-                          const FrictionParts& parts) {
-  return Attempt(mechanism, frictions, parts).driven().mechanism;
+                          const FrictionParts& parts, std::vector<bool> implied) {
+  return Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).driven().mechanism;
 }
 
 } // namespace flyball

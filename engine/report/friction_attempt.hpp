@@ -23,6 +23,6 @@ std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
 
 // The mechanism that is solved then. Throws SceneError.
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
-                          const FrictionParts& parts);
+                          const FrictionParts& parts, std::vector<bool> implied = {});
 
 } // namespace flyball

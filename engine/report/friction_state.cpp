@@ -7,8 +7,10 @@
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
+#include "engine/report/messages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace flyball {
@@ -157,6 +159,19 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std:
   return all;
 }
 
+FrictionParts parts_of(const Mechanism& mechanism, std::span<const FrictionForce> frictions) {
+  const std::vector<CoordinateReference> all = find_frictions(mechanism);
+  FrictionParts out(all.size(), Part::none);
+  for (const FrictionForce& force : frictions) {
+    const auto at = std::ranges::find(all, find_coordinate(mechanism, coordinate_label(force)));
+    if (at == all.end()) continue;
+    out[place(static_cast<int>(at - all.begin()))] = !force.slips                 ? Part::holds
+                                                     : std::signbit(*force.value) ? Part::slips_forwards
+                                                                                  : Part::slips_backwards;
+  }
+  return out;
+}
+
 bool holds_more(const FrictionParts& here, const FrictionParts& there) {
   return here != there && std::ranges::equal(here, there, [](Part a, Part b) {
            return a == b || (a == Part::holds && b == Part::none);
@@ -221,6 +236,21 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     if (unstable) break;
   }
   return unstable;
+}
+
+std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked,
+                              const std::atomic<bool>* cancel) {
+  if (!has_friction(mechanism)) return {};
+  SolveOptions options;
+  options.details = options.explain = false;
+  options.cancel = cancel;
+  try {
+    const Solution steady = Analysis(mechanism).solve(options);
+    if (steady.status == Status::converged && !steady.frictions.empty())
+      return rests_on_friction(steady, asked);
+  } catch (const SceneError&) { // no mechanism can be made of the numbers, say
+  }
+  return {};
 }
 
 std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options) {

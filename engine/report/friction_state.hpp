@@ -27,6 +27,7 @@ struct StateOnFriction {
   Analysis analysis; // of the mechanism with such joints driven so, at the state
   Solution solution; // in the mechanism's own words, with Solution::frictions
   FrictionParts parts;
+  std::vector<bool> implied; // of what slips: the drives give its rate, by coordinate with friction
   // By coordinate with friction, above zero where its part is as it is taken to be: of what slips the rate
   // the way it slips (rad/s or m/s), of what is held the part of the limit that is left. Where loops leave it
   // open how joints share, that of all; infinite of those without a part.
@@ -39,6 +40,9 @@ struct StateOnFriction {
 // more than three joints would have to be tried.
 std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
                                           const std::atomic<bool>* cancel = nullptr);
+
+// The parts that friction has in a state that rests on it.
+FrictionParts parts_of(const Mechanism& mechanism, std::span<const FrictionForce> frictions);
 
 // Whether a state with the first parts is one with the others, too: all that has a part there has the same
 // one here, and the rest, which there rests in balance, is held here.
@@ -53,6 +57,11 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
 // Where a solve without this found no steady state. Nothing where there is none, or where more than three
 // joints would have to be tried for slipping. Throws SceneError for starts that name nothing.
 std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, const SolveOptions& options);
+
+// Of a study that found no steady state without friction: what is said where solving answers with one that
+// rests on it (rests_on_friction()); empty where it does not.
+std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked,
+                              const std::atomic<bool>* cancel = nullptr);
 
 // All of them, what is held as drawn first; of `options` the starts do not count.
 std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options);

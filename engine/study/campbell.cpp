@@ -1,5 +1,6 @@
 #include "engine/study/campbell.hpp"
 
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/assignment.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
@@ -7,7 +8,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/report/analysis.hpp"
+#include "engine/report/friction_state.hpp"
 #include "engine/solve/solution_difference.hpp"
 #include "engine/study/mode_tracks.hpp"
 
@@ -56,7 +57,8 @@ std::vector<std::pair<std::string, double>> between(const ResponsePoint& a, cons
 class Describer {
  public:
   Describer(const Mechanism& mechanism, const std::string& address, const std::atomic<bool>* cancel)
-      : joint_(driven_joint(mechanism, address)), analysis_(mechanism), cancel_(cancel) {
+      : mechanism_(mechanism), address_(address), joint_(driven_joint(mechanism, address)),
+        analysis_(mechanism), cancel_(cancel) {
     analysis_.vary(std::vector{address});
   }
 
@@ -65,8 +67,8 @@ class Describer {
   CampbellPoint describe(const ResponsePoint& point) {
     CampbellPoint out;
     if (point.singular_loops) return out;
-    if (solve(point.parameter, start_values(point.coordinates)) && same_as(point))
-      out.modes = analysis_.modes();
+    if (solve(point.parameter, start_values(point.coordinates), point.frictions) && same_as(point))
+      out.modes = solved().modes();
     if (out.modes.empty()) out.modes = without_shapes(point.eigenvalues);
     for (const VibrationMode& mode : out.modes)
       out.whirls.push_back(whirl(mode));
@@ -76,23 +78,35 @@ class Describer {
   // Modes at a value between those of two points; none where there is no such state.
   std::vector<VibrationMode> modes_between(const ResponsePoint& a, const ResponsePoint& b, double value) {
     const double part = (value - a.parameter) / (b.parameter - a.parameter);
-    if (!solve(value, between(a, b, part))) return {};
-    return analysis_.modes();
+    if (!solve(value, between(a, b, part), a.frictions)) return {};
+    return solved().modes();
   }
   std::optional<Whirl> whirl(const VibrationMode& mode) {
-    return turns() ? analysis_.whirl(mode, joint_) : std::nullopt;
+    return turns() ? solved().whirl(mode, joint_) : std::nullopt;
   }
 
  private:
-  bool solve(double value, std::vector<std::pair<std::string, double>> start) {
+  Analysis& solved() { return on_friction_ ? on_friction_->analysis : analysis_; }
+
+  // `frictions`: of a state that rests on them.
+  bool solve(double value, std::vector<std::pair<std::string, double>> start,
+             const std::vector<FrictionForce>& frictions) {
     interruption_point();
+    on_friction_.reset();
     try {
-      analysis_.set({&value, 1});
       SolveOptions options;
       options.nearest = true;
       options.details = false;
       options.start = std::move(start);
       options.cancel = cancel_;
+      if (!frictions.empty()) {
+        const Mechanism there = with_parameter(mechanism_, address_, value);
+        on_friction_ = solve_with_parts(there, parts_of(there, frictions), options);
+        if (!on_friction_) return false;
+        solution_ = on_friction_->solution;
+        return true;
+      }
+      analysis_.set({&value, 1});
       solution_ = analysis_.solve(options);
     } catch (const SceneError&) {
       return false;
@@ -104,8 +118,11 @@ class Describer {
     return scaled_distance(point.coordinates, solution_.coordinates) <= 1e-5;
   }
 
+  const Mechanism& mechanism_;
+  const std::string& address_;
   std::string joint_;
   Analysis analysis_;
+  std::optional<StateOnFriction> on_friction_; // of the last solve
   const std::atomic<bool>* cancel_;
   Solution solution_;
 };

@@ -9,6 +9,7 @@
 #include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
+#include "engine/report/friction_state.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/turned_measures.hpp"
 #include "engine/search/all_equilibria.hpp"
@@ -53,7 +54,12 @@ class Designer {
     diagram_ = follow_branches(mechanism_, address_, from_, to_, follow);
     out_.status = diagram_.status;
     out_.message = diagram_.message;
-    if (!diagram_.branches.empty()) {
+    if (diagram_.branches.empty()) {
+      if (std::string why = asked_of_friction(with_parameter(mechanism_, address_, from_),
+                                              "Numbers are solved for", options_.cancel);
+          !why.empty())
+        out_.message = std::move(why);
+    } else {
       find_range();
       prepare(diagram_.turned);
       solve_along();

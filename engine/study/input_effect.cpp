@@ -47,7 +47,7 @@ bool places_parts(const BasicParameters<Dual>& p) {
          std::ranges::any_of(p.cuts, cut);
 }
 
-MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
+MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state, std::span<const int> held)
     : at(state), model_(model), n_(model.system.nv), drives_(static_cast<int>(model.system.drives.size())) {
   const System& released = model.released;
   const Parameters& p = model.parameters;
@@ -60,7 +60,7 @@ MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
   }
   std::vector<LinkRates> none;
   move(released, p, {at.q, at.u}, kinematics_, none);
-  find_multipliers();
+  find_multipliers(held);
   evaluate_residual<double>(released, p, at.q, at.lambda, kinematics_, residual_);
   linearize(released, p, at.q, at.lambda, kinematics_, residual_, l_);
   linearize_motion(released, p, at.q, kinematics_, l_);
@@ -72,7 +72,7 @@ MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state)
   stiffness = reduced(l_.stiffness);
   const Eigen::Index k = mass.rows();
   if (k == 0) return;
-  inertia = space_.basis().cwiseAbs2().transpose() * own_inertia(model.system, l_.mass);
+  inertia = basis_.cwiseAbs2().transpose() * own_inertia(model.system, l_.mass);
   units_ = units_of_inertia(mass, velocity, stiffness, inertia);
   const Eigen::MatrixXd symmetric = (mass + mass.transpose()) / 2;
   if (!shape_.compute(units_.asDiagonal() * symmetric * units_.asDiagonal()))
@@ -93,29 +93,29 @@ Eigen::VectorXd MotionAt::accelerate(const Eigen::VectorXd& rhs) const {
 
 InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd& rows,
                              const Eigen::VectorXd& drive_rates) const {
-  const Eigen::MatrixXd& basis = space_.basis();
   InputEffect out;
   out.force = force.cwiseProduct(column_.head(n_));
   out.drive_rates = drive_rates.cwiseQuotient(column_.tail(drives_));
   out.closing.setZero(n_);
   if (rows.size() > 0 && !rows.isZero(0)) {
-    const Eigen::VectorXd scaled = rows.cwiseProduct(model_.scaling.row);
+    Eigen::VectorXd scaled = Eigen::VectorXd::Zero(constraint_.rows());
+    scaled.head(rows.size()) = rows.cwiseProduct(model_.scaling.row);
     space_.solve(-scaled, out.closing);
     if (!((constraint_.leftCols(n_) * out.closing + scaled).norm() <= consistent * scaled.norm()))
       throw Refusal{"the loops do not let it change alone"};
-    const Eigen::VectorXd along = basis.transpose() * l_.mass.topLeftCorner(n_, n_) * out.closing;
-    out.closing -= basis * accelerate(along);
+    const Eigen::VectorXd along = basis_.transpose() * l_.mass.topLeftCorner(n_, n_) * out.closing;
+    out.closing -= basis_ * accelerate(along);
   }
   if (const double turned = out.drive_rates.norm(); turned > 0) {
     const Eigen::VectorXd phase = l_.stiffness.topRightCorner(n_, drives_) * out.drive_rates;
     if ((constraint_.rightCols(drives_) * out.drive_rates).norm() > consistent * turned ||
-        (basis.transpose() * phase).norm() >
+        (basis_.transpose() * phase).norm() >
             same_balance * phase.norm() + massless * l_.stiffness.norm() * turned)
       throw Refusal{"the balance depends on the angle that the speed adds up to"};
   }
-  out.b0 = -(basis.transpose() * (out.force + l_.stiffness.topLeftCorner(n_, n_) * out.closing));
+  out.b0 = -(basis_.transpose() * (out.force + l_.stiffness.topLeftCorner(n_, n_) * out.closing));
   out.b1 =
-      -(basis.transpose() * (carried(out.drive_rates) + l_.velocity.topLeftCorner(n_, n_) * out.closing));
+      -(basis_.transpose() * (carried(out.drive_rates) + l_.velocity.topLeftCorner(n_, n_) * out.closing));
   const Eigen::VectorXd acts = out.b1.size() > 0 ? units_.cwiseProduct(out.b1) : out.b1;
   if (!((shape_.vectors().leftCols(without_mass).transpose() * acts).norm() <= consistent * acts.norm()))
     throw Refusal{"its rate moves dampers of parts without mass"};
@@ -140,26 +140,42 @@ MotionDirection MotionAt::direction(const Eigen::VectorXd& q, const Eigen::Vecto
   Eigen::VectorXd left =
       l_.mass.topRows(n_) * a + l_.stiffness.topRows(n_) * q + l_.velocity.topLeftCorner(n_, n_) * u.head(n_);
   if (force) left += *force;
-  out.lambda = space_.least_norm_multipliers(-left).cwiseProduct(model_.scaling.row);
+  out.lambda = multipliers(left);
   return out;
 }
 
 Eigen::MatrixXd MotionAt::reduced(const Eigen::MatrixXd& m) const {
-  return space_.basis().transpose() * m.topLeftCorner(n_, n_) * space_.basis();
+  return basis_.transpose() * m.topLeftCorner(n_, n_) * basis_;
 }
 
-void MotionAt::find_multipliers() {
+Eigen::VectorXd MotionAt::multipliers(const Eigen::VectorXd& force) const {
+  return space_.least_norm_multipliers(-force).head(model_.system.rows).cwiseProduct(model_.scaling.row);
+}
+
+void MotionAt::find_multipliers(std::span<const int> held) {
   const System& released = model_.released;
   linearize_constraints(released, model_.parameters, kinematics_, l_);
-  constraint_ = model_.scaling.row.asDiagonal() * l_.constraint * column_.asDiagonal();
+  const auto holds = static_cast<Eigen::Index>(held.size());
+  constraint_.setZero(released.rows + holds, released.nv);
+  constraint_.topRows(released.rows) = model_.scaling.row.asDiagonal() * l_.constraint * column_.asDiagonal();
+  for (Eigen::Index i = 0; i < holds; ++i)
+    constraint_(released.rows + i, held[static_cast<std::size_t>(i)]) = 1;
   space_.factor(constraint_.leftCols(n_), consistent, row_rounding);
+  basis_ = space_.basis();
+  for (const int v : held)
+    basis_.row(v).setZero();
+  Eigen::VectorXd combination, left;
+  for (int k = 0; holds > 0 && k < space_.rows() - space_.rank(); ++k) {
+    space_.dependence(k, combination, left);
+    if (combination.tail(holds).lpNorm<Eigen::Infinity>() > consistent)
+      open_shares.push_back(combination.head(released.rows).cwiseProduct(model_.scaling.row));
+  }
   at.lambda.setZero(released.rows);
-  if (released.rows == 0) return;
+  if (constraint_.rows() == 0) return;
   evaluate_residual<double>(released, model_.parameters, at.q, at.lambda, kinematics_, residual_);
   Eigen::VectorXd force = residual_.f;
   add_coordinate_damping(released, model_.parameters, at.q, at.u, force);
-  at.lambda = space_.least_norm_multipliers(-force.head(n_).cwiseProduct(column_.head(n_)))
-                  .cwiseProduct(model_.scaling.row);
+  at.lambda = multipliers(force.head(n_).cwiseProduct(column_.head(n_)));
 }
 
 } // namespace flyball

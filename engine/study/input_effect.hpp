@@ -5,7 +5,9 @@
 #include "engine/kkt/constraint_space.hpp"
 #include "engine/study/motion_outputs.hpp"
 
+#include <span>
 #include <string>
+#include <vector>
 
 namespace flyball {
 
@@ -29,11 +31,12 @@ bool places_parts(const BasicParameters<Dual>& parameters);
 // In scaled coordinates: radians and parts of the reach.
 class MotionAt {
  public:
-  // About `state`, whose multipliers are found.
-  MotionAt(const MotionModel& model, const MotionOfAll& state);
+  // About `state`, whose multipliers are found. `held`: entries of q_R that dry friction holds, as
+  // constraints would.
+  MotionAt(const MotionModel& model, const MotionOfAll& state, std::span<const int> held = {});
 
   const Eigen::VectorXd& column() const { return column_; } // rad or m per scaled unit, of all coordinates
-  const Eigen::MatrixXd& basis() const { return space_.basis(); } // (n, k), orthonormal
+  const Eigen::MatrixXd& basis() const { return basis_; }   // (n, k), orthonormal
 
   // x with M x = rhs, of least size where parts have no mass.
   Eigen::VectorXd accelerate(const Eigen::VectorXd& rhs) const;
@@ -52,13 +55,18 @@ class MotionAt {
   Eigen::VectorXd inertia;       // (k): what a diagonal entry of the mass is made of (own_inertia())
   Eigen::Index without_mass = 0; // directions of these
   MotionOfAll at;
+  // Where loops leave it open how the joints that are held share what they bear: multipliers of the loops
+  // that may be added in any measure.
+  std::vector<Eigen::VectorXd> open_shares;
 
  private:
   Eigen::MatrixXd reduced(const Eigen::MatrixXd& m) const;
+  // Of the loops, of least norm with what holds; scaled force in the balance.
+  Eigen::VectorXd multipliers(const Eigen::VectorXd& force) const;
   // What coordinates feel of the inertia that drives carry, as these change their speeds. Rounding, which is
   // measured by the inertias M_ii M_jj >= M_ij^2 themselves, is zero: M^-1 makes much of it in a long chain.
   Eigen::VectorXd carried(const Eigen::VectorXd& drive_rates) const;
-  void find_multipliers();
+  void find_multipliers(std::span<const int> held);
 
   const MotionModel& model_;
   int n_ = 0, drives_ = 0;
@@ -66,8 +74,9 @@ class MotionAt {
   Kinematics<double> kinematics_;
   Residual<double> residual_;
   Linearization l_;            // scaled
-  Eigen::MatrixXd constraint_; // scaled, (rows, all)
+  Eigen::MatrixXd constraint_; // scaled, (rows and held, all)
   ConstraintSpace space_;
+  Eigen::MatrixXd basis_; // of what is held nothing, to the last bit
   Eigen::VectorXd units_; // of inertia (pencil.hpp)
   SymmetricEigen shape_;  // of the mass in these
   Cholesky factors_;      // of the mass, where nothing is without

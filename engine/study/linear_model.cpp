@@ -1,11 +1,15 @@
 #include "engine/study/linear_model.hpp"
 
+#include "engine/dynamics/friction_modes.hpp"
 #include "engine/dynamics/start.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/report/analysis.hpp"
+#include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/referred_to.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/friction_attempt.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/phase_stiffness.hpp"
@@ -18,6 +22,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 namespace flyball {
 namespace {
@@ -56,11 +61,7 @@ class Builder {
   }
 
   void run(LinearModel& out) {
-    SolveOptions solve;
-    solve.start = options_.start;
-    solve.nearest = options_.nearest;
-    solve.cancel = options_.cancel;
-    out.steady = Analysis(signals_.mechanism).solve(solve);
+    find_steady(out);
     const auto begin = std::chrono::steady_clock::now();
     const Interruptible scope(options_.cancel);
     check(out.steady);
@@ -68,7 +69,8 @@ class Builder {
     steady_system_ = compile_for_drives(mechanism_);
     bind(steady_system_, mechanism_, steady_parameters_);
     place(out.steady);
-    const MotionAt drawn(model_, at_phase(0));
+    hold(out);
+    const MotionAt drawn(model_, at_phase(0), held_);
     angles_ = angles_matter();
     chosen_ = choose_coordinates(steady_system_, drawn.basis(), angles_ && !options_.phases);
     find_phases(drawn);
@@ -77,7 +79,7 @@ class Builder {
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
     const std::vector<DriveRate> rates = drive_rates(steady_system_, steady_parameters_, balance_q_);
     for (const double t : phase_times(rates))
-      compare(here, matrices(MotionAt(model_, at_phase(t)), t), 4 * angle_rounding(rates, t));
+      compare(here, matrices(MotionAt(model_, at_phase(t), held_), t), 4 * angle_rounding(rates, t));
     fill(drawn, here, out);
     out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
@@ -99,13 +101,81 @@ class Builder {
     Eigen::VectorXd made_of;       // (k): see MotionAt::inertia
   };
 
+  // What slips is driven by its friction from here on.
+  void find_steady(LinearModel& out) {
+    SolveOptions solve;
+    solve.start = options_.start;
+    solve.nearest = options_.nearest;
+    solve.cancel = options_.cancel;
+    solve.friction = options_.slipping; // so that it is refused then
+    out.steady = Analysis(signals_.mechanism).solve(solve);
+    if (!solve.friction && !solve.nearest && out.steady.status != Status::converged &&
+        has_friction(signals_.mechanism))
+      if (std::optional<StateOnFriction> state = find_friction_state(signals_.mechanism, solve)) {
+        let_slip(*state);
+        out.steady = std::move(state->solution);
+      }
+  }
+
+  void let_slip(const StateOnFriction& state) {
+    const std::vector<CoordinateReference> frictions = find_frictions(signals_.mechanism);
+    FrictionParts slips = state.parts;
+    for (std::size_t i = 0; i < slips.size(); ++i)
+      if (is_slipping(slips[i]))
+        refuse_limit_as_input(frictions[i]);
+      else
+        slips[i] = FrictionPart::none;
+    if (std::ranges::none_of(slips, is_slipping)) return;
+    const std::size_t measures = mechanism_.measures.size();
+    mechanism_ = with_momenta_free(driven_by_parts(signals_.mechanism, frictions, slips, state.implied));
+    const VariedNumbers known(mechanism_, addresses_);
+    if (mechanism_.measures.size() != measures)
+      throw Refusal{"A measure is not told of joints on which friction slips."};
+  }
+
+  // What friction gives is a number once it slips.
+  void refuse_limit_as_input(CoordinateReference at) {
+    const VariedNumbers numbers(mechanism_, addresses_);
+    const Friction& friction = friction_at(mechanism_, at);
+    for (const LinearInput& input : signals_.inputs) {
+      const auto i = static_cast<std::size_t>(&input - signals_.inputs.data());
+      if (numbers_[i] < 0) continue;
+      NumberRates rates;
+      numbers.rates(static_cast<std::size_t>(numbers_[i]), rates);
+      for (const std::optional<double>* number :
+           {&friction.limit, &friction.mu, &friction.preload, &friction.radius})
+        if (rates.find(place_of(*number)).value_or(0) != 0)
+          throw Refusal{"The input " + input.name +
+                        " has no place in a linear model: it is in the limit of " +
+                        joint_of(mechanism_, at).name + ", which slips."};
+    }
+  }
+
+  // Which entries of q_R dry friction holds.
+  void hold(LinearModel& out) {
+    for (const FrictionForce& force : out.steady.frictions)
+      if (force.slips) out.slipping.push_back(coordinate_label(force));
+    for (const FrictionElement& element : list_frictions(model_)) {
+      if (options_.slipping) break;
+      const Link& link = model_.system.links[static_cast<std::size_t>(element.link)];
+      out.held.push_back(coordinate_label(model_.system, link));
+      const CoordinateReference at = find_coordinate(mechanism_, out.held.back());
+      double part = std::abs(friction_at(mechanism_, at).share);
+      for (const FrictionForce& force : out.steady.frictions)
+        if (force.value && coordinate_label(force) == out.held.back())
+          part = std::abs(*force.value) / element.limit;
+      if (part >= 1 / slipping_by)
+        throw Refusal{"Dry friction in " + out.held.back() +
+                      " is at its limit: it holds small motions to one side and lets those to the other go, "
+                      "of which nothing linear tells."};
+      held_.push_back(link.v);
+    }
+  }
+
   void check(const Solution& steady) const {
     if (steady.status != Status::converged) throw Refusal{steady.message};
-    if (has_friction(mechanism_) && !options_.slipping)
-      throw Refusal{
-          "Dry friction holds, or jumps with the direction of a motion: nothing linear tells of it but once "
-          "the joints slip."};
-    if (!steady.frictions.empty()) throw Refusal{rests_on_friction(steady, "Linear models are made")};
+    if (options_.slipping && !steady.frictions.empty())
+      throw Refusal{rests_on_friction(steady, "Linear models once joints slip are made")};
     if (model_coordinates(steady) > largest_for_eigenvalues)
       throw Refusal{"Linear models are made of at most " + std::to_string(largest_for_eigenvalues) +
                     " coordinates."};
@@ -441,6 +511,7 @@ class Builder {
                       " has no slope in the steady state, where it stands on a kink, as the size of a vector "
                       "does that vanishes there. Its components may have one."};
     refuse_rates(motion, effects, h, rate, out.most);
+    refuse_open_shares(motion, h);
     out.normalised = normalised;
     out.sizes = sizes;
     const Eigen::MatrixXd per_unit = normalised * sizes.asDiagonal();
@@ -513,6 +584,23 @@ class Builder {
     }
   }
 
+  // What an output feels of how joints that friction holds share what loops let each of them bear.
+  void refuse_open_shares(const MotionAt& motion, MotionOutputs& h) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.released.nv);
+    for (const Eigen::VectorXd& share : motion.open_shares) {
+      if (share.size() == 0) continue;
+      MotionDirection d = motion.direction(none, none, none, nullptr);
+      d.lambda = share;
+      const MotionOutputs::Rates rates = h.along(motion.at, d);
+      for (Eigen::Index i = 0; i < rates.value.size(); ++i)
+        if (std::abs(rates.value[i]) >
+            std::max(nothing * share.lpNorm<Eigen::Infinity>(), 8 * rates.error[i]))
+          throw Refusal{"The output " + output(i) +
+                        " is not determined: loops leave it open how the joints that friction holds share "
+                        "what they bear."};
+    }
+  }
+
   // That inputs and outputs are the same at another phase. What is nothing beside the stiffness, or the
   // momenta, is rounding.
   void compare(const Matrices& a, const Matrices& b, double rounding_of_angles) const {
@@ -541,6 +629,18 @@ class Builder {
         throw Refusal{"The output " + output(i) +
                       " is another at every phase of the drives: no constant matrices tell of it."};
     }
+  }
+
+  // Nothing where the sign of a pole is rounding, or what has no mass may run away at once.
+  static std::optional<bool> stable_by(const LinearModel& model) {
+    double size = 0, most = -std::numeric_limits<double>::infinity();
+    for (const std::complex<double> pole : model.poles) {
+      size = std::max(size, std::abs(pole));
+      most = std::max(most, pole.real());
+    }
+    if (most > nothing * size) return false;
+    if (most < -nothing * size && model.explicit_form) return true;
+    return {};
   }
 
   void fill(const MotionAt& motion, const Matrices& m, LinearModel& out) const {
@@ -606,6 +706,7 @@ class Builder {
                            : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel, m.made_of);
     if (!found) throw Refusal{"The poles are not found: the numbers are too far apart."};
     out.poles = *found;
+    out.stable = out.held.empty() ? out.steady.stable : stable_by(out);
     out.gain = static_gain(best_form(out));
   }
 
@@ -618,6 +719,7 @@ class Builder {
   System steady_system_; // what turns at speeds that are found does so steadily
   Parameters steady_parameters_;
   Eigen::VectorXd q_, u_, balance_q_;
+  std::vector<int> held_; // entries of q_R, by dry friction
   ModelCoordinates chosen_;
   bool angles_ = false; // some of what turns at found speeds matter
   bool phases_ = false; // these angles are states

@@ -27,7 +27,7 @@ struct LinearModelOptions {
   // stands, two that turn alike with a spring between them; phase_stiffness.hpp) they are in any case.
   bool phases = false;
   // Of the motion once joints with dry friction slip, as eigenvalues are: their hold is left out, their share
-  // stays. Otherwise such mechanisms are refused.
+  // stays. Otherwise such that stand are rigid, as friction holds small motions.
   bool slipping = false;
   std::vector<std::pair<std::string, double>> start{}; // as of SolveOptions
   bool nearest = false;
@@ -37,7 +37,12 @@ struct LinearModelOptions {
 struct LinearModel {
   // Why there is no model, a sentence; empty where there is one. Then the rest means nothing but `steady`.
   std::string refusal;
-  Solution steady; // with eigenvalues, of the mechanism that has the model
+  Solution
+      steady; // with eigenvalues, of the mechanism that has the model; of what friction holds once it slips
+  // Names, as of coordinate_label(): dry friction holds these, which are no states; against these, which slip
+  // at constant rates, it gives its limit.
+  std::vector<std::string> held, slipping;
+  std::optional<bool> stable; // of the steady state, or where dry friction holds some by the poles
   // "slide" (m) and "slide.rate" (m/s); of a ball "ball.turn.x" (rad), about its parent's axes. The rate of
   // what an input's rate enters is less M^-1 b1 u: `less_input`.
   struct State : LinearSignal {
@@ -58,8 +63,8 @@ struct LinearModel {
 
 // Of at most 200 coordinates. Throws SceneError for names that are wrong; refuses with the reason where there
 // is no steady state or none that stays the same as the drives turn, inputs that move parts by themselves,
-// inputs and outputs that turn with the drives, and outputs that feel the rate of an input: no state form has
-// these.
+// inputs and outputs that turn with the drives, outputs that feel the rate of an input: no state form has
+// these; and dry friction that is at its limit without slipping, which holds to one side only.
 LinearModel linearize(const Mechanism& mechanism, std::span<const std::string> inputs,
                       std::span<const std::string> outputs, const LinearModelOptions& options = {});
 

@@ -5,6 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
+#include "engine/report/friction_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 
 #include <algorithm>
@@ -179,6 +180,10 @@ PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left
     if (cancelled()) out_.message = "Cancelled. " + out_.message;
   } else if (out_.message.empty()) { // before anything was found
     out_.message = "Cancelled.";
+  } else if (std::string why = asked_of_friction(
+                 at_corner(), "Curves in the plane of two numbers are followed", options_.cancel);
+             !why.empty() && !cancelled()) {
+    out_.message = std::move(why);
   }
   out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   return std::move(out_);

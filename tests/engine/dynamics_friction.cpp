@@ -133,3 +133,26 @@ TEST_CASE("friction in a governor's loops stops its collar within what it holds"
     if (!track.driven) CHECK_THAT(track.rate.back(), WithinAbs(0, 1e-12));
   CHECK(energy_error(run) < 1e-6);
 }
+
+TEST_CASE("a part without mass begins where friction lets it stand, or as far as that lets it go") {
+  // On springs of 50 N/m, slack at 0.2 m, and 80 N/m, slack at 0.1 m from a block.
+  const Mechanism m = read_scene(R"({"flyball": 2, "name": "Massless link", "gravity": [0, -10, 0],
+    "bodies": [{"name": "link", "mass": 0, "position": [0, 0, 0]},
+      {"name": "block", "mass": 2, "position": [0.3, 0, 0]}],
+    "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "link"], "at": [0, 0, 0],
+        "axis": [1, 0, 0], "spring": {"stiffness": 50, "free": 0.2}, "friction": {"limit": 4}},
+      {"name": "second", "type": "prismatic", "bodies": ["link", "block"], "at": [0.3, 0, 0],
+        "axis": [1, 0, 0], "coordinate": 0.3, "spring": {"stiffness": 80, "free": 0.1}}]})");
+  const auto begins = [&](double slide, double second) {
+    SimulationOptions options;
+    options.duration = 0.01;
+    options.at = {{"slide", slide}, {"second", second}};
+    return run_of(m, options).coordinates[0].value.front();
+  };
+  // 50 (0.2 - x) + 80 (X - x - 0.1) at x, X = x + second, is 3.2 N: it stands.
+  CHECK(begins(0.28, 0.19) == 0.28);
+  CHECK(begins(0.32, 0.15) == 0.32); // -2 N
+  // 17.5 N and -7.2 N: it goes at once to where 4 N are left.
+  CHECK_THAT(begins(0.17, 0.3), WithinRel((39.6 - 4) / 130, 1e-12));
+  CHECK_THAT(begins(0.36, 0.11), WithinRel((39.6 + 4) / 130, 1e-12));
+}

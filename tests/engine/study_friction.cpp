@@ -399,7 +399,7 @@ TEST_CASE("what is not asked of states that rest on friction says so") {
   slipping.slipping = true;
   const std::vector<std::string> in{"force_x(block)"}, out{"slope"};
   CHECK(linearize(m, in, out, slipping).refusal ==
-        rests + "Linear models are made only of states that need none.");
+        rests + "Linear models once joints slip are made only of states that need none.");
   const std::vector<FreeNumber> free{{"bodies.block.mass", 1, 5}};
   SteadyMap map(m, free, {}, nullptr);
   Solution first;
