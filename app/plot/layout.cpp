@@ -119,12 +119,12 @@ struct Builder {
     return ticks;
   }
 
-  std::vector<PlotTick> vertical_ticks(const PlotRuler& ruler, const std::string& unit, double x,
-                                       double anchor, std::vector<double>* minor) const {
+  std::vector<PlotTick> vertical_ticks(const PlotRuler& ruler, const std::string& unit, double anchor,
+                                       std::vector<double>* minor) const {
     return ticks_of(
         ruler, unit, 42 * s(), 0, 0.25 * line(PlotFont::digits),
         [&](const std::string& label, double at) {
-          return text(PlotFont::digits, label, x, at - line(PlotFont::digits) / 2, anchor);
+          return text(PlotFont::digits, label, 0, at - line(PlotFont::digits) / 2, anchor);
         },
         minor);
   }
@@ -196,7 +196,7 @@ struct Builder {
     out.y = {ry[0], ry[1], bottom, top, is_logarithmic(plot, look, 1)};
     // Their labels say how far left the frame can begin.
     out.y_ticks.clear();
-    if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, plot.y.unit, 0, 1, &out.y_minor);
+    if (bottom - top > 1) out.y_ticks = vertical_ticks(out.y, plot.y.unit, 1, &out.y_minor);
     double left = 0.8 * pad + widest(out.y_ticks) + 8 * s();
     if (!y_words.empty() && !y_above) left += words_height + 5 * s();
     out.own_sides = {left, 1.4 * pad};
@@ -247,9 +247,13 @@ struct Builder {
       out.title =
           text(PlotFont::strong, cut_text(metrics, PlotFont::strong, plot.title, out.width - area.left - pad),
                area.left, pad, -1);
-    if (!x_words.empty())
-      out.x_label = text(PlotFont::words, cut_text(metrics, PlotFont::words, x_words, area.width()),
-                         (area.left + area.right) / 2, out.height - 0.6 * pad - line(PlotFont::words), 0);
+    if (!x_words.empty()) {
+      // Below the middle of the frame, or beside that where it would be cut: the unit is at its end.
+      const std::string words = cut_text(metrics, PlotFont::words, x_words, out.width - pad);
+      const double half = metrics.width_of(PlotFont::words, words) / 2, most = out.width - pad / 2 - half;
+      out.x_label = text(PlotFont::words, words, std::min((area.left + area.right) / 2, std::max(most, half)),
+                         out.height - 0.6 * pad - line(PlotFont::words), 0);
+    }
     if (y_above)
       out.y_label = text(PlotFont::words, cut_text(metrics, PlotFont::words, y_words, out.width - area.left),
                          area.left, area.top - line(PlotFont::words) - 3 * s(), -1);
@@ -282,7 +286,7 @@ struct Builder {
     const PlotHeat& heat = *plot.heat;
     const PlotRange range = heat_range(heat);
     bar.ruler = {range[0], range[1], std::round(bottom), std::round(top), heat.logarithmic};
-    bar.ticks = vertical_ticks(bar.ruler, heat.unit, 0, -1, nullptr);
+    bar.ticks = vertical_ticks(bar.ruler, heat.unit, -1, nullptr);
     const std::string words = detail == Detail::all ? axis_text(heat.label, heat.unit) : "";
     const double words_width = words.empty() ? 0 : line(PlotFont::words) + 5 * s();
     const double end = right + 6 * s() - words_width, start = end - widest(bar.ticks) - 8 * s() - 14 * s();

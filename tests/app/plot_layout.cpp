@@ -152,6 +152,23 @@ TEST_CASE("a low plot has numbers on its axes, and its units inside the frame", 
   CHECK(inside > 20);
 }
 
+TEST_CASE("the label of a narrow frame is whole while the picture has room for it", "[plot]") {
+  Plot plot;
+  plot.x = {.label = "real part of the eigenvalue", .unit = "1/s"};
+  plot.y = {.label = "imaginary part", .unit = "rad/s"};
+  plot.curves = {{"", {{-50, -200}, {0, 200}}}};
+  const std::string whole = axis_text(plot.x.label, plot.x.unit);
+  const PlotMetrics metrics;
+  const double width = metrics.width_of(PlotFont::words, whole);
+  for (double wide = width + 12; wide < 500; wide += 7) {
+    const PlotLayout layout = plot_layout(plot, {}, wide, 300, metrics);
+    INFO(wide);
+    check_apart(layout);
+    REQUIRE(layout.x_label);
+    CHECK(layout.x_label->text == whole);
+  }
+}
+
 TEST_CASE("a plot of nothing and a picture of no size are laid out", "[plot]") {
   CHECK(plot_layout(Plot{}, {}, 400, 300, {}).drawable());
   CHECK_FALSE(plot_layout(Plot{}, {}, 5, 5, {}).drawable());

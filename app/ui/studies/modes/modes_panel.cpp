@@ -339,7 +339,7 @@ struct CampbellPlaces {
 };
 
 CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive) {
-  constexpr float least_width = 360, least_height = 150; // points, of the plot
+  constexpr float least_width = 360, least_height = 200; // points, of the plot with its legend
   constexpr std::size_t fewest = 1, most_below = 3;      // rows
   const ImVec2 before = ImGui::GetContentRegionAvail();
   if (!drawn.critical) return {before};
