@@ -150,11 +150,23 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     CHECK(read_bytes(other) == "something else");
     CHECK(app.session.document.file() == file);
   }
-  SECTION("to where nothing can be written") {
-    robot.type((folder / "no such folder/x").string());
+  SECTION("to a folder that is made first, if that is meant") {
+    robot.type((folder / "new/folder/x").string());
     robot.key(key_enter);
     CHECK(app.dialog.showing);
-    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("x.flyball.json was not saved"));
+    CHECK(app.ui.widgets.contains("file question"));
+    CHECK_FALSE(fs::exists(folder / "new"));
+    CHECK(app.session.document.file() == file);
+    robot.key(key_enter);
+    CHECK_FALSE(app.dialog.showing);
+    CHECK(speed_in(folder / "new/folder/x.flyball.json") == 5);
+  }
+  SECTION("to where nothing can be written") {
+    robot.type((folder / "other.json/x").string()); // that is no folder
+    robot.key(key_enter);
+    robot.key(key_enter);
+    CHECK(app.dialog.showing);
+    CHECK_THAT(app.panels->save.query().message, ContainsSubstring("other.json cannot be made"));
     CHECK(app.session.document.file() == file);
     CHECK(robot.speed_now() == 5);
     CHECK(app.session.document.unsaved());

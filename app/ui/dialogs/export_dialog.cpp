@@ -26,7 +26,7 @@ void ExportDialog::open(const Session& session, DialogState& dialog, bool loads)
   now_ = saved_;
   loads_ = loads;
   show_folder(query_, usual_folder(session));
-  query_.replacing.clear();
+  query_.asked.clear();
   const std::string stem = file_stem(session);
   query_.path = (query_.list.shown / ("flyball-" + stem + ".png")).string();
 }
@@ -49,12 +49,13 @@ std::optional<ExportRequest> ExportDialog::draw(Session& session, Ui& ui, Dialog
                     std::max(now_.width, now_.height) <= largest_picture;
   if (!fits) paragraph("From 16 to 8192 pixels a side.", colors_of(ui).bad);
   const std::filesystem::path file = typed_file(query_, ".png");
-  const bool replaces = asks_to_replace(ui, query_, file);
+  const char* asked = asked_before_writing(ui, query_, file);
+  if (!asked && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
   ImGui::Dummy({0, 2 * ui.scale});
   ImGui::BeginDisabled(!fits || query_.path.empty());
-  accepted = text_button(ui, "export/save", replaces ? "Replace" : "Save", true) || accepted;
+  accepted = text_button(ui, "export/save", asked ? asked : "Save", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && fits && !query_.path.empty() && may_replace(session, query_, file)) {
+  if (accepted && fits && !query_.path.empty() && may_write_to(session, query_, file)) {
     picture = ExportRequest{file, std::clamp(now_.width, smallest_picture, largest_picture),
                             std::clamp(now_.height, smallest_picture, largest_picture), now_.panels, loads_};
     saved_ = now_;

@@ -11,7 +11,7 @@ namespace flyball {
 void ModelDialog::open(const Session& session, DialogState& dialog) {
   dialog.wanted = Dialog::export_model;
   show_folder(query_, usual_folder(session));
-  query_.replacing.clear();
+  query_.asked.clear();
   query_.path = file_stem(session) + "-model.m";
 }
 
@@ -36,12 +36,12 @@ void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
   paragraph(
       "The ending decides: .m for MATLAB and Octave, .py for Python, .npz for NumPy, .json for all of it.",
       format ? colors_of(ui).dim : colors_of(ui).bad);
-  const bool replaces = asks_to_replace(ui, query_, file);
-  if (!replaces && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
+  const char* asked = asked_before_writing(ui, query_, file);
+  if (!asked && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
   ImGui::Dummy({0, 2 * ui.scale});
   const bool usable = has_transfer(session) && format && !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(ui, "model/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "model/save", asked ? asked : "Export", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
   std::error_code ignored;
@@ -49,14 +49,14 @@ void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
     close_dialog();
   } else if (accepted && usable && std::filesystem::is_directory(typed_path(query_), ignored)) {
     entered_file(query_, false); // goes there
-  } else if (accepted && usable && may_replace(session, query_, file)) {
+  } else if (accepted && usable && may_write_to(session, query_, file)) {
     try {
       replace_file(file, linear_model_file(*found->of.mechanism, found->result.model, *format));
       session.notice = "Saved " + file.string();
       close_dialog();
     } catch (const SceneError& error) {
       query_.message = error.what();
-      query_.replacing.clear();
+      query_.asked.clear();
     }
   }
   end_dialog();

@@ -10,7 +10,7 @@ namespace flyball {
 void ReportDialog::open(const Session& session, DialogState& dialog) {
   dialog.wanted = Dialog::export_report;
   show_folder(query_, usual_folder(session));
-  query_.replacing.clear();
+  query_.asked.clear();
   query_.path = file_stem(session) + "-report.html";
 }
 
@@ -24,11 +24,12 @@ std::optional<ExportRequest> ReportDialog::draw(Session& session, Ui& ui, Dialog
             "parameters and assumptions.",
             colors_of(ui).dim);
   const std::filesystem::path file = typed_file(query_, ".html");
-  const bool replaces = asks_to_replace(ui, query_, file);
+  const char* asked = asked_before_writing(ui, query_, file);
+  if (!asked && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
   ImGui::Dummy({0, 2 * ui.scale});
   const bool usable = !query_.path.empty() && !writing;
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(ui, "report/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "report/save", asked ? asked : "Export", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
   std::error_code ignored;
@@ -36,7 +37,7 @@ std::optional<ExportRequest> ReportDialog::draw(Session& session, Ui& ui, Dialog
     close_dialog();
   } else if (accepted && usable && std::filesystem::is_directory(typed_path(query_), ignored)) {
     entered_file(query_, false); // goes there
-  } else if (accepted && usable && may_replace(session, query_, file)) {
+  } else if (accepted && usable && may_write_to(session, query_, file)) {
     report = ExportRequest{.file = file, .width = 1440, .height = 900, .report = true};
     close_dialog();
   }

@@ -22,9 +22,9 @@ fs::path file_to_save(const FileQuery& query) {
 // Whether it is saved.
 bool SaveDialog::save(Session& session) {
   const fs::path file = file_to_save(query_);
-  if (!may_replace(session, query_, file)) return false;
+  if (!may_write_to(session, query_, file)) return false;
   query_.message = save_to(session, file);
-  query_.replacing.clear();
+  query_.asked.clear();
   if (!query_.message.empty()) return false;
   close_dialog();
   return true;
@@ -35,7 +35,7 @@ void SaveDialog::open(const Session& session, DialogState& dialog, std::string w
   std::error_code ignored;
   show_folder(query_, is_example(session) ? fs::current_path(ignored) : usual_folder(session));
   query_.message = std::move(why);
-  query_.replacing.clear();
+  query_.asked.clear();
   dialog.wanted = Dialog::save;
   query_.path =
       file.empty() ? file_stem(session.mechanism().name) + ".flyball.json" : file.filename().string();
@@ -49,15 +49,15 @@ SaveDialog::Answer SaveDialog::draw(Session& session, Ui& ui, DialogState& dialo
   if (const auto clicked = file_list(ui, query_, "save", ".json", false, 220 * ui.scale))
     query_.path = clicked->filename().string();
   const fs::path file = file_to_save(query_);
-  const bool replaces = asks_to_replace(ui, query_, file);
-  if (!replaces && !query_.message.empty())
+  const char* asked = asked_before_writing(ui, query_, file);
+  if (!asked && !query_.message.empty())
     paragraph(query_.message, colors_of(ui).bad);
-  else if (!replaces && is_example(session))
+  else if (!asked && is_example(session))
     paragraph("Examples stay as they are; this will be a file of your own.", colors_of(ui).dim);
   ImGui::Dummy({0, 2 * ui.scale});
   const bool usable = !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  const bool pressed = text_button(ui, "save/save", replaces ? "Replace" : "Save", true);
+  const bool pressed = text_button(ui, "save/save", asked ? asked : "Save", true);
   ImGui::EndDisabled();
   ImGui::SameLine();
   if (text_button(ui, "save/cancel", "Cancel") || escape_pressed()) {

@@ -53,7 +53,7 @@ void size_fields(Ui& ui, PlotSave& save) {
 bool PlotDialog::save(Session& session, std::optional<ExportRequest>& picture) {
   const PlotSave& save = *save_;
   const std::filesystem::path file = typed_file(query_, extension_of(save.kind));
-  if (!may_replace(session, query_, file)) return false;
+  if (!may_write_to(session, query_, file)) return false;
   if (save.kind == PlotFile::png) {
     picture = ExportRequest{.file = file, .width = save.pixels[0], .height = save.pixels[1], .plot = save_};
     return true;
@@ -69,7 +69,7 @@ bool PlotDialog::save(Session& session, std::optional<ExportRequest>& picture) {
     return true;
   } catch (const SceneError& error) {
     query_.message = error.what();
-    query_.replacing.clear();
+    query_.asked.clear();
     return false;
   }
 }
@@ -89,7 +89,7 @@ void PlotDialog::open(const Session& session, DialogState& dialog, PlotToSave as
   };
   save.pixels = {pixels(save.width), pixels(save.height)};
   show_folder(query_, usual_folder(session));
-  query_.replacing.clear();
+  query_.asked.clear();
   const std::string stem = file_stem(session);
   query_.path = stem + "-" + file_stem(asked.name) + extension_of(save.kind);
   save_ = std::make_shared<PlotSave>(std::move(save));
@@ -112,12 +112,12 @@ std::optional<ExportRequest> PlotDialog::draw(Session& session, Ui& ui, DialogSt
     query_.path = clicked->filename().string();
   if (save.kind != PlotFile::csv) size_fields(ui, save);
   const std::filesystem::path file = typed_file(query_, extension);
-  const bool replaces = asks_to_replace(ui, query_, file);
-  if (!replaces && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
+  const char* asked = asked_before_writing(ui, query_, file);
+  if (!asked && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
   ImGui::Dummy({0, 2 * ui.scale});
   const bool usable = fits(save) && !query_.path.empty();
   ImGui::BeginDisabled(!usable);
-  accepted = text_button(ui, "save_plot/save", replaces ? "Replace" : "Save", true) || accepted;
+  accepted = text_button(ui, "save_plot/save", asked ? asked : "Save", true) || accepted;
   ImGui::EndDisabled();
   ImGui::SameLine();
   const bool cancelled = text_button(ui, "save_plot/cancel", "Cancel") || escape_pressed();

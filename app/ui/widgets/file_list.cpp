@@ -187,16 +187,29 @@ std::optional<fs::path> entered_file(FileQuery& query, bool filtered) {
   return std::nullopt;
 }
 
-bool asks_to_replace(const Ui& ui, const FileQuery& query, const std::filesystem::path& file) {
-  const bool asks = file == query.replacing;
-  if (asks) paragraph(file.filename().string() + " is there already. Replace it?", colors_of(ui).warn);
-  return asks;
+const char* asked_before_writing(Ui& ui, const FileQuery& query, const fs::path& file) {
+  if (file != query.asked) return nullptr;
+  const bool folder = is_folder(file.parent_path());
+  paragraph(folder ? file.filename().string() + " is there already. Replace it?"
+                   : "There is no folder " + file.parent_path().string() + " yet. Make it?",
+            colors_of(ui).warn);
+  note_widget(ui.widgets, "file question");
+  return folder ? "Replace" : "Make the folder";
 }
 
-bool may_replace(const Session& session, FileQuery& query, const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored) || file == query.replacing || file == session.document.file()) return true;
-  query.replacing = file;
+bool may_write_to(const Session& session, FileQuery& query, const fs::path& file) {
+  std::error_code failed;
+  const bool asked = file == query.asked, folder = is_folder(file.parent_path());
+  if (folder && (asked || !fs::exists(file, failed) || file == session.document.file())) return true;
+  if (!asked) {
+    query.asked = file;
+    return false;
+  }
+  fs::create_directories(file.parent_path(), failed);
+  query.list.read.clear(); // it has another entry now
+  if (!failed) return true;
+  query.message = "The folder " + file.parent_path().string() + " cannot be made: " + failed.message() + ".";
+  query.asked.clear();
   return false;
 }
 

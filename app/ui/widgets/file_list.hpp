@@ -34,11 +34,13 @@ std::optional<std::filesystem::path> file_list(Ui& ui, FileQuery& query, const s
 // filtered ones. A folder is shown next; returns a file.
 std::optional<std::filesystem::path> entered_file(FileQuery& query, bool filtered);
 
-// Whether writing there may go ahead: nothing is there, or it is the document's own file, or the person was
-// told so and pressed again.
-bool may_replace(const Session& session, FileQuery& query, const std::filesystem::path& file);
-// Asks whether to replace the file where the person was just kept from it. Whether it does.
-bool asks_to_replace(const Ui& ui, const FileQuery& query, const std::filesystem::path& file);
+// Whether writing there may go ahead: its folder is there and nothing of the name, or it is the document's
+// own file, or the person was told what is not so and pressed again. A folder that was missing is there then;
+// where it cannot be made, the query's message says why.
+bool may_write_to(const Session& session, FileQuery& query, const std::filesystem::path& file);
+// Asks whether to replace the file, or to make its folder, where the person was just kept from it: what the
+// button then says. Null where nothing is asked.
+const char* asked_before_writing(Ui& ui, const FileQuery& query, const std::filesystem::path& file);
 
 // Where a file that has no place yet may be put: what was used lately, the current folder, the home folder.
 std::filesystem::path usual_folder(const Session& session);

@@ -20,9 +20,10 @@ struct FolderList {
 };
 
 struct FileQuery {
-  std::string path;                // typed
-  std::string message;             // in the dialog: why what was asked for was not done
-  std::filesystem::path replacing; // an existing file of which the dialog has said that it would be replaced
+  std::string path;    // typed
+  std::string message; // in the dialog: why what was asked for was not done
+  // A file of which the dialog has said that it would be replaced, or that there is no folder for it.
+  std::filesystem::path asked;
   FolderList list;
 };
 

@@ -171,12 +171,13 @@ void MovieDialog::choices(Session& session, Ui& ui, MovieState& movie) {
                                                   short_text(request.to) + " s of the run"),
               colors_of(ui).dim);
   if (!movie.problem.empty()) paragraph("Not saved: " + movie.problem, colors_of(ui).bad);
-  const bool replaces = asks_to_replace(ui, query_, first);
+  const char* asked = asked_before_writing(ui, query_, first);
+  if (!asked && !query_.message.empty()) paragraph(query_.message, colors_of(ui).bad);
   ImGui::Dummy({0, 2 * ui.scale});
   ImGui::BeginDisabled(!problem.empty());
-  accepted = text_button(ui, "movie/save", replaces ? "Replace" : "Export", true) || accepted;
+  accepted = text_button(ui, "movie/save", asked ? asked : "Export", true) || accepted;
   ImGui::EndDisabled();
-  if (accepted && problem.empty() && may_replace(session, query_, first)) {
+  if (accepted && problem.empty() && may_write_to(session, query_, first)) {
     play(session, false); // all the time there is goes into the film
     movie.request = request;
     movie.problem.clear();
@@ -193,7 +194,7 @@ void MovieDialog::open(const Session& session, DialogState& dialog, MovieState& 
   if (!shown(session, movie)) return;
   dialog.wanted = Dialog::export_run;
   show_folder(query_, usual_folder(session));
-  query_.replacing.clear();
+  query_.asked.clear();
   movie.problem.clear();
   movie.done = false;
   before_ = movie;
