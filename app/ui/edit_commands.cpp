@@ -52,13 +52,27 @@ std::string dependents_words(const Session& session) {
   return words;
 }
 
+// "measures lift and pull": what asked for results of parts that are gone.
+std::string lost_measures_words(const Mechanism& before, const Mechanism& now) {
+  std::vector<std::string_view> lost;
+  for (const NamedMeasure& measure : before.measures)
+    if (std::ranges::find(now.measures, measure.name, &NamedMeasure::name) == now.measures.end())
+      lost.push_back(measure.name);
+  if (lost.empty()) return {};
+  return (lost.size() > 1 ? "measures " : "measure ") + word_list(lost, "and");
+}
+
 // Takes the selected parts out, and says what went with them.
 void remove_selected(Session& session, const std::string& step, const std::string& done) {
-  const std::string what = words_for(session.selection()), along = dependents_words(session);
+  const std::string what = words_for(session.selection());
+  std::string along = dependents_words(session);
   const std::uint64_t before = session.document.revision();
-  edit(session, step + " " + what, [](Mechanism& mechanism, Selection& selection) {
+  edit(session, step + " " + what, [&along](Mechanism& mechanism, Selection& selection) {
+    const Mechanism whole = mechanism;
     remove_parts(mechanism, selection);
     selection = {};
+    if (const std::string lost = lost_measures_words(whole, mechanism); !lost.empty())
+      along += (along.empty() ? "" : ", ") + lost;
   });
   if (!along.empty() && session.document.revision() != before)
     session.notice = done + " " + what + " together with " + along + ".";

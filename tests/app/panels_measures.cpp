@@ -170,6 +170,22 @@ TEST_CASE("a measure that rests on a part goes with it") {
   CHECK(m.measures[0].name == "c");
 }
 
+TEST_CASE("what goes with a deleted part is told, measures too") {
+  MeasureDesk d("governor");
+  edit(d.app.session, "Measure", [](Mechanism& m, Selection&) {
+    m.measures = {
+        {"lift", "", "y(collar)", "m"}, {"height", "", "y(ball1)", "m"}, {"twice", "", "2*height", "m"}};
+  });
+  d.pick(PartKind::body, "ball1");
+  d.key(keys::del);
+  d.frames(2);
+  CHECK(d.app.session.notice ==
+        "Deleted ball1 together with joints arm1 and link1, measures height and twice.");
+  REQUIRE(d.m().measures.size() == 1);
+  undo(d.app.session);
+  CHECK(d.m().measures.size() == 3);
+}
+
 TEST_CASE("without a measure others have its expression, without a parameter its value") {
   Mechanism m = load_scene(FLYBALL_ASSETS "/scenes/governor_parametric.json");
   m.measures = {{"a", "", "x(ball1) + L", "m"}, {"b", "", "2*a", "m"}};

@@ -265,6 +265,14 @@ TEST_CASE("the bodies of a joint are guessed") {
   SECTION("none at the point: the nearest") {
     CHECK(guess({-0.2, 0.1, 0}) == Pair{"ground", "rod1"});
   }
+  SECTION("the one that is selected and hangs nowhere, rather than the ground once more") {
+    edit(d.app.session, "Join", [](Mechanism& next, Selection&) {
+      add_joint(next, JointType::revolute, {"ground", "rod1"}, {0, 0, 0}, Vec3::UnitZ());
+    });
+    d.have_rod({0.5, 0, 0}, {0.5, 0.4, 0});
+    REQUIRE(d.app.session.selection().has(body_part("rod3")));
+    CHECK(guess({0, 0, 0}) == Pair{"rod1", "rod3"});
+  }
   SECTION("two that are selected, wherever the point is") {
     Selection both;
     both.add(body_part("rod1"));

@@ -52,7 +52,7 @@ void point_fields(Session& session, Ui& ui, const std::string& name, Vec3& point
     double value = point[i];
     const auto at = static_cast<std::size_t>(i);
     if (plain_quantity_field(session, ui, name + "/" + axis_names[at], axis_names[at], "m",
-                             "A point on it, in metres, as drawn.", value))
+                             "A point on it, as drawn.", value))
       point[i] = value;
   }
 }

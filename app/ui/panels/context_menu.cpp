@@ -1,6 +1,7 @@
 #include "app/ui/panels/context_menu.hpp"
 
 #include "app/document/gear_kinds.hpp"
+#include "app/session/units.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/edit_commands.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
@@ -79,8 +80,9 @@ void number_items(Session& session, Ui& ui, const Part& part) {
   for (const std::string& address : addresses) {
     const bool pinned = is_pinned(session.mechanism(), address);
     const std::string words = address.substr(begins.size());
-    const std::string unit = parameter_unit(session.mechanism(), address);
-    const std::string value = short_text(get_parameter(session.mechanism(), address)) + " " + unit;
+    const ShownUnit unit = shown_unit(parameter_unit(session.mechanism(), address), session.units);
+    const std::string value = short_text(unit.shown(get_parameter(session.mechanism(), address))) +
+                              (unit.text.empty() ? "" : " " + unit.text);
     if (ImGui::MenuItem(words.c_str(), value.c_str(), pinned))
       later(ui, [&session, address, pinned] { pin(session, address, !pinned); });
     note_widget(ui.widgets, "view/menu/pin/" + address);

@@ -73,7 +73,12 @@ std::optional<std::array<int, 2>> end_to_ground(const Structure& structure, cons
   return found;
 }
 
-std::array<int, 2> pair_at(const Structure& structure, const std::vector<int>& there, bool again) {
+// `loose_one`: a selected body that no joint leads to; -1: none. It is rather what the one at the point is to
+// be joined with than the ground once more.
+std::array<int, 2> pair_at(const Structure& structure, const std::vector<int>& there, int loose_one,
+                           bool again) {
+  if (there.size() == 1 && loose_one >= 0 && loose_one != there[0] && structure.joined(-1, there[0]))
+    return {there[0], loose_one};
   if (there.size() == 1) return {-1, there[0]};
   for (const int loose : there)
     for (const int other : there)
@@ -133,7 +138,8 @@ std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<co
   for (const NearBody& body : near)
     if (body.distance <= reach) there.push_back(body.body);
   if (there.empty()) there.push_back(near.front().body);
-  return names(pair_at(structure, there, again));
+  const int only = chosen.size() == 1 ? body_index(mechanism, chosen[0]) : -1;
+  return names(pair_at(structure, there, only >= 0 && !structure.hangs(only) ? only : -1, again));
 }
 
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies) {
