@@ -88,7 +88,7 @@ TEST_CASE("a motion without end stops at the time limit and keeps what was compu
          {Integrator::automatic, Integrator::bdf, Integrator::adams, Integrator::runge_kutta}) {
       CAPTURE(name, word(method));
       SimulationOptions options = lasting(0.5, method);
-      options.time_limit = 0.3;
+      options.time_limit = 0.1;
       const auto start = Clock::now();
       const Run run = simulate(stored_case(name), options);
       CAPTURE(run.message);
@@ -97,7 +97,7 @@ TEST_CASE("a motion without end stops at the time limit and keeps what was compu
       if (run.status == RunStatus::completed) continue;
       CHECK_THAT(run.message, ContainsSubstring("The motion stopped at t = "));
       if (run.status == RunStatus::time_limit)
-        CHECK_THAT(run.message, ContainsSubstring("time limit of 0.3 s"));
+        CHECK_THAT(run.message, ContainsSubstring("time limit of 0.1 s"));
     }
 }
 
