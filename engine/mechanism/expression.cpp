@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/expression_functions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/mechanism/unset_duals.hpp"
 
 #include <algorithm>
 #include <array>
@@ -317,7 +318,7 @@ Expression::Expression(std::string_view text, Results results) {
 
 Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::size_t> places,
                           std::span<const Dual> results, std::span<const std::size_t> result_places) const {
-  std::array<Dual, most_values> stack;
+  UnsetDuals<most_values> stack;
   const std::span functions = expression_functions();
   std::size_t top = 0; // the first free place
   for (const Step& step : steps_) {
@@ -329,8 +330,8 @@ Dual Expression::evaluate(std::span<const Dual> values, std::span<const std::siz
     case Operation::table: stack[top - 1] = tables_[step.index].values(stack[top - 1]); continue;
     case Operation::call: {
       const ExpressionFunction& function = functions[step.index];
-      if (function.arguments == 2) --top;
-      stack[top - 1] = function.evaluate(stack[top - 1], stack[top]);
+      const Dual second = function.arguments == 2 ? stack[--top] : Dual();
+      stack[top - 1] = function.evaluate(stack[top - 1], second);
       continue;
     }
     default: break;

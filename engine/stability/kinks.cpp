@@ -27,10 +27,10 @@ template <class Slope>
 std::optional<std::array<double, 2>> jump_at(const Slope& slope, double x, double size) {
   const auto slopes = [&](double h) { return std::array<double, 2>{slope(x - h), slope(x + h)}; };
   const auto difference = [](const std::array<double, 2>& s) { return std::abs(s[1] - s[0]); };
-  const auto wide = slopes(far * size), close = slopes(near * size);
+  const auto close = slopes(near * size);
   const double largest = std::max(std::abs(close[0]), std::abs(close[1]));
-  // A smooth slope differs by 1/64 as much.
-  if (!(difference(close) > 1e-6 * largest) || difference(close) < 0.5 * difference(wide)) return {};
+  if (!(difference(close) > 1e-6 * largest)) return {};
+  if (difference(close) < 0.5 * difference(slopes(far * size))) return {}; // a smooth one: 1/64 as much
   // Where it jumps it is as before or as after in between, too; a smooth law that bends within so little has
   // slopes of its own there. On the kink itself what is asked for twice has neither.
   for (const double part : {-0.75, -0.5, -0.25, 0.25, 0.5, 0.75}) {

@@ -1,5 +1,6 @@
 #include "engine/system/drive_torque.hpp"
 
+#include "engine/mechanism/unset_duals.hpp"
 #include "engine/system/extended.hpp"
 #include "engine/system/point_quantity.hpp"
 
@@ -77,13 +78,13 @@ struct LawState {
   Dual value(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t varied = most_inputs,
              std::size_t moved = most_inputs, double by = 0) const {
     if (!law.expression) return numbers.value;
-    std::array<Dual, most_inputs> inputs;
+    UnsetDuals<most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i)
       inputs[i] = input(law, numbers, i);
     if (varied < law.inputs.size()) inputs[varied].rate = 1;
     for (std::size_t i = 0; i < law.inputs.size() && moved < law.inputs.size(); ++i)
       if (law.inputs[i] == law.inputs[moved]) inputs[i].value += by;
-    return law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come);
+    return law.expression->evaluate(numbers.numbers, {}, {inputs.values, law.inputs.size()}, as_they_come);
   }
 
   Dual value(std::size_t drive) const {
@@ -125,7 +126,7 @@ struct LawState {
 
   // The size of the law with coordinates and their rates at zero, or at what they begin with.
   double elsewhere(const DriveLaw& law, const DriveLawParameters& numbers, bool at_start) const {
-    std::array<Dual, most_inputs> inputs;
+    UnsetDuals<most_inputs> inputs;
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
       const DriveLaw::Input& asked = law.inputs[i];
       if (asked.coordinate < 0)
@@ -133,7 +134,9 @@ struct LawState {
       else
         inputs[i] = at_start ? start_of(asked) : 0;
     }
-    const double out = std::abs(law.expression->evaluate(numbers.numbers, {}, inputs, as_they_come).value);
+    const double out = std::abs(
+        law.expression->evaluate(numbers.numbers, {}, {inputs.values, law.inputs.size()}, as_they_come)
+            .value);
     return std::isfinite(out) ? out : 0;
   }
 
