@@ -23,8 +23,12 @@ Quat turned(const Mat3& rotation, const Quat& q) {
   return rotation.isIdentity(0) ? q : tidy(Quat(rotation) * q);
 }
 
-} // namespace
-
+// Axes of a body's image: a right-handed frame even where the isometry is a reflection. Then the body axis
+// nearest to the plane's normal is turned round in it, so that a body with the world's axes keeps them.
+struct FrameImage {
+  Quat rotation = Quat::Identity();
+  Vec3 signs = Vec3::Ones(); // of a vector's image in the new axes, by the vector in the old ones
+};
 FrameImage image_of_frame(const Quat& rotation, const Isometry& isometry) {
   if (isometry.sense() > 0) return {turned(isometry.linear, rotation), Vec3::Ones()};
   const Mat3 axes = rotation.normalized().toRotationMatrix();
@@ -40,6 +44,8 @@ FrameImage image_of_frame(const Quat& rotation, const Isometry& isometry) {
   image.signs[nearest] = -1;
   return image;
 }
+
+} // namespace
 
 Body image_of(const Body& body, const Isometry& isometry) {
   Body image = body;

@@ -6,14 +6,6 @@
 
 namespace flyball {
 
-// Axes of a body's image: a right-handed frame even where the isometry is a reflection. Then the body axis
-// nearest to the plane's normal is turned round in it, so that a body with the world's axes keeps them.
-struct FrameImage {
-  Quat rotation = Quat::Identity();
-  Vec3 signs = Vec3::Ones(); // of a vector's image in the new axes, by the vector in the old ones
-};
-FrameImage image_of_frame(const Quat& rotation, const Isometry& isometry);
-
 Body image_of(const Body& body, const Isometry& isometry);
 
 // Of a joint with its coordinates; a gear, which has no place, stays as it is.

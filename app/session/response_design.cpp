@@ -151,12 +151,6 @@ const DesignGoals& design_goals(Session& session) {
   return offered;
 }
 
-std::optional<DesignGoal> design_goal(Session& session) {
-  const std::vector<DesignGoal>& goals = design_goals(session).goals;
-  const auto chosen = std::ranges::find(goals, session.study.response.design.coordinate, &DesignGoal::key);
-  return chosen == goals.end() ? std::nullopt : std::optional(*chosen);
-}
-
 void take_design(Session& session) {
   auto& answer = session.study.response.design.answer;
   if (!answer.take()) return;
@@ -172,7 +166,9 @@ void take_design(Session& session) {
 void find_design(Session& session) {
   ResponseDesign& wanted = session.study.response.design;
   const std::optional<ResponseRequest> of = response_wanted(session);
-  std::optional<DesignGoal> goal = design_goal(session);
+  const std::vector<DesignGoal>& goals = design_goals(session).goals;
+  const auto chosen = std::ranges::find(goals, wanted.coordinate, &DesignGoal::key);
+  std::optional<DesignGoal> goal = chosen == goals.end() ? std::nullopt : std::optional(*chosen);
   // Where there is no state now there is no torque to offer: what was asked for is asked for still.
   if (const auto& asked = wanted.answer.asked; !goal && asked && asked->goal.key == wanted.coordinate)
     goal = asked->goal;

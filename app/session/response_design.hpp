@@ -3,17 +3,13 @@
 
 #include "app/session/response.hpp"
 
-#include <optional>
 #include <string>
-#include <vector>
 
 namespace flyball {
 
 // What can be wanted, of the steady state or of the drawn pose where there is none: coordinates, speeds that
 // are found and measures, then what drives give and joints bear. Made once for each answer and mechanism.
 const DesignGoals& design_goals(Session& session);
-// That which is chosen; none where there is nothing of its name.
-std::optional<DesignGoal> design_goal(Session& session);
 
 // Looks for the parameter at which the design's goal has its value.
 void find_design(Session& session);

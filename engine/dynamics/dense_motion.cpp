@@ -81,7 +81,7 @@ bool DenseMotion::solve(const Eigen::VectorXd& force, const Eigen::VectorXd& bia
 
 bool DenseMotion::accelerate(const MotionPoint& point, Eigen::VectorXd& a, Eigen::VectorXd& lambda) {
   evaluate_forces(point);
-  constraint_accelerations(system_, point.parameters, nullptr, point.kinematics, point.carried, bias_);
+  constraint_accelerations(system_, point.parameters, point.kinematics, point.carried, bias_);
   const bool solved = solve(force_, bias_, a, lambda);
   a_ = a;
   return solved;

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double perturbation = 1e-7; // rad, or relative to the reach
 constexpr double settled = 0.05;      // of a Ritz value, its residual
+constexpr int most_evaluated = 40;
 
 // J x, J the derivative of (u, s') with (q, s), in scaled coordinates: steps of q in radians and reaches, s
 // and its rate in those times `rate`.
@@ -47,8 +48,8 @@ class Derivative {
 } // namespace
 
 std::vector<std::complex<double>> fastest_rates(Equations& equations, double t, const Eigen::VectorXd& q,
-                                                const Eigen::VectorXd& s, int steps) {
-  const Eigen::Index n = s.size(), most = std::min<Eigen::Index>(2 * n, steps);
+                                                const Eigen::VectorXd& s) {
+  const Eigen::Index n = s.size(), most = std::min<Eigen::Index>(2 * n, most_evaluated);
   Derivative derivative(equations, t, q, s);
   if (n == 0 || !derivative.begin()) return {};
   // All waves are to take part, and always alike.

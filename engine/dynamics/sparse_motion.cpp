@@ -79,7 +79,7 @@ bool SparseMotion::accelerate(const MotionPoint& point, Eigen::VectorXd& a, Eige
   const Scaling& scaling = model_.scaling;
   evaluate_residual<double>(system_, point.parameters, point.q, zero_lambda_, point.kinematics, residual_);
   add_coordinate_damping(system_, point.parameters, point.q, point.u, residual_.f);
-  constraint_accelerations(system_, point.parameters, nullptr, point.kinematics, point.carried, bias_);
+  constraint_accelerations(system_, point.parameters, point.kinematics, point.carried, bias_);
   force_ = -residual_.f.head(n_).cwiseProduct(scaling.column);
   closing_ = -bias_.cwiseProduct(scaling.row);
   solve(force_, closing_, scaled_a_, scaled_lambda_);

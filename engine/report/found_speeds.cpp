@@ -29,8 +29,7 @@ std::string names_of_drives(std::span<const std::string> drives) {
   return word_list(std::vector<std::string_view>(drives.begin(), drives.end()), "and");
 }
 
-} // namespace
-
+// The mechanism with every drive by torque turning at a prescribed speed: that of the configuration q.
 Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q) {
   Mechanism out = mechanism;
   out.sliders.clear();
@@ -45,6 +44,8 @@ Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, c
   }
   return out;
 }
+
+} // namespace
 
 std::optional<AtConstantSpeed>
 stability_at_constant_speed(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q,

@@ -9,9 +9,6 @@
 
 namespace flyball {
 
-// The mechanism with every drive by torque turning at a prescribed speed: that of the configuration q.
-Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q);
-
 // The stability of a state found, its speeds prescribed; nothing where no drive finds one.
 std::optional<AtConstantSpeed>
 stability_at_constant_speed(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q,

@@ -424,14 +424,14 @@ Holding hold(const Mechanism& mechanism, const Coordinates& at, const std::atomi
   return out;
 }
 
-// Where the share that holding takes passes 1, between a speed at which it is below and one at which it is
-// above.
-double find_slip(const auto& takes, double below, double above) {
-  RootBracket bracket(below, takes(below) - 1, above, takes(above) - 1);
+// The part of the speed at which the share that holding takes passes 1: between all of it, where it is below,
+// and one where it is above.
+double find_slip(const auto& takes, double above) {
+  RootBracket bracket(1, takes(1) - 1, above, takes(above) - 1);
   for (int i = 0; i < 100 && bracket.width() > 1e-14 * std::abs(bracket.high()); ++i) {
-    const double speed = bracket.next(), value = takes(speed) - 1;
-    if (value == 0) return speed;
-    bracket.take(speed, value);
+    const double part = bracket.next(), value = takes(part) - 1;
+    if (value == 0) return part;
+    bracket.take(part, value);
   }
   return bracket.high();
 }
@@ -472,10 +472,10 @@ std::vector<HeldSpeeds> find_held_speeds(const Mechanism& mechanism, const Coord
         drive->speed = part * speed;
         return find_holding(varied, at, cancel, false).takes.value_or(infinite);
       };
-      if (takes(0) > 1) held.lower = speed * find_slip(takes, 1, 0);
+      if (takes(0) > 1) held.lower = speed * find_slip(takes, 0);
       for (double part = 1.125; part < 1000; part = 1 + 2 * (part - 1)) {
         if (!(takes(part) > 1)) continue;
-        held.upper = speed * find_slip(takes, 1, part);
+        held.upper = speed * find_slip(takes, part);
         break;
       }
       if (speed < 0) std::swap(held.lower, held.upper);

@@ -12,6 +12,12 @@
 namespace flyball {
 namespace {
 
+// Drives (entries of System::drives) that return together in a state q, each with the whole turns it makes in
+// a period; still ones are left out.
+struct PhaseGroup {
+  std::vector<int> drives, turns;
+};
+
 constexpr double turn = 2 * std::numbers::pi;
 
 // Angles of the groups to torques of the motors.
@@ -147,8 +153,7 @@ double greatest(Torques& torques, const Grid& grid, Eigen::Index motor, double s
   return value;
 }
 
-} // namespace
-
+// Nothing where a drive slides: it never returns.
 std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& p,
                                                     const Eigen::VectorXd& q) {
   struct Group {
@@ -185,6 +190,8 @@ std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const 
   }
   return out;
 }
+
+} // namespace
 
 std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,
                                                     std::span<const int> motors, Workspace& w) {

@@ -13,14 +13,6 @@
 
 namespace flyball {
 
-// Drives (entries of System::drives) that return together in a state q, each with the whole turns it makes in
-// a period; still ones are left out. Nothing where a drive slides: it never returns.
-struct PhaseGroup {
-  std::vector<int> drives, turns;
-};
-std::optional<std::vector<PhaseGroup>> phase_groups(const System& system, const Parameters& parameters,
-                                                    const Eigen::VectorXd& q);
-
 // Of the torques of some motors in a steady state. Nothing where the drives never return, or have more than
 // three groups, or two or three of so many turns that too many phases would have to be looked at.
 std::vector<std::optional<PhaseRange>> drive_ranges(const Problem& problem, const Eigen::VectorXd& q,

@@ -195,10 +195,9 @@ void constraint_rates(const System& system, const Parameters& p, const Eigen::Ve
   for_rows(system, p, k, carried, &s, out, rate);
 }
 
-void constraint_accelerations(const System& system, const Parameters& p, const Eigen::VectorXd* a,
-                              const Kinematics<double>& k, const std::vector<LinkRates>& carried,
-                              Eigen::VectorXd& out) {
-  for_rows(system, p, k, carried, a, out, acceleration);
+void constraint_accelerations(const System& system, const Parameters& p, const Kinematics<double>& k,
+                              const std::vector<LinkRates>& carried, Eigen::VectorXd& out) {
+  for_rows(system, p, k, carried, nullptr, out, acceleration);
 }
 
 void evaluate_mass(const System& system, const Parameters& p, const Kinematics<double>& k, MassMatrix& out) {

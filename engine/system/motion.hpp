@@ -34,8 +34,8 @@ void move(const System& system, const Parameters& parameters, const CoordinateMo
 void constraint_rates(const System& system, const Parameters& parameters, const Eigen::VectorXd& s,
                       const Kinematics<double>& kinematics, const std::vector<LinkRates>& carried,
                       Eigen::VectorXd& out);
-// Its derivative along u: Phi'' where s = u. Gears are linear: their part comes from `a` (null: zero).
-void constraint_accelerations(const System& system, const Parameters& parameters, const Eigen::VectorXd* a,
+// Its derivative along u: Phi'' where s = u. Zero for gears, which are linear.
+void constraint_accelerations(const System& system, const Parameters& parameters,
                               const Kinematics<double>& kinematics, const std::vector<LinkRates>& carried,
                               Eigen::VectorXd& out);
 

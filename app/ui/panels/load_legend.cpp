@@ -59,6 +59,21 @@ std::string load_size_words(double size, bool moment, int digits = 4) {
   return short_text(size, digits) + (moment ? " N m" : " N");
 }
 
+const char* load_name(LoadKind kind) {
+  switch (kind) {
+  case LoadKind::reaction: return "reactions";
+  case LoadKind::drive: return "drives";
+  case LoadKind::spring: return "springs";
+  case LoadKind::damper: return "dampers, friction";
+  case LoadKind::gear: return "gears";
+  case LoadKind::weight: return "weight";
+  case LoadKind::applied: return "applied";
+  case LoadKind::air: return "air";
+  case LoadKind::inertia: return "inertial loads";
+  }
+  return "";
+}
+
 LegendRow load_row(const Ui& ui, double largest, LoadKind kind, bool moment, bool diagram) {
   LegendRow row;
   row.mark = LegendMark::load;
@@ -89,21 +104,6 @@ LegendRow scale_row(const Ui& ui, const LoadScales& scales, bool moment, double 
 }
 
 } // namespace
-
-const char* load_name(LoadKind kind) {
-  switch (kind) {
-  case LoadKind::reaction: return "reactions";
-  case LoadKind::drive: return "drives";
-  case LoadKind::spring: return "springs";
-  case LoadKind::damper: return "dampers, friction";
-  case LoadKind::gear: return "gears";
-  case LoadKind::weight: return "weight";
-  case LoadKind::applied: return "applied";
-  case LoadKind::air: return "air";
-  case LoadKind::inertia: return "inertial loads";
-  }
-  return "";
-}
 
 void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   const auto note = [&](std::string words) {

@@ -10,6 +10,4 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows);
 // The row's arrow, in a space as high as text.
 void draw_load_mark(const Ui& ui, const LegendRow& row, ImVec2 from, float height);
 
-const char* load_name(LoadKind kind); // "Reactions"
-
 } // namespace flyball

@@ -57,16 +57,13 @@ void next(const Ui& ui) {
 }
 
 // A command's button; its tooltip is the command's sentence with its key.
-void command_button(Ui& ui, const CommandRunner& commands, const char* id, const char* icon,
-                    bool show_state = false) {
+void command_button(Ui& ui, const CommandRunner& commands, const char* id, const char* icon) {
   const Command& wanted = command(id);
   const std::string keys = key_text(wanted.key);
   const std::string help =
       (wanted.label ? commands.label(wanted) : wanted.help) + (keys.empty() ? "" : " (" + keys + ")");
   ImGui::BeginDisabled(!commands.enabled(wanted));
-  const bool on = show_state && commands.checked(wanted);
-  if (icon_button(ui, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str(),
-                  on))
+  if (icon_button(ui, "toolbar/" + std::string(id).substr(std::string(id).find('.') + 1), icon, help.c_str()))
     commands.run(wanted);
   ImGui::EndDisabled();
   next(ui);
