@@ -7,6 +7,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -24,21 +25,30 @@ std::vector<double> values_of(const MapAxis& axis) {
 }
 
 // Which unstable cells are hatched: those on every so many diagonals, so that fine cells do not become one
-// colour, and all of a run along x that none of these crosses.
+// colour, and those that no such line crosses in their row or column.
 std::vector<bool> hatched_cells(const MapCells& cells, std::size_t across, std::size_t up) {
   constexpr double most = 16; // slanting lines one above the other
   const auto every = static_cast<std::size_t>(std::max(1., std::round(static_cast<double>(up) / most)));
+  const auto unstable = [&](std::size_t i, std::size_t j) {
+    return i < across && j < up && cells[j * across + i].stable == false;
+  };
+  const auto on_line = [&](std::size_t i, std::size_t j) { return (i + up * every - j) % every == 0; };
+  // Indices below zero wrap around to large ones, which no cell has.
+  const auto crossed = [&](std::size_t i, std::size_t j) {
+    for (const std::array<std::size_t, 2> way : {std::array<std::size_t, 2>{1, 0}, {0, 1}})
+      for (const bool back : {false, true})
+        for (std::size_t k = 0; k < every; ++k) {
+          const std::size_t x = back ? i - k * way[0] : i + k * way[0],
+                            y = back ? j - k * way[1] : j + k * way[1];
+          if (!unstable(x, y)) break;
+          if (on_line(x, y)) return true;
+        }
+    return false;
+  };
   std::vector<bool> hatched(cells.size());
   for (std::size_t j = 0; j < up; ++j)
-    for (std::size_t i = 0; i < across;) {
-      std::size_t end = i;
-      bool crossed = false;
-      for (; end < across && cells[j * across + end].stable == false; ++end)
-        crossed = crossed || (end + up * every - j) % every == 0;
-      for (std::size_t k = i; k < end; ++k)
-        hatched[j * across + k] = !crossed || (k + up * every - j) % every == 0;
-      i = std::max(end, i + 1);
-    }
+    for (std::size_t i = 0; i < across; ++i)
+      hatched[j * across + i] = unstable(i, j) && (on_line(i, j) || !crossed(i, j));
   return hatched;
 }
 
