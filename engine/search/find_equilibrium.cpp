@@ -10,6 +10,10 @@
 #include "engine/stability/gyroscopic_stability.hpp"
 #include "engine/stability/stability.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace flyball {
 namespace {
 
@@ -83,7 +87,35 @@ class EquilibriumSearch {
     plain.trusting = warm_;
     // Where the descent comes next it leads to a minimum with fewer steps.
     plain.to_minimum = descends_ && large_ && !warm_;
-    return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton(p_, z, w_, plain, &history_); });
+    return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });
+  }
+
+  // Whether a speed that is found became one the other way.
+  bool turned_round(const Eigen::VectorXd& q) const {
+    return std::ranges::any_of(p_.system.links, [&](const Link& link) {
+      return finds_speed(link) && start_[link.q] * q[link.q] < 0;
+    });
+  }
+
+  // Newton-Raphson may step over a standstill, and what depends on a speed through centrifugal forces alone
+  // has a mirror image there: then once more from where speeds have the signs that they began with.
+  NewtonOutcome newton_as_begun(Unknowns& z, const NewtonSettings& settings) {
+    NewtonOutcome outcome = newton(p_, z, w_, settings, &history_);
+    if (!outcome.converged || !turned_round(z.q)) return outcome;
+    Unknowns mirrored = z;
+    for (const Link& link : p_.system.links)
+      if (finds_speed(link)) mirrored.q[link.q] = std::copysign(z.q[link.q], start_[link.q]);
+    NewtonOutcome again = newton(p_, mirrored, w_, settings, &history_);
+    again.iterations += outcome.iterations;
+    if (again.converged && !turned_round(mirrored.q) && same_assembly_mode(p_, w_.kinematics)) {
+      z = std::move(mirrored);
+    } else { // there is none: the balance is left factored at what was found
+      const int iterations = again.iterations;
+      again = newton(p_, z, w_, settings, &history_);
+      again.iterations += iterations;
+    }
+    again.largest_step = std::max(again.largest_step, outcome.largest_step);
+    return again;
   }
 
   // Within its play nothing holds a coordinate, and Newton's step along it means nothing.

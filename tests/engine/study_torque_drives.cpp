@@ -2,6 +2,7 @@
 // speed and against motions that settle; their stability against characteristic polynomials.
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
@@ -60,6 +61,34 @@ TEST_CASE("Haug's governor with engine: speed, collar and eigenvalues", "[torque
       CHECK(std::abs((*s.at_constant_speed->eigenvalues)[i] - (*prescribed.eigenvalues)[i]) < 1e-9);
     CHECK(std::abs(s.drive_torques[0].value - 0) < 1e-10);
   }
+}
+
+TEST_CASE("a speed has the sign that it was looked for with where its mirror image balances, too",
+          "[torque]") {
+  const auto damper = [&](double d, double gain) {
+    Mechanism m = stored_case("governor_steps_over_standstill");
+    set_parameter(m, "parameters.d", d);
+    set_parameter(m, "parameters.gain", gain);
+    return m;
+  };
+  for (const double gain : {7500., 12000.}) {
+    CAPTURE(gain);
+    const Solution s = Analysis(damper(25, gain)).solve();
+    REQUIRE(s.status == Status::converged);
+    const double w = speed(s, "spin");
+    CHECK(w > 0);
+    CHECK(s.stable == (gain < 10000));
+    // The balance of the shaft, whose load goes with the square of the speed.
+    const double height = 0.2 - value(s, "slide");
+    CHECK_THAT(gain * (0.0506 - height), WithinRel(0.02 * w * w, 1e-9));
+  }
+  // Hunting is crossed by that state alone; its eigenvalues say on which sides.
+  const ResponseDiagram d = follow_branches(damper(25, 7500), "parameters.d", 15, 60);
+  REQUIRE(d.special.size() == 1);
+  CHECK(d.special[0].type == SpecialPointType::hopf);
+  const double limit = d.special[0].at.parameter;
+  CHECK(Analysis(damper(limit * 0.999, 7500)).solve().stable == false);
+  CHECK(Analysis(damper(limit * 1.001, 7500)).solve().stable == true);
 }
 
 TEST_CASE("hunting of Haug's governor begins where Routh's criterion says", "[torque][branches]") {
