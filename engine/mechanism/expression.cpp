@@ -169,7 +169,7 @@ class ExpressionParser {
     if (function == functions.end() && result != result_functions().end()) {
       if (results_) return result_call(*result, begin);
       at_ = begin;
-      fail("only measures can use results, as " + std::string(name) + "() is");
+      fail("only measures and laws of drives can use results, as " + std::string(name) + "() is");
     }
     if (function == functions.end()) {
       std::vector<std::string_view> names;

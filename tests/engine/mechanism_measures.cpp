@@ -139,7 +139,8 @@ TEST_CASE("Only measures ask for results", "[measures]") {
       read_scene(edited(find, replace));
       FAIL("no mistake");
     } catch (const SceneError& error) {
-      CHECK(std::string(error.what()).find("only measures can use results") != std::string::npos);
+      CHECK(std::string(error.what()).find("only measures and laws of drives can use results") !=
+            std::string::npos);
     }
   }
 }
