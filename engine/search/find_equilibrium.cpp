@@ -90,32 +90,34 @@ class EquilibriumSearch {
     return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });
   }
 
-  // Whether a speed that is found became one the other way.
-  bool turned_round(const Eigen::VectorXd& q) const {
-    return std::ranges::any_of(p_.system.links, [&](const Link& link) {
-      return finds_speed(link) && start_[link.q] * q[link.q] < 0;
-    });
+  bool turned_round(const Link& link, const Eigen::VectorXd& q) const {
+    return finds_speed(link) && start_[link.q] * q[link.q] < 0;
+  }
+  // How many speeds that are found became ones the other way.
+  std::ptrdiff_t count_turned_round(const Eigen::VectorXd& q) const {
+    return std::ranges::count_if(p_.system.links, [&](const Link& link) { return turned_round(link, q); });
   }
 
   // Newton-Raphson may step over a standstill, and what depends on a speed through centrifugal forces alone
   // has a mirror image there: then once more from where speeds have the signs that they began with.
   NewtonOutcome newton_as_begun(Unknowns& z, const NewtonSettings& settings) {
-    NewtonOutcome outcome = newton(p_, z, w_, settings, &history_);
-    if (!outcome.converged || !turned_round(z.q)) return outcome;
+    const NewtonOutcome outcome = newton(p_, z, w_, settings, &history_);
+    const std::ptrdiff_t turned = outcome.converged ? count_turned_round(z.q) : 0;
+    if (turned == 0) return outcome;
     Unknowns mirrored = z;
     for (const Link& link : p_.system.links)
-      if (finds_speed(link)) mirrored.q[link.q] = std::copysign(z.q[link.q], start_[link.q]);
+      if (turned_round(link, z.q)) mirrored.q[link.q] = -z.q[link.q];
+    const std::size_t recorded = history_.size();
     NewtonOutcome again = newton(p_, mirrored, w_, settings, &history_);
-    again.iterations += outcome.iterations;
-    if (again.converged && !turned_round(mirrored.q) && same_assembly_mode(p_, w_.kinematics)) {
+    if (again.converged && count_turned_round(mirrored.q) < turned && same_assembly_mode(p_, w_.kinematics)) {
       z = std::move(mirrored);
-    } else { // there is none: the balance is left factored at what was found
-      const int iterations = again.iterations;
-      again = newton(p_, z, w_, settings, &history_);
-      again.iterations += iterations;
+      again.iterations += outcome.iterations;
+      again.largest_step = std::max(again.largest_step, outcome.largest_step);
+      return again;
     }
-    again.largest_step = std::max(again.largest_step, outcome.largest_step);
-    return again;
+    history_.resize(recorded);
+    factor_at(p_, z, w_);
+    return outcome;
   }
 
   // Within its play nothing holds a coordinate, and Newton's step along it means nothing.

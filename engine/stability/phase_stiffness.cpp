@@ -71,7 +71,8 @@ PhaseStiffness phase_stiffness(const Problem& of, const Unknowns& z, Workspace& 
   return out;
 }
 
-bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& turned, Workspace& w) {
+bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& turned, Workspace& w,
+                    const Eigen::MatrixXd* free) {
   const System& system = problem.system;
   Parameters moved = problem.parameters;
   const Problem there{system, moved, problem.scaling, problem.cancel};
@@ -81,12 +82,13 @@ bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::Vect
         moved.links[l].start = problem.parameters.links[l].start + by * turned[link.v];
     Unknowns at{z.q, Eigen::VectorXd::Zero(system.rows)};
     evaluate(there, at, 0, w);
-    if (system.rows > 0) {
+    if (system.rows > 0 && !free) {
       factor_constraints(there, w);
       best_multipliers(there, w, at.lambda);
       evaluate(there, at, 0, w);
     }
-    const Eigen::VectorXd left = w.residual.f.cwiseProduct(problem.scaling.column),
+    const Eigen::VectorXd left = free ? (free->transpose() * w.residual.f).eval()
+                                      : w.residual.f.cwiseProduct(problem.scaling.column).eval(),
                           terms = w.magnitudes.force.cwiseProduct(problem.scaling.column);
     if (!(largest_size(left) <= tolerance::phase_balance * largest(terms))) return false;
   }

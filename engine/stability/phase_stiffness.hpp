@@ -21,7 +21,10 @@ struct PhaseStiffness {
 PhaseStiffness phase_stiffness(const Problem& problem, const Unknowns& z, Workspace& w);
 
 // Whether the mechanism is balanced, with some multipliers, wherever it is moved along `turned` (nv; rad or m
-// of each speed that is found) from z; looked at in two places at a distance.
-bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& turned, Workspace& w);
+// of each speed that is found) from z; looked at in two places at a distance. Of `free` directions alone (nv,
+// k; rad or m of each coordinate, which no loop holds), where others are held by what is no part of the
+// balance.
+bool balanced_along(const Problem& problem, const Unknowns& z, const Eigen::VectorXd& turned, Workspace& w,
+                    const Eigen::MatrixXd* free = nullptr);
 
 } // namespace flyball

@@ -62,6 +62,8 @@ MotionAt::MotionAt(const MotionModel& model, const MotionOfAll& state, std::span
   move(released, p, {at.q, at.u}, kinematics_, none);
   find_multipliers(held);
   evaluate_residual<double>(released, p, at.q, at.lambda, kinematics_, residual_);
+  for (const Eigen::VectorXd& share : open_shares)
+    refuse_dead_point(share);
   linearize(released, p, at.q, at.lambda, kinematics_, residual_, l_);
   linearize_motion(released, p, at.q, kinematics_, l_);
   add_coordinate_damping_stiffness(released, p, at.q, at.u, l_.stiffness);
@@ -150,6 +152,22 @@ Eigen::MatrixXd MotionAt::reduced(const Eigen::MatrixXd& m) const {
 
 Eigen::VectorXd MotionAt::multipliers(const Eigen::VectorXd& force) const {
   return space_.least_norm_multipliers(-force).head(model_.system.rows).cwiseProduct(model_.scaling.row);
+}
+
+void MotionAt::refuse_dead_point(const Eigen::VectorXd& share) {
+  const double bears = at.lambda.lpNorm<Eigen::Infinity>(), whole = share.lpNorm<Eigen::Infinity>();
+  if (!(bears > 0 && whole > 0)) return;
+  const auto stiffness_with = [&](const Eigen::VectorXd& lambda) {
+    evaluate_residual<double>(model_.released, model_.parameters, at.q, lambda, kinematics_, residual_);
+    linearize(model_.released, model_.parameters, at.q, lambda, kinematics_, residual_, l_);
+    return reduced(column_.asDiagonal() * l_.stiffness * column_.asDiagonal());
+  };
+  const Eigen::MatrixXd other = stiffness_with(at.lambda + share * (bears / whole)),
+                        drawn = stiffness_with(at.lambda);
+  if ((other - drawn).norm() > consistent * (drawn.norm() + other.norm()))
+    throw Refusal{
+        "A joint that friction holds stands at a dead point of its loop: how much of the load it bears "
+        "is open, and small motions depend on it."};
 }
 
 void MotionAt::find_multipliers(std::span<const int> held) {

@@ -67,6 +67,8 @@ class MotionAt {
   // measured by the inertias M_ii M_jj >= M_ij^2 themselves, is zero: M^-1 makes much of it in a long chain.
   Eigen::VectorXd carried(const Eigen::VectorXd& drive_rates) const;
   void find_multipliers(std::span<const int> held);
+  // Throws where how much of the load it takes, of what loops leave open, is felt by small motions.
+  void refuse_dead_point(const Eigen::VectorXd& share);
 
   const MotionModel& model_;
   int n_ = 0, drives_ = 0;

@@ -122,7 +122,7 @@ class Builder {
     FrictionParts slips = state.parts;
     for (std::size_t i = 0; i < slips.size(); ++i)
       if (is_slipping(slips[i]))
-        refuse_limit_as_input(frictions[i]);
+        refuse_limit_as_input(frictions[i], i < state.implied.size() && state.implied[i]);
       else
         slips[i] = FrictionPart::none;
     if (std::ranges::none_of(slips, is_slipping)) return;
@@ -133,10 +133,14 @@ class Builder {
       throw Refusal{"A measure is not told of joints on which friction slips."};
   }
 
-  // What friction gives is a number once it slips.
-  void refuse_limit_as_input(CoordinateReference at) {
+  // What friction gives is a number once it slips, and so is what a load by an expression, or a damper where
+  // the drives give the rate, gives beside it.
+  void refuse_limit_as_input(CoordinateReference at, bool implied) {
     const VariedNumbers numbers(mechanism_, addresses_);
     const Friction& friction = friction_at(mechanism_, at);
+    const Joint& joint = joint_of(mechanism_, at);
+    const Coordinate& c = joint.coordinates[static_cast<std::size_t>(at.coordinate)];
+    const bool load = c.drive && !drive_law(mechanism_, joint, at.coordinate, "load");
     for (const LinearInput& input : signals_.inputs) {
       const auto i = static_cast<std::size_t>(&input - signals_.inputs.data());
       if (numbers_[i] < 0) continue;
@@ -146,8 +150,13 @@ class Builder {
            {&friction.limit, &friction.mu, &friction.preload, &friction.radius})
         if (rates.find(place_of(*number)).value_or(0) != 0)
           throw Refusal{"The input " + input.name +
-                        " has no place in a linear model: it is in the limit of " +
-                        joint_of(mechanism_, at).name + ", which slips."};
+                        " has no place in a linear model: it is in the limit of " + joint.name +
+                        ", which slips."};
+      if ((implied && rates.find(place_of(c.damping)).value_or(0) != 0) ||
+          (load && rates.find(place_of(c.drive->load)).value_or(0) != 0))
+        throw Refusal{"The input " + input.name +
+                      " has no place in a linear model: it is in the load or the damping of " + joint.name +
+                      ", where friction slips."};
     }
   }
 
@@ -231,12 +240,14 @@ class Builder {
     const Problem problem{steady_system_, steady_parameters_, scaling};
     Workspace w;
     const Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
+    const Eigen::MatrixXd free = drawn.column().head(steady_system_.nv).asDiagonal() * drawn.basis();
     for (std::size_t i = 0; i < chosen_.entries.size() && !options_.phases; ++i) {
       if (!driven[static_cast<std::size_t>(chosen_.entries[i])]) continue;
       Eigen::VectorXd turned =
           (drawn.basis() * from.col(static_cast<Eigen::Index>(i))).cwiseProduct(drawn.column());
       turned /= turned.lpNorm<Eigen::Infinity>();
-      chosen_.phase[i] = !angles_ || (stands_alike(turned) && balanced_along(problem, z, turned, w));
+      chosen_.phase[i] = !angles_ || (stands_alike(turned) &&
+                                      balanced_along(problem, z, turned, w, held_.empty() ? nullptr : &free));
     }
     for (std::size_t i = 0; i < chosen_.entries.size(); ++i)
       if (driven[static_cast<std::size_t>(chosen_.entries[i])] && !chosen_.phase[i]) phases_ = true;

@@ -10,6 +10,7 @@
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
 #include "tests/engine/linear_models.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -113,7 +114,9 @@ TEST_CASE("linear models of a clutch that holds and of one that slips", "[linear
   const LinearModel held = linear_model(holds, in, out);
   CHECK(held.held == Names{"c"});
   CHECK(held.slipping.empty());
+  REQUIRE(held.poles.size() == 1); // its angle is a phase
   check_pole(held, -1.2 / (2 * inertia));
+  CHECK(held.stable == true);
   for (const LinearModel::State& state : held.states)
     CHECK_FALSE(state.name.starts_with("c"));
   for (const Eigen::Index input : {0, 1}) {
@@ -125,6 +128,11 @@ TEST_CASE("linear models of a clutch that holds and of one that slips", "[linear
   const LinearModel slipping = linear_model(slips, in, out);
   CHECK(slipping.held.empty());
   CHECK(slipping.slipping == Names{"c"});
+  // What slips has become a force, and with it the damper beside it.
+  CHECK_THAT(linearize(motor_and_load(R"("damping": 0.1, "friction": {"limit": 0.5})"),
+                       Names{"joints.c.damping"}, out)
+                 .refusal,
+             ContainsSubstring("where friction slips"));
   REQUIRE(slipping.poles.size() == 2);
   check_pole(slipping, -1 / inertia);
   check_pole(slipping, -0.2 / inertia);
@@ -134,6 +142,34 @@ TEST_CASE("linear models of a clutch that holds and of one that slips", "[linear
   CHECK_THAT((*slipping.gain)(2, 0), WithinRel(-1., 1e-10));
   CHECK_THAT(linearize(slips, Names{"joints.c.friction.limit"}, out).refusal,
              ContainsSubstring("in the limit of c, which slips"));
+}
+
+TEST_CASE("a differential with one shaft that friction holds", "[linear-model]") {
+  Mechanism m = shipped("differential");
+  Coordinate& left = std::ranges::find(m.joints, "left", &Joint::name)->coordinates[0];
+  left.damping = 0;
+  left.friction = Friction{.limit = 500};
+  const LinearModel model = linear_model(m, {"torque(case)"}, {"rate(case)"});
+  CHECK(model.held == Names{"left"});
+  REQUIRE(model.states.size() == 1);
+  CHECK(model.states[0].name == "case.rate");
+  // The other shaft turns twice as fast, and both are damped.
+  CHECK_THAT((*model.gain)(0, 0), WithinRel(1 / 8.5, 1e-10));
+}
+
+TEST_CASE("no linear model where friction holds a joint at a dead point of its loop", "[linear-model]") {
+  const Mechanism m = read_scene(R"({"flyball": 1, "name": "Slider-crank", "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "crank", "mass": 1, "position": [0, -0.1, 0], "inertia": [0.001, 0.001, 0.002]},
+      {"name": "slider", "mass": 0.8, "position": [0, 0.2, 0]}],
+    "joints": [
+      {"name": "a", "type": "revolute", "bodies": ["ground", "crank"], "at": [0, 0, 0], "axis": [0, 0, 1],
+        "damping": 0.01},
+      {"name": "d", "type": "prismatic", "bodies": ["ground", "slider"], "at": [0, 0.2, 0], "axis": [0, 1, 0],
+        "friction": {"limit": 5}},
+      {"name": "link", "type": "distance", "bodies": ["crank", "slider"],
+        "points": [[0, -0.1, 0], [0, 0.2, 0]]}]})");
+  CHECK_THAT(linearize(m, Names{"torque(a)"}, Names{"a"}).refusal,
+             ContainsSubstring("stands at a dead point of its loop"));
 }
 
 TEST_CASE("joints in loops that friction holds share what they bear as nothing determines",

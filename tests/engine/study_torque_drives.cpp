@@ -82,6 +82,26 @@ TEST_CASE("a speed has the sign that it was looked for with where its mirror ima
     const double height = 0.2 - value(s, "slide");
     CHECK_THAT(gain * (0.0506 - height), WithinRel(0.02 * w * w, 1e-9));
   }
+  // Beside what really turns back, too.
+  Mechanism with_fan = damper(25, 7500);
+  Body blades;
+  blades.name = "fan";
+  blades.mass = 1;
+  blades.inertia = {1, 1, 1};
+  with_fan.bodies.push_back(blades);
+  Joint fan;
+  fan.name = "fan bearing";
+  fan.type = JointType::revolute;
+  fan.bodies = {"ground", "fan"};
+  fan.axis = Vec3::UnitZ();
+  fan.coordinates.resize(1);
+  fan.coordinates[0].damping = 1;
+  fan.coordinates[0].drive = Drive{.speed = 3, .torque = -5};
+  with_fan.joints.push_back(fan);
+  const Solution both = Analysis(with_fan).solve();
+  REQUIRE(both.status == Status::converged);
+  CHECK(speed(both, "spin") > 0);
+  CHECK_THAT(speed(both, "fan bearing"), WithinRel(-5., 1e-12));
   // Hunting is crossed by that state alone; its eigenvalues say on which sides.
   const ResponseDiagram d = follow_branches(damper(25, 7500), "parameters.d", 15, 60);
   REQUIRE(d.special.size() == 1);
