@@ -126,18 +126,23 @@ std::string settled_words(const Session& session) {
   if (!session.motion.settled || !shown) return {};
   const Settled& settled = *session.motion.settled;
   if (!settled.farthest || !std::isfinite(settled.distance)) return settled.message;
-  constexpr double nearly = 0.02; // of a radian or the mechanism's size: a plot hardly shows it
   const FarCoordinate& far = *settled.farthest;
   const ShownUnit unit =
       far.speed ? rate_unit(far.angle, session.units) : coordinate_unit(far.angle, session.units);
-  const std::string away = coordinate_words(far) + " is " + short_text(unit.factor * far.away, 2) +
-                           (unit.text == "°" ? "" : " ") + unit.text + " from the steady state.";
+  const std::string away = (far.speed ? "the speed of " : "") + coordinate_words(far) + " is " +
+                           short_text(unit.factor * far.away, 2) + (unit.text == "°" ? "" : " ") + unit.text +
+                           " from the steady state.";
   if (settled.held) return "Friction holds it where it has come to rest: " + away;
   if (settled.time) return "Settled after " + short_text(*settled.time, 4) + " s; at the end " + away;
   const std::vector<double>& times = shown->run->time;
   const std::string after = " after " + short_text(times.back() - times.front(), 4) + " s: " + away;
-  if (settled.distance < nearly) return "Nearly settled" + after;
   if (session.answer.solution.stable == false) return "Not settled, as the steady state is unstable;" + after;
+  // For the last tenth of the run, so that what swings past is not taken for it.
+  constexpr double nearly = 0.02; // of a radian or the mechanism's size: a plot hardly shows it
+  if (settled.distance < nearly && !computing_motion(session)) {
+    const std::optional<double> since = find_settled(*shown->run, session.answer.solution, nearly).time;
+    if (since && *since < 0.9 * (times.back() - times.front())) return "Nearly settled" + after;
+  }
   return "Not settled" + after;
 }
 

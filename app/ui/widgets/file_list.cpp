@@ -207,7 +207,13 @@ bool may_write_to(const Session& session, FileQuery& query, const fs::path& file
   }
   fs::create_directories(file.parent_path(), failed);
   query.list.read.clear(); // it has another entry now
-  if (!failed) return true;
+  if (!failed && file.has_filename()) return true;
+  if (!failed) { // a folder alone was typed
+    show_folder(query, file.parent_path());
+    query.path.clear();
+    query.asked.clear();
+    return false;
+  }
   query.message = "The folder " + file.parent_path().string() + " cannot be made: " + failed.message() + ".";
   query.asked.clear();
   return false;

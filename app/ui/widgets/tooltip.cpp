@@ -1,4 +1,5 @@
 #include "app/ui/widgets/tooltip.hpp"
+#include "app/render/imgui_compat.hpp"
 
 #include <imgui_internal.h>
 
@@ -18,8 +19,9 @@ bool pointed_long() {
     state->done = false;
   }
   state->frame = frame;
+  // Who presses what cannot be pressed wants to know why.
   for (const bool down : ImGui::GetIO().MouseDown)
-    state->done = state->done || down;
+    state->done = state->done || (down && !imgui_compat::last_item_disabled());
   if (state->done) return false;
   const double left = state->since + TooltipState::patience - state->clock;
   if (left > 0) state->due = std::min(state->due, left);

@@ -52,6 +52,7 @@ NearestRun nearest_run(const Comparison& c, const std::optional<std::size_t>& me
 
 // Two digits: run times are worth no more.
 std::string times_text(double ratio) {
+  if (ratio < 10) return short_text(ratio, 2);
   const double unit = std::pow(10, std::max(0., std::floor(std::log10(ratio)) - 1));
   return std::to_string(std::llround(std::round(ratio / unit) * unit));
 }
@@ -134,8 +135,7 @@ void words(Session& session, Ui& ui) {
     paragraph(
         "The direct solution, one Newton-Raphson iteration after the other, and the damped motion with every "
         "integrator over tolerances and durations: what error is left after which time. Some hundred runs, "
-        "each "
-        "repeated.",
+        "each repeated.",
         colors.dim);
     return;
   }

@@ -45,8 +45,8 @@ void verdict(const Session& session, Ui& ui, const FoundModes& found) {
 }
 
 // A number of the list: four digits of what is not rounding.
-std::string four_digits(double value, double size) {
-  return std::abs(value) < 1e-7 * size ? "0" : short_text(value, 4);
+std::string some_digits(double value, double size, int digits) {
+  return std::abs(value) < 1e-7 * size ? "0" : short_text(value, digits);
 }
 
 std::string whirl_words(const Whirl& whirl, double frequency) {
@@ -117,8 +117,8 @@ void mode_row(Session& session, Ui& ui, std::size_t index, const FoundModes& fou
   const bool swings = mode.oscillates();
   const std::array<std::string, 4> values{swings ? short_text(hertz(mode.natural_frequency), 4) : "–",
                                           swings ? short_text(mode.natural_frequency, 4) : "–",
-                                          swings ? four_digits(mode.damping_ratio, 1) : "–",
-                                          four_digits(mode.eigenvalue.real(), largest)};
+                                          swings ? some_digits(mode.damping_ratio, 1, 3) : "–",
+                                          some_digits(mode.eigenvalue.real(), largest, 4)};
   for (const std::string& value : values)
     if (ImGui::TableNextColumn()) right_digits(ui, value, color);
 }
@@ -135,7 +135,7 @@ void list(Session& session, Ui& ui, const FoundModes& found, float height) {
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
   if (ImGui::BeginTable("modes", 5, table_flags, {0, height})) {
     ImGui::TableSetupScrollFreeze(0, 1);
-    constexpr std::array widths{20.f, 78.f, 70.f, 62.f, 88.f};
+    constexpr std::array widths{20.f, 78.f, 70.f, 70.f, 88.f};
     for (std::size_t i = 0; i < titles.size(); ++i)
       ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * ui.scale);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);

@@ -110,9 +110,10 @@ bool complete(const Session& session, const MovieState& movie) {
   return run && run->finished;
 }
 
-// Why it cannot be made, or "".
+// Why it cannot be made, or "". A folder that is not there yet is none of it: the dialog asks to make it;
+// then one that is there, `folder`, says whether anything else is.
 std::string problem_of(const Session& session, const MovieState& movie, const MovieRequest& request,
-                       std::size_t frames) {
+                       std::size_t frames, const std::filesystem::path& folder) {
   if (!complete(session, movie))
     return movie.of == Filmed::mode    ? "The modes are of the state before the last changes."
            : computing_motion(session) ? "The run is still being computed."
@@ -120,7 +121,10 @@ std::string problem_of(const Session& session, const MovieState& movie, const Mo
   if (request.of == Filmed::run && !(request.from < request.to) && !movie.whole)
     return "It ends before it begins.";
   if (std::min(request.width, request.height) < smallest_movie) return "At least 16 pixels a side.";
-  return movie_problem(request.file, {request.width, request.height, request.rate, frames});
+  std::error_code ignored;
+  const bool there = std::filesystem::is_directory(request.file.parent_path(), ignored);
+  const std::filesystem::path file = there ? request.file : folder / request.file.filename();
+  return movie_problem(file, {request.width, request.height, request.rate, frames});
 }
 
 void progress(Ui& ui, MovieState& movie, const MovieState::Progress& at) {
@@ -158,7 +162,7 @@ void MovieDialog::choices(Session& session, Ui& ui, MovieState& movie) {
 
   const MovieRequest request = request_of(session, query_, movie);
   const std::size_t frames = requested_moments(session, request).size();
-  const std::string problem = problem_of(session, movie, request, frames);
+  const std::string problem = problem_of(session, movie, request, frames, query_.list.shown);
   const std::filesystem::path first = first_file(request.file, frames);
   ImGui::Dummy({0, 2 * ui.scale});
   if (!problem.empty())
