@@ -161,6 +161,16 @@ TEST_CASE("saving over another file is asked about, and a failure loses nothing"
     CHECK_FALSE(app.dialog.showing);
     CHECK(speed_in(folder / "new/folder/x.flyball.json") == 5);
   }
+  SECTION("a folder alone is made, and shown") {
+    robot.type((folder / "plots/").string());
+    robot.key(key_enter);
+    CHECK(app.ui.widgets.contains("file question"));
+    robot.key(key_enter);
+    CHECK(app.dialog.showing);
+    CHECK(fs::is_directory(folder / "plots"));
+    CHECK(app.panels->save.query().list.shown == folder / "plots");
+    CHECK(app.panels->save.query().path.empty());
+  }
   SECTION("to where nothing can be written") {
     robot.type((folder / "other.json/x").string()); // that is no folder
     robot.key(key_enter);

@@ -264,6 +264,19 @@ TEST_CASE("frames that are there already are replaced when the person says so") 
   CHECK(read_png(folder / "run-0001.png").width == 160);
 }
 
+TEST_CASE("a film's folder is made first, if that is meant") {
+  const TemporaryFolder folder;
+  MovieRobot robot;
+  robot.name(folder / "films/run.png");
+  robot.click("movie/save");
+  robot.frames(1);
+  CHECK(robot.app.ui.widgets.contains("file question"));
+  CHECK_FALSE(fs::exists(folder / "films"));
+  robot.click("movie/save");
+  robot.wait();
+  CHECK(read_png(folder / "films/run-0001.png").width == 160);
+}
+
 TEST_CASE("the export is on offer where a motion is shown") {
   Robot robot;
   CHECK_FALSE(robot.app.commands.enabled(command("study.export")));
