@@ -8,6 +8,7 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flyball {
 
@@ -24,6 +25,11 @@ FoundTransfer find_transfer(const TransferRequest& request, const TaskContext<Fo
   const std::vector<std::string> input{request.choice.input}, output{request.choice.output};
   FoundTransfer found;
   found.model = linearize(*request.mechanism, input, output, options);
+  if (!found.model.refusal.empty() && has_friction(*request.mechanism)) { // what only friction holds
+    options.nearest = options.slipping = false;
+    LinearModel held = linearize(*request.mechanism, input, output, options);
+    if (held.refusal.empty()) found.model = std::move(held);
+  }
   if (!found.model.refusal.empty()) throw std::runtime_error(found.model.refusal);
   const Interruptible scope(&context.cancel);
   context.progress({"frequency response", -1});

@@ -153,6 +153,19 @@ TEST_CASE("of joints with dry friction the model is of the motion once they slip
   }
 }
 
+TEST_CASE("where dry friction holds the state the model is of what it leaves free") {
+  TransferRobot robot;
+  edit(robot.app.session, "Add friction", [](Mechanism& m, Selection&) {
+    for (Joint& joint : m.joints)
+      if (joint.name == "slide") joint.coordinates[0].friction = Friction{.limit = 3, .share = 0.5};
+  });
+  robot.frames(4);
+  REQUIRE_FALSE(robot.app.session.answer.solution.frictions.empty());
+  CHECK(robot.found().model.held == std::vector<std::string>{"slide"});
+  CHECK(robot.found().model.states.empty()); // the governor has one way to move
+  robot.widget("transfer/friction");
+}
+
 TEST_CASE("another input and another output are chosen, and what has no model says why") {
   TransferRobot robot;
   robot.click("transfer/input"); // of many

@@ -1,6 +1,7 @@
 // The transfer function of one input and one output: what is chosen, what it says, Bode's plots, poles and
 // zeros.
 #include "app/plot/transfer_plot.hpp"
+#include "app/report/linear_model_file.hpp"
 #include "app/session/periodic.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
@@ -99,12 +100,13 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
                   : "There is no steady state to make a model about.",
               colors.warn);
   if (!any) return;
-  if (has_friction(session.mechanism())) {
-    paragraph(friction_left_out, colors.warn);
-    note_widget(ui.widgets, "transfer/friction");
-  }
   const FoundTransfer& found = state.found.found->result;
   const LinearModel& model = found.model;
+  if (has_friction(session.mechanism())) {
+    const std::string text = friction_text(model); // of what it holds
+    paragraph(text.empty() ? friction_left_out : text, colors.warn);
+    note_widget(ui.widgets, "transfer/friction");
+  }
   const NumberStyle& numbers = session.options.numbers;
   const std::string unit = written_unit(transfer_unit(model.outputs[0], model.inputs[0]));
   const bool effect =
