@@ -3,6 +3,7 @@
 #include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/scene.hpp"
 #include "robot.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
@@ -155,14 +156,19 @@ TEST_CASE("of joints with dry friction the model is of the motion once they slip
 
 TEST_CASE("where dry friction holds the state the model is of what it leaves free") {
   TransferRobot robot;
-  edit(robot.app.session, "Add friction", [](Mechanism& m, Selection&) {
-    for (Joint& joint : m.joints)
-      if (joint.name == "slide") joint.coordinates[0].friction = Friction{.limit = 3, .share = 0.5};
+  edit(robot.app.session, "A block on a slope", [](Mechanism& m, Selection&) {
+    m = read_scene(R"({"flyball": 2, "name": "Pendulum on a block on a slope", "gravity": [0, -10, 0],
+      "bodies": [{"name": "block", "mass": 2, "position": [0, 0, 0]},
+                 {"name": "bob", "mass": 1, "position": [0, -1, 0]}],
+      "joints": [{"name": "slope", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
+                  "axis": [1, 0.2, 0], "friction": {"limit": 20}},
+                 {"name": "hinge", "type": "revolute", "bodies": ["block", "bob"], "at": [0, 0, 0],
+                  "axis": [0, 0, 1], "damping": 0.2}]})");
   });
-  robot.frames(4);
+  robot.frames(8);
   REQUIRE_FALSE(robot.app.session.answer.solution.frictions.empty());
-  CHECK(robot.found().model.held == std::vector<std::string>{"slide"});
-  CHECK(robot.found().model.states.empty()); // the governor has one way to move
+  CHECK(robot.found().model.held == std::vector<std::string>{"slope"});
+  CHECK(robot.found().model.states.size() == 2); // of the pendulum
   robot.widget("transfer/friction");
 }
 
