@@ -27,7 +27,7 @@ struct LinearModelOptions {
   // stands, two that turn alike with a spring between them; phase_stiffness.hpp) they are in any case.
   bool phases = false;
   // Of the motion once joints with dry friction slip, as eigenvalues are: their hold is left out, their share
-  // stays. Otherwise such that stand are rigid, as friction holds small motions.
+  // stays. Otherwise those that stand are rigid, as friction holds against small motions.
   bool slipping = false;
   std::vector<std::pair<std::string, double>> start{}; // as of SolveOptions
   bool nearest = false;
@@ -37,8 +37,8 @@ struct LinearModelOptions {
 struct LinearModel {
   // Why there is no model, a sentence; empty where there is one. Then the rest means nothing but `steady`.
   std::string refusal;
-  Solution
-      steady; // with eigenvalues, of the mechanism that has the model; of what friction holds once it slips
+  // With eigenvalues, of the mechanism that has the model; of what friction holds those once it slips.
+  Solution steady;
   // Names, as of coordinate_label(): dry friction holds these, which are no states; against these, which slip
   // at constant rates, it gives its limit.
   std::vector<std::string> held, slipping;
