@@ -25,6 +25,17 @@ bool begins_word(std::string_view text, std::size_t at) {
   return at == 0 || !is_word_part(text[at - 1]);
 }
 
+// What stands between blanks.
+std::vector<std::string_view> typed_words(std::string_view typed) {
+  std::vector<std::string_view> words;
+  for (std::size_t from = 0; from < typed.size();) {
+    const std::size_t end = std::min(typed.find(' ', from), typed.size());
+    if (end > from) words.push_back(typed.substr(from, end - from));
+    from = end + 1;
+  }
+  return words;
+}
+
 // Where the word stands together, rather at a word's beginning.
 std::optional<std::size_t> find_together(std::string_view word, std::string_view text) {
   std::optional<std::size_t> found;
@@ -85,12 +96,7 @@ FuzzyMatch match_word(std::string_view word, std::string_view name, std::string_
 
 FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::string_view more) {
   FuzzyMatch all{.score = 0, .marks = {}};
-  std::size_t from = 0;
-  while (from < typed.size()) {
-    const std::size_t end = std::min(typed.find(' ', from), typed.size());
-    const std::string_view word = typed.substr(from, end - from);
-    from = end + 1;
-    if (word.empty()) continue;
+  for (const std::string_view word : typed_words(typed)) {
     const FuzzyMatch match = match_word(word, name, more);
     if (!match) return {};
     all.score += match.score;
@@ -100,6 +106,13 @@ FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::strin
   std::ranges::sort(all.marks);
   all.marks.erase(std::unique(all.marks.begin(), all.marks.end()), all.marks.end());
   return all;
+}
+
+bool words_begin(std::string_view typed, std::string_view text) {
+  return std::ranges::all_of(typed_words(typed), [&](std::string_view word) {
+    const auto at = find_together(word, text);
+    return at && begins_word(text, *at);
+  });
 }
 
 } // namespace flyball

@@ -1,4 +1,4 @@
-// How well a name answers what somebody types to find it.
+// How well a name, or a text, answers what somebody types to find it.
 #pragma once
 
 #include <cstddef>
@@ -18,5 +18,9 @@ struct FuzzyMatch {
 // over it from a word's beginning on ("sos" in "speed of spin"), or in `more`, which is not shown, together.
 // Upper and lower case count as the same. Nothing typed answers everything, with 0.
 FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::string_view more = {});
+
+// Whether every word that is typed begins a word of the text, or continues it behind a sign: "bar" is in
+// "four-bar". Upper and lower case count as the same.
+bool words_begin(std::string_view typed, std::string_view text);
 
 } // namespace flyball

@@ -1,9 +1,12 @@
 // The open dialog, recent files and the gallery of examples.
+#include "app/session/examples.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <set>
 #include <string>
 
@@ -135,6 +138,194 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
     robot.click("unsaved/discard");
     CHECK(app.session.document.file() == app.panels->gallery.cards()[0].file);
   }
+}
+
+namespace {
+
+struct GalleryRobot : FileRobot {
+  explicit GalleryRobot(const TemporaryFolder& folder, PixelSize window = {1000, 700}) : FileRobot(folder) {
+    size = window;
+    imgui_compat::map_key(ImGuiKey_UpArrow, key_up);
+    imgui_compat::map_key(ImGuiKey_LeftArrow, key_left);
+    imgui_compat::map_key(ImGuiKey_Backspace, key_backspace);
+    app.commands.run("file.examples");
+    frames(3);
+    REQUIRE(app.dialog.showing);
+  }
+  static constexpr int key_up = 265, key_left = 263, key_backspace = 259;
+
+  const std::vector<SceneCard>& cards() { return app.panels->gallery.cards(); }
+  // Those that are in sight.
+  std::vector<std::string> shown() {
+    std::vector<std::string> names;
+    for (const SceneCard& card : cards())
+      if (app.ui.widgets.contains("gallery/" + card.file.filename().string()))
+        names.push_back(card.file.stem().string());
+    return names;
+  }
+  std::vector<std::string> search(const std::string& text) {
+    type(text);
+    frames(2);
+    return shown();
+  }
+  std::string opened() const { return app.session.document.file().stem().string(); }
+};
+
+} // namespace
+
+TEST_CASE("the gallery's examples are in groups, and every one is in a group") {
+  const TemporaryFolder folder;
+  GalleryRobot robot(folder);
+  std::vector<std::string> groups;
+  for (const SceneCard& card : robot.cards()) {
+    INFO(card.file);
+    CHECK(card.group != "Others"); // assets/scenes/groups.txt does not name it
+    if (groups.empty() || groups.back() != card.group) groups.push_back(card.group);
+  }
+  CHECK(groups.front() == "First steps");
+  CHECK(std::set<std::string>(groups.begin(), groups.end()).size() == groups.size());
+  CHECK(groups.size() >= 8);
+  const auto group_of = [&](const std::string& scene) {
+    const auto& cards = robot.cards();
+    const auto found =
+        std::ranges::find(cards, scene, [](const SceneCard& card) { return card.file.stem().string(); });
+    return found == cards.end() ? std::string() : found->group;
+  };
+  CHECK(group_of("governor_porter") == "Governors");
+  CHECK(group_of("free_top") == "Gyros and tops");
+  CHECK(group_of("differential") == "Gears and belts");
+  CHECK(group_of("rotor_oil_whip") == "Rotors on bearings");
+}
+
+TEST_CASE("what groups.txt does not name is shown last, and without it nothing is grouped") {
+  const TemporaryFolder folder, scenes;
+  for (const char* name : {"governor", "free_top", "pendulum"})
+    fs::copy_file(shipped_file(name), scenes / (std::string(name) + ".json"));
+  std::ofstream(scenes / "broken.json") << "{";
+  const auto read = [&] {
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const Example& example : read_examples(scenes.path()))
+      found.emplace_back(example.file.stem().string(), example.group);
+    return found;
+  };
+  using Found = std::vector<std::pair<std::string, std::string>>;
+  CHECK(read() == Found{{"free_top", ""}, {"governor", ""}, {"pendulum", ""}});
+  std::ofstream(scenes / "groups.txt") << "# a remark\n\nTops and more\r\n  pendulum\r\n  gone\n  free_top\n";
+  CHECK(read() ==
+        Found{{"pendulum", "Tops and more"}, {"free_top", "Tops and more"}, {"governor", "Others"}});
+}
+
+TEST_CASE("the gallery finds examples by their titles, descriptions and parts as one types") {
+  const TemporaryFolder folder;
+  GalleryRobot robot(folder, {1000, 3000}); // all are in sight
+  using Names = std::vector<std::string>;
+  const Names all = robot.shown();
+  REQUIRE(all.size() == robot.cards().size());
+
+  SECTION("a title") {
+    CHECK(robot.search("PORTER") == Names{"governor_porter", "governor_proell", "governor_friction"});
+    CHECK(robot.search(" fric") == Names{"governor_friction"});
+  }
+  SECTION("a word of the description, not the inside of one") {
+    CHECK(robot.search("striking") == Names{"fan_governor"}); // "The fly of a striking clock"
+    CHECK(robot.search("x").empty());
+  }
+  SECTION("the inside of a word is not found") {
+    CHECK(robot.search("top ").size() < all.size() / 2); // not every stop
+  }
+  SECTION("a part that is in no title and no description") {
+    CHECK(robot.search("pulley") == Names{"fan_governor"});
+  }
+  SECTION("a group") {
+    CHECK(robot.search("linkages") == Names{"ball_on_string", "chain20", "fourbar_turntable"});
+  }
+  SECTION("the first that is found is chosen, and Enter opens it") {
+    robot.search("gear backlash");
+    CHECK(robot.shown() == Names{"gear_train"});
+    robot.key(key_enter);
+    CHECK_FALSE(robot.app.dialog.showing);
+    CHECK(robot.opened() == "gear_train");
+  }
+  SECTION("arrows go through what is found, down into the next group") {
+    robot.search("belts"); // by the group, by the belt
+    const Names found = robot.shown();
+    REQUIRE(found == Names{"gear_train", "differential", "fan_governor"});
+    robot.key(key_down);
+    robot.key(key_enter);
+    CHECK(robot.opened() == "fan_governor");
+  }
+  SECTION("nothing is found: it is told, and Enter opens nothing") {
+    CHECK(robot.search("zeppelin").empty());
+    robot.key(key_enter);
+    CHECK(robot.app.dialog.showing);
+    for (int i = 0; i < 8; ++i)
+      robot.key(GalleryRobot::key_backspace);
+    CHECK(robot.shown() == all);
+    robot.search("windmill");
+    robot.key(key_enter);
+    CHECK(robot.opened() == "windmill");
+  }
+  SECTION("what was searched for is forgotten when it opens again") {
+    robot.search("windmill");
+    robot.key(key_escape);
+    CHECK_FALSE(robot.app.dialog.showing);
+    robot.app.commands.run("file.examples");
+    robot.frames(3);
+    CHECK(robot.shown() == all);
+  }
+}
+
+TEST_CASE("the gallery's arrows keep the column from group to group, and the chosen card comes into sight") {
+  const TemporaryFolder folder;
+  const PixelSize window = GENERATE(PixelSize{800, 600}, PixelSize{1280, 720});
+  GalleryRobot robot(folder, window);
+  const auto rect = [&](std::size_t i) {
+    return robot.widget("gallery/" + robot.cards()[i].file.filename().string());
+  };
+  const auto count = robot.cards().size();
+  // Three in the first group, so in one row: the middle one, one row down, and back.
+  REQUIRE(robot.cards()[3].group != robot.cards()[0].group);
+  REQUIRE(rect(0).from.y == rect(2).from.y);
+  robot.key(key_right);
+  robot.key(key_down);
+  robot.key(GalleryRobot::key_up);
+  robot.key(key_down);
+  SECTION("one down") {
+    CHECK(rect(4).from.x == rect(1).from.x);
+    robot.key(key_enter);
+    CHECK(robot.opened() == robot.cards()[4].file.stem());
+  }
+  SECTION("to the last one") {
+    for (std::size_t i = 0; i < count; ++i)
+      robot.key(key_down);
+    robot.key(key_right);
+    robot.key(key_right);
+    robot.frames(2);
+    CHECK(rect(count - 1).to.y < static_cast<float>(robot.size.height));
+    CHECK(rect(count - 1).to.y - rect(count - 1).from.y > 150);
+    robot.key(key_enter);
+    CHECK(robot.opened() == robot.cards()[count - 1].file.stem());
+  }
+  SECTION("by the mouse") {
+    robot.wheel("gallery/" + robot.cards()[0].file.filename().string(), -3);
+    CHECK(rect(5).to.y < static_cast<float>(robot.size.height));
+    robot.click("gallery/" + robot.cards()[5].file.filename().string());
+    CHECK(robot.opened() == robot.cards()[5].file.stem());
+  }
+}
+
+TEST_CASE("the gallery's search has the keys again after a click beside it, and Tab goes on to the buttons") {
+  const TemporaryFolder folder;
+  GalleryRobot robot(folder);
+  const WidgetRect field = robot.widget("gallery/search");
+  robot.click(ImVec2(field.from.x + 5, field.from.y - 12)); // the dialog's title
+  CHECK(robot.search("windmill") == std::vector<std::string>{"windmill"});
+  robot.key(258); // Tab
+  CHECK(has_keyboard(robot.app.ui, "gallery/cancel"));
+  robot.key(key_enter);
+  robot.frames(3);
+  CHECK_FALSE(robot.app.dialog.showing);
+  CHECK(robot.opened() != "windmill");
 }
 
 TEST_CASE("the gallery opens at once, its pictures come one a frame and again in other colours") {

@@ -2,15 +2,17 @@
 
 #include "app/render/imgui_compat.hpp"
 #include "app/session/session.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/scene_pictures.hpp"
 #include "app/ui/widgets/dialog.hpp"
 #include "app/ui/widgets/widgets.hpp"
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/scene.hpp"
+
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -19,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float card_pad = 8, card_gap = 12; // points
+constexpr float around_cards = 186;          // points that the window has beside them, up and down
 constexpr int about_lines = 3;               // below a name
 constexpr float about_size = 0.88f;          // of the text's
 
@@ -32,20 +35,32 @@ std::string first_sentence(const std::string& text) {
 
 std::vector<SceneCard> read_cards(const fs::path& folder) {
   std::vector<SceneCard> cards;
-  std::error_code failed;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    if (it->path().extension() != ".json") continue;
-    try {
-      Mechanism mechanism = load_scene(it->path());
-      std::string about = first_sentence(mechanism.description);
-      cards.push_back({it->path(), std::move(mechanism), std::move(about)});
-    } catch (const SceneError&) { // an example that cannot be opened is none
-    }
+  for (Example& example : read_examples(folder)) {
+    std::string about = first_sentence(example.mechanism.description);
+    cards.push_back({std::move(example), std::move(about)});
   }
-  std::ranges::sort(cards, {}, [](const SceneCard& card) {
-    return std::pair(card.mechanism.bodies.size() + card.mechanism.joints.size(), card.mechanism.name);
-  });
   return cards;
+}
+
+// A line of cards, all of one group.
+struct CardRow {
+  std::vector<int> cards;
+  bool begins_group = false;
+};
+
+// Of the cards that are found by what is typed.
+std::vector<CardRow> card_rows(const std::vector<SceneCard>& cards, const std::string& typed, int columns) {
+  std::vector<CardRow> rows;
+  const std::string* group = nullptr;
+  for (int i = 0; i < static_cast<int>(cards.size()); ++i) {
+    const SceneCard& card = cards[static_cast<std::size_t>(i)];
+    if (!is_found_by(card, typed)) continue;
+    const bool begins = !group || *group != card.group;
+    if (begins || static_cast<int>(rows.back().cards.size()) == columns) rows.push_back({{}, begins});
+    rows.back().cards.push_back(i);
+    group = &card.group;
+  }
+  return rows;
 }
 
 float about_height(const Ui& ui) {
@@ -107,21 +122,59 @@ bool show_card(Ui& ui, const SceneCard& card, int i, int& chosen_card, float wid
   return clicked;
 }
 
-// The arrow keys move from card to card; returns whether they did.
-bool move_by_keys(int count, int columns, int& chosen) {
+// The arrow keys move from card to card, up and down within the column as far as there is one; returns
+// whether they did. What is chosen is in a row, if there is any.
+bool move_by_keys(const std::vector<CardRow>& rows, int& chosen) {
   const auto pressed = [](ImGuiKey key) { return imgui_compat::key_pressed(key); };
-  const int step = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow) +
-                   columns * (pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow));
-  const int wanted = chosen + step;
-  if (step == 0 || wanted < 0 || wanted >= count) return false;
-  chosen = wanted;
-  return true;
+  const int along = pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow);
+  const int down = pressed(ImGuiKey_DownArrow) - pressed(ImGuiKey_UpArrow);
+  std::vector<int> all;
+  for (const CardRow& row : rows)
+    all.insert(all.end(), row.cards.begin(), row.cards.end());
+  const int before = chosen;
+  if (const auto next = std::ranges::find(all, chosen) - all.begin() + along; along != 0)
+    if (next >= 0 && next < std::ssize(all)) chosen = all[static_cast<std::size_t>(next)];
+  for (std::size_t i = 0; down != 0 && i < rows.size(); ++i) {
+    const auto at = std::ranges::find(rows[i].cards, before) - rows[i].cards.begin();
+    const auto next = static_cast<std::ptrdiff_t>(i) + down;
+    if (at == std::ssize(rows[i].cards) || next < 0 || next >= std::ssize(rows)) continue;
+    const std::vector<int>& cards = rows[static_cast<std::size_t>(next)].cards;
+    chosen = cards[static_cast<std::size_t>(std::min(at, std::ssize(cards) - 1))];
+  }
+  return chosen != before;
+}
+
+// Has the keys as long as nothing else takes them; returns whether Enter was pressed there.
+bool search_field(Ui& ui, std::string& search) {
+  if (!ImGui::IsAnyItemActive() && !enter_is_taken(ui)) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const bool entered =
+      ImGui::InputTextWithHint("##search", "Find by title, description or part: Porter, friction, belt",
+                               &search, ImGuiInputTextFlags_EnterReturnsTrue);
+  note_widget(ui.widgets, "gallery/search", KeyUse::type);
+  return entered;
+}
+
+void group_title(const Ui& ui, const std::string& title) {
+  ImGui::PushFont(ui.fonts.strong);
+  ImGui::TextUnformatted(title.c_str());
+  ImGui::PopFont();
+}
+
+// With the distance between cards as that of all items.
+float full_height(const Ui& ui, const std::vector<CardRow>& rows) {
+  float height = 0;
+  for (const CardRow& row : rows)
+    height += (row.begins_group ? ImGui::GetTextLineHeightWithSpacing() : 0) + card_height(ui) +
+              ImGui::GetStyle().ItemSpacing.y;
+  return height;
 }
 
 } // namespace
 
 void GalleryDialog::open(const Session& session, DialogState& dialog) {
   cards_ = read_cards(session.options.scenes);
+  search_.clear();
   chosen_ = 0;
   dialog.wanted = Dialog::gallery;
 }
@@ -133,30 +186,46 @@ GalleryDialog::Answer GalleryDialog::draw(Ui& ui, DialogState& dialog) {
   if (!begin_dialog(ui, dialog, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * card_gap + 47))
     return answer;
   showing_ = true;
-  const int count = static_cast<int>(cards_.size());
+  const bool entered = search_field(ui, search_);
   const float between = card_gap * s;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
   const int columns =
       std::max(1, static_cast<int>((room + between) / (scene_picture_width * s * 0.8f + between)));
   const float width =
       std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
-  const float rows = std::ceil(static_cast<float>(count) / static_cast<float>(columns));
-  const float height =
-      std::min(rows * (card_height(ui) + between) - between, ImGui::GetIO().DisplaySize.y - 150 * s);
-  const bool moved = move_by_keys(count, columns, chosen_);
+  const std::vector<CardRow> rows = card_rows(cards_, search_, columns);
+  const bool found = std::ranges::any_of(
+      rows, [&](const CardRow& row) { return std::ranges::count(row.cards, chosen_) > 0; });
+  if (!found && !rows.empty()) chosen_ = rows[0].cards[0];
+  const bool moved = move_by_keys(rows, chosen_) || !found;
   fs::path opened;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {between, between});
-  ImGui::BeginChild("cards", {0, std::max(height, 60 * s)});
-  if (count == 0) paragraph("There are no examples beside this program.", colors_of(ui).dim);
-  for (int i = 0; i < count; ++i) {
-    if (i % columns != 0) ImGui::SameLine();
-    if (show_card(ui, cards_[static_cast<std::size_t>(i)], i, chosen_, width))
-      opened = cards_[static_cast<std::size_t>(i)].file;
-    if (moved && i == chosen_) ImGui::SetScrollHereY();
+  // As high as all of them, so that the dialog keeps its size while one types.
+  ImGui::BeginChild("cards", {0, std::clamp(full_height(ui, card_rows(cards_, {}, columns)), 60 * s,
+                                            ImGui::GetIO().DisplaySize.y - around_cards * s)});
+  if (cards_.empty())
+    paragraph("There are no examples beside this program.", colors_of(ui).dim);
+  else if (rows.empty())
+    paragraph("No example has these words in its title or description, or such parts.", colors_of(ui).dim);
+  for (const CardRow& row : rows) {
+    const SceneCard& first = cards_[static_cast<std::size_t>(row.cards[0])];
+    const float top = ImGui::GetCursorPosY();
+    if (row.begins_group && !first.group.empty()) group_title(ui, first.group);
+    for (const int i : row.cards) {
+      if (i != row.cards[0]) ImGui::SameLine();
+      const SceneCard& card = cards_[static_cast<std::size_t>(i)];
+      if (show_card(ui, card, i, chosen_, width)) opened = card.file;
+      if (!moved || i != chosen_) continue;
+      // With the title of its group, if it is of the first row.
+      const float seen = ImGui::GetScrollY(), bottom = ImGui::GetCursorPosY() - between;
+      if (top < seen) ImGui::SetScrollY(top);
+      if (bottom > seen + ImGui::GetWindowHeight()) ImGui::SetScrollY(bottom - ImGui::GetWindowHeight());
+    }
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
-  if (count > 0 && enter_pressed(ui)) opened = cards_[static_cast<std::size_t>(chosen_)].file;
+  if ((entered || enter_pressed(ui)) && !rows.empty())
+    opened = cards_[static_cast<std::size_t>(chosen_)].file;
   if (text_button(ui, "gallery/cancel", "Cancel") || escape_pressed() || !opened.empty()) close_dialog();
   ImGui::SameLine();
   if (text_button(ui, "gallery/open", "Open a file…")) {

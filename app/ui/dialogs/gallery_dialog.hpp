@@ -1,7 +1,7 @@
-// The shipped scenes with pictures.
+// The shipped scenes with pictures, in groups, and a field that finds some of them.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "app/session/examples.hpp"
 
 #include <filesystem>
 #include <string>
@@ -14,9 +14,7 @@ struct Session;
 struct Ui;
 
 // A shipped scene in the gallery.
-struct SceneCard {
-  std::filesystem::path file;
-  Mechanism mechanism;
+struct SceneCard : Example {
   std::string about;    // the first sentence of its description
   unsigned picture = 0; // OpenGL's; 0 until it is drawn
 };
@@ -36,7 +34,8 @@ class GalleryDialog {
 
  private:
   std::vector<SceneCard> cards_;
-  int chosen_ = 0;
+  std::string search_;
+  int chosen_ = 0; // among the cards
   bool showing_ = false;
 };
 
