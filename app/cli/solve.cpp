@@ -73,6 +73,7 @@ Ending solve_one(const SolveArguments& arguments, const Mechanism& mechanism, co
     PeriodicOptions wanted;
     wanted.nearest = arguments.nearest;
     if (arguments.periodic) wanted.patience = 10;
+    wanted.progress = options.progress;
     periodic = find_periodic_state(mechanism, wanted);
   }
   progress.reset();

@@ -193,6 +193,26 @@ ReportCurve follow_motions(const ReportContents& contents, const Slider& over, c
   return out;
 }
 
+// Of all curves together, each of which counts alike: it only grows, as parts of one tell less than before.
+ReportProgress curve_progress(const ReportProgress& progress, std::size_t done, std::size_t all) {
+  return [&progress, done, all, most = 0.](const Progress& now) mutable {
+    most = std::max(most, std::clamp(now.part, 0., 1.));
+    report_progress(progress, "response curves",
+                    (static_cast<double>(done) + most) / static_cast<double>(all));
+  };
+}
+
+void add_curves(ReportContents& out, const ReportOptions& options) {
+  const std::vector<Slider> all = curve_parameters(*out.mechanism);
+  ReportOptions of_one = options;
+  for (const Slider& over : all) {
+    if (options.cancel && *options.cancel) return;
+    of_one.progress = curve_progress(options.progress, out.curves.size(), all.size());
+    of_one.progress({});
+    out.curves.push_back(moves(out) ? follow_motions(out, over, of_one) : follow(out, over, of_one));
+  }
+}
+
 } // namespace
 
 bool moves(const ReportContents& contents) {
@@ -225,15 +245,12 @@ ReportContents report_contents(std::shared_ptr<const Mechanism> mechanism, const
     PeriodicOptions periodic;
     periodic.nearest = options.nearest;
     periodic.cancel = options.cancel;
+    periodic.progress = options.progress;
     out.periodic = find_periodic_state(*out.mechanism, periodic);
   }
-  if (hunts(out.solution) && !cancelled()) {
-    report_progress(options.progress, "looking for the limit cycle");
-    out.cycle = find_limit_cycle(*out.mechanism, options.cancel);
-  }
-  for (const Slider& over : curve_parameters(*out.mechanism))
-    if (!cancelled())
-      out.curves.push_back(moves(out) ? follow_motions(out, over, options) : follow(out, over, options));
+  if (hunts(out.solution) && !cancelled())
+    out.cycle = find_limit_cycle(*out.mechanism, options.cancel, options.progress);
+  add_curves(out, options);
   out.cut_short = cancelled();
   return out;
 }

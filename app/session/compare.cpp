@@ -2,16 +2,26 @@
 
 #include "app/session/session.hpp"
 
+#include <algorithm>
+#include <chrono>
+
 namespace flyball {
 
 namespace {
 
 Comparison measure(const CompareRequest& request, const TaskContext<Comparison>& context) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  context.progress({"direct solution"});
   CompareOptions options;
   options.repeats = request.repeats;
+  options.time_limit = request.time_limit;
   options.cancel = &context.cancel;
   options.progress = [&](std::size_t done, std::size_t all) {
-    context.progress({"measuring motions", static_cast<double>(done) / static_cast<double>(all)});
+    // Later runs take longer; it ends when the time is over, if not before.
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    context.progress({"measuring motions", std::max(static_cast<double>(done) / static_cast<double>(all),
+                                                    seconds / request.time_limit)});
   };
   return compare(*request.mechanism, options);
 }
@@ -20,7 +30,8 @@ Comparison measure(const CompareRequest& request, const TaskContext<Comparison>&
 
 void begin_comparison(Session& session) {
   CompareState& state = session.study.compare;
-  state.measured.ask(session.options, {{session.document.shared()}, state.repeats}, measure);
+  state.measured.ask(session.options, {{session.document.shared()}, state.repeats, state.time_limit},
+                     measure);
 }
 
 void update_comparison(Session& session) {

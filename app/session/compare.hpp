@@ -15,12 +15,14 @@ struct Session;
 struct CompareRequest {
   SharedMechanism mechanism;
   int repeats = 0;
+  double time_limit = 0; // s, by the clock
 };
 
 struct CompareState {
   Study<CompareRequest, Comparison> measured;
   int repeats = 5;
-  std::string shown; // measure whose errors are shown; empty: the coordinates
+  double time_limit = 60; // s, after which it keeps what it has
+  std::string shown;      // measure whose errors are shown; empty: the coordinates
 };
 
 void begin_comparison(Session& session);

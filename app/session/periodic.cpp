@@ -12,6 +12,7 @@ namespace {
 PeriodicState find_motion(const PeriodicRequest& request, const TaskContext<PeriodicState>& context) {
   PeriodicOptions options;
   options.cancel = &context.cancel;
+  options.progress = context.progress;
   return find_periodic_state(*request.mechanism, options);
 }
 
@@ -23,7 +24,7 @@ std::optional<PeriodicRequest> periodic_request(const Session& session) {
 }
 
 PeriodicState find_cycle_of(const PeriodicRequest& request, const TaskContext<PeriodicState>& context) {
-  return find_limit_cycle(*request.mechanism, &context.cancel);
+  return find_limit_cycle(*request.mechanism, &context.cancel, context.progress);
 }
 
 std::optional<PeriodicRequest> cycle_request(const Session& session) {

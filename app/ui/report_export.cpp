@@ -66,6 +66,7 @@ void begin_report(App& app, const ExportRequest& request) {
     options.progress = context.progress;
     ReportContents contents = report_contents(mechanism, options);
     if (context.cancel) return std::filesystem::path(); // nobody is there any more
+    report_progress(context.progress, "writing the page");
     contents.scene = scene;
     contents.date = report_date();
     contents.explored = explored;

@@ -413,8 +413,9 @@ bool goes_alike_without(Flow& flow, const FlowState& state, double period, doubl
 }
 
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
-                         const std::atomic<bool>* cancel) {
+                         const std::atomic<bool>* cancel, const ReportProgress& progress) {
   CycleOutcome out;
+  report_progress(progress, "swings about the steady state");
   const auto refused = [&](const std::string& why) {
     out.guess.reset();
     out.trouble = why;
@@ -448,6 +449,7 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
   Eigen::VectorXd speeds; // on a weighted average, at the last look
   const double first = *period;
   double before = 0; // how far it went away at the last look
+  report_progress(progress, following_phase);
   for (int look = 0; look < looks; ++look) {
     const auto passage = flow.pass(*state, followed * *period, step_tolerance);
     if (!passage) return refused("The motion does not last: " + flow.trouble());

@@ -3,8 +3,12 @@
 #pragma once
 
 #include "engine/periodic/state_chart.hpp"
+#include "engine/task/progress.hpp"
 
 namespace flyball {
+
+// What is told while a motion is followed to where it comes to.
+inline constexpr const char* following_phase = "following a motion";
 
 // Whether all rates stay as they are, scaled by `rate` (1/s): everything rests or turns evenly.
 bool is_steady(const Flow& flow, const std::vector<FlowState>& states, double rate);
@@ -50,6 +54,6 @@ struct CycleOutcome {
 // A motion is followed until it nearly returns and grows no more, or for as long as the flow allows. The
 // period is first that of the least damped swing about the steady state, else a turn of what a torque drives.
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
-                         const std::atomic<bool>* cancel);
+                         const std::atomic<bool>* cancel, const ReportProgress& progress);
 
 } // namespace flyball

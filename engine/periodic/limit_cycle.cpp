@@ -32,10 +32,12 @@ bool hunts(const Solution& solution) {
                                             [](const std::complex<double>& z) { return z.real(); }));
 }
 
-PeriodicState find_limit_cycle(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+PeriodicState find_limit_cycle(const Mechanism& mechanism, const std::atomic<bool>* cancel,
+                               const ReportProgress& progress) {
   PeriodicOptions options;
   options.patience = cycle_patience;
   options.cancel = cancel;
+  options.progress = progress;
   PeriodicState state = find_periodic_state(mechanism, options);
   if (state.status == PeriodicStatus::found && !anything_swings(state)) {
     state.status = PeriodicStatus::not_found;

@@ -10,6 +10,7 @@ bool hunts(const Solution& solution);
 
 // find_periodic_state() with more patience: nothing else is asked for. A search that comes back to the steady
 // state has found none.
-PeriodicState find_limit_cycle(const Mechanism& mechanism, const std::atomic<bool>* cancel = nullptr);
+PeriodicState find_limit_cycle(const Mechanism& mechanism, const std::atomic<bool>* cancel = nullptr,
+                               const ReportProgress& progress = {});
 
 } // namespace flyball

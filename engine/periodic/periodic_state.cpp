@@ -152,7 +152,8 @@ class Search {
   }
 
   std::optional<Candidate> find_cycle(CycleStart start) {
-    CycleOutcome began = guess_cycle(flow_, flow_.model().mechanism, start, options_.cancel);
+    CycleOutcome began =
+        guess_cycle(flow_, flow_.model().mechanism, start, options_.cancel, options_.progress);
     cycle_trouble_ = began.trouble;
     around_stable_ = began.guess && !began.guess->state;
     if (!began.guess) return {};
@@ -205,6 +206,7 @@ class Search {
       return {};
     }
     c.how.tolerance = tolerance_of(flow_);
+    report_progress(options_.progress, "closing a period");
     c.orbit = shoot(flow_, guess, c.how);
     end_ = c.orbit.end;
     if (end_ == ShootingEnd::pumped) {
@@ -214,6 +216,7 @@ class Search {
         end_ = ShootingEnd::diverged;
     }
     if (c.orbit.end != ShootingEnd::converged) return {};
+    report_progress(options_.progress, "motions beside it");
     auto beside = monodromy(flow_, c.orbit, c.how);
     // Where much grows within a segment, differences tell nothing: shorter ones keep the digits.
     for (const int segments : {4, 16, 64})
@@ -302,6 +305,7 @@ class Search {
   };
   // Where a motion comes to, period by period.
   Settling settle(FlowState state) {
+    report_progress(options_.progress, following_phase);
     std::vector<FlowState> past{state};
     int best = 1; // of the last periods, after so many it was nearest to where it had been
     for (int k = 1; k <= settling_periods; ++k) {
@@ -431,6 +435,7 @@ class Search {
         out.floquet.growth.push_back(std::log(std::abs(mu)) / c.orbit.period);
     const FlowState& start = c.orbit.nodes.front().base();
     out.start = name_state(flow_.model(), 0, start.q, start.u);
+    report_progress(options_.progress, "ranges over a period");
     if (!measure_orbit(flow_, c.orbit, c.how, rate(), out)) {
       out.message = "A periodic motion was found, but not what it measures: " + flow_.trouble();
       return;

@@ -6,6 +6,7 @@
 
 #include "engine/dynamics/simulation.hpp"
 #include "engine/solve/solution.hpp"
+#include "engine/task/progress.hpp"
 
 #include <array>
 #include <optional>
@@ -18,6 +19,7 @@ struct PeriodicOptions {
   // equations of motion, so that every run finds the same.
   double patience = 1;
   const std::atomic<bool>* cancel = nullptr;
+  ReportProgress progress{}; // by phases, of which nobody knows how long they are
 };
 
 enum class PeriodicStatus {

@@ -456,6 +456,65 @@ TEST_CASE("the comparison is measured and drawn") {
   CHECK(app.ui.widgets.count("plot/compare/area") == 1);
 }
 
+TEST_CASE("the comparison stops after the time that is typed, and keeps what it has") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_study(app.session, StudyKind::compare);
+  robot.frames(2);
+  const auto measured = [&](const char* seconds) {
+    robot.frames(60); // no double click
+    robot.click("compare/time_limit");
+    robot.type(seconds);
+    robot.key(key_enter);
+    robot.frames(2);
+    robot.click("compare/run");
+    robot.frames(2);
+    REQUIRE(app.session.study.compare.measured.found);
+    return app.session.study.compare.measured.found->result;
+  };
+  const Comparison c = measured("0.05");
+  CHECK(c.status == Status::converged);
+  CHECK_FALSE(c.complete);
+  CHECK(c.message == "The time limit of 0.05 s was reached before all was measured.");
+  CHECK(app.session.study.compare.measured.found->run_time < 5);
+  CHECK_FALSE(c.reference.empty());
+  // None is no limit.
+  robot.frames(60);
+  robot.click("compare/time_limit");
+  robot.type("0");
+  robot.key(key_enter);
+  robot.frames(2);
+  CHECK(app.session.study.compare.time_limit == 0.05);
+}
+
+TEST_CASE("the comparison tells how far it is, and is given up by a button") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_study(app.session, StudyKind::compare);
+  robot.frames(2);
+  app.session.options.mode = LiveSolver::Mode::background;
+  robot.click("compare/run");
+  auto& measured = app.session.study.compare.measured;
+  const auto wait = [&](const auto& until) {
+    for (int i = 0; i < 6000 && !until(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      robot.frames(1);
+    }
+    REQUIRE(until());
+  };
+  CHECK(std::string(measured.progress().phase) == "direct solution");
+  wait([&] { return measured.progress().part > 0; });
+  CHECK(std::string(measured.progress().phase) == "measuring motions");
+  CHECK(robot.app.ui.widgets.contains("compare/progress"));
+  robot.click("compare/cancel");
+  wait([&] { return !measured.running(); });
+  robot.frames(2);
+  REQUIRE(measured.found);
+  CHECK_FALSE(measured.found->result.complete);
+  CHECK(measured.found->result.message == "Cancelled.");
+  CHECK(app.ui.widgets.contains("plot/compare/area"));
+}
+
 TEST_CASE("the comparison shows the errors of a measure") {
   Robot robot({1280, 900});
   App& app = robot.app;

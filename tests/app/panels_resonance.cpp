@@ -17,6 +17,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <thread>
 
 using namespace flyball;
@@ -257,6 +258,27 @@ TEST_CASE("the limit cycle of a governor that hunts is found when it is asked fo
   robot.frames(2);
   CHECK_FALSE(limit_cycle(app.session));
   CHECK_FALSE(app.session.study.periodic.cycle.asked);
+}
+
+TEST_CASE("while the limit cycle is looked for, what is done is told in words") {
+  HuntingRobot robot;
+  App& app = robot.app;
+  app.session.options.mode = LiveSolver::Mode::background;
+  robot.click("results/cycle");
+  const auto& search = app.session.study.periodic.cycle;
+  std::set<std::string> phases;
+  bool bar = false;
+  for (int i = 0; i < 20000 && search.running(); ++i) {
+    const std::string phase = search.progress().phase;
+    if (!phase.empty()) phases.insert(phase);
+    robot.frames(1);
+    bar = bar || app.ui.widgets.contains("results/cycle/running");
+  }
+  robot.frames(2);
+  CHECK(bar);
+  CHECK(phases.contains("following a motion"));
+  REQUIRE(limit_cycle(app.session));
+  CHECK(limit_cycle(app.session)->status == PeriodicStatus::found);
 }
 
 TEST_CASE("the limit cycle is asked for by the palette, and goes where the damper holds") {

@@ -95,6 +95,30 @@ std::string section(const std::string& page, const std::string& id) {
 
 } // namespace
 
+TEST_CASE("a report tells how far its curves are, all together") {
+  std::vector<double> parts;
+  bool solved = false, after = false;
+  ReportOptions options;
+  options.progress = [&](const Progress& now) {
+    const bool curves = std::string_view(now.phase) == "response curves";
+    if (curves)
+      parts.push_back(now.part);
+    else
+      (parts.empty() ? solved : after) = true;
+  };
+  const ReportContents contents =
+      report_contents(std::make_shared<const Mechanism>(test::shipped("governor")), options);
+  REQUIRE(contents.curves.size() == 2);
+  CHECK(solved);
+  CHECK_FALSE(after);
+  REQUIRE(parts.size() > 10);
+  CHECK(parts.front() == 0);
+  CHECK(std::ranges::is_sorted(parts));
+  CHECK(std::ranges::count(parts, 0.5) > 0); // where the second begins
+  CHECK(parts.back() > 0.9);
+  CHECK(parts.back() <= 1);
+}
+
 TEST_CASE("a report tells all of a steady state") {
   ReportContents contents = contents_of("governor");
   contents.picture = {"light PNG", "dark PNG", 16, 9, ""};

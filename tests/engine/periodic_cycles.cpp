@@ -30,6 +30,29 @@ PeriodicState hunting(double damping) {
 
 } // namespace
 
+TEST_CASE("the search for a periodic motion tells what it does, one after the other") {
+  std::vector<std::string> phases;
+  PeriodicOptions options;
+  options.progress = [&](const Progress& now) {
+    CHECK(now.part < 0); // nobody knows how long it takes
+    if (phases.empty() || phases.back() != now.phase) phases.emplace_back(now.phase);
+  };
+  SECTION("of a limit cycle") {
+    const PeriodicState s =
+        find_periodic_state(shipped("governor_engine", {{"joints.slide.damping", 15.}}), options);
+    CHECK(s.status == PeriodicStatus::found);
+    CHECK(phases == std::vector<std::string>{"swings about the steady state", "following a motion",
+                                             "closing a period", "motions beside it",
+                                             "ranges over a period"});
+  }
+  SECTION("of a rotor that its drive turns") {
+    const PeriodicState s = find_periodic_state(shipped("horizontal_rotor"), options);
+    CHECK(s.status == PeriodicStatus::found);
+    CHECK(phases ==
+          std::vector<std::string>{"closing a period", "motions beside it", "ranges over a period"});
+  }
+}
+
 TEST_CASE("Haug's governor hunts in a limit cycle below 21.54 N s/m, as its motion does") {
   const Mechanism m = shipped("governor_engine", {{"joints.slide.damping", 15.}});
   const PeriodicState s = find_periodic_state(m);

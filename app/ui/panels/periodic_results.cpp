@@ -216,7 +216,7 @@ void cycle_offer(Session& session, Ui& ui) {
     find_cycle(session, !wanted);
   const PeriodicState* state = limit_cycle(session);
   if (search.running()) {
-    task_bar(ui, "results/cycle/running", {"Looking for the limit cycle"}, search.seconds());
+    task_bar(ui, "results/cycle/running", search.progress(), search.seconds());
     if (text_button(ui, "results/cycle/cancel", "Cancel")) find_cycle(session, false);
   }
   if (!state) return;

@@ -6,6 +6,7 @@
 #include "app/session/state_words.hpp"
 #include "app/ui/layout.hpp"
 #include "app/ui/widgets/mistake_list.hpp"
+#include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
@@ -74,8 +75,10 @@ void verdict(const Session& session, Ui& ui) {
     paragraph(growth.empty() ? reason_text(*solution.stability_reason) : growth, colors.dim);
   if (const PeriodicState* state = periodic_state(session))
     paragraph(state->message, motion ? colors.dim : colors.text);
-  else if (session.study.periodic.search.running())
+  else if (const auto& search = session.study.periodic.search; search.running()) {
     paragraph("Looking for a periodic motion…", colors.dim);
+    task_bar(ui, "results/periodic/running", search.progress(), search.seconds());
+  }
   // Where all went well the words above say it already.
   const bool said = solution.message == "Converged." ||
                     (!growth.empty() && solution.message == "Converged. This state is unstable.");
@@ -84,13 +87,28 @@ void verdict(const Session& session, Ui& ui) {
               solution.status == Status::converged ? colors.dim : colors.text);
 }
 
-// Directions that nothing resists.
-void neutral_joints(const Session& session, const Ui& ui) {
+// Directions that nothing resists: in the lines below where the names find no room beside the words.
+void neutral_joints(const Session& session, Ui& ui) {
   std::vector<std::string> neutral = session.answer.solution.neutral;
   if (neutral.empty()) return;
   std::ranges::transform(neutral, neutral.begin(), joint_words);
-  row(ui, "Nothing resists", name_list(neutral), "",
-      "Joints that take part in a direction in which the mechanism stands anywhere.");
+  constexpr const char *label = "Nothing resists",
+                       *help = "Joints that take part in a direction in which the mechanism stands anywhere.";
+  const std::string names = name_list(neutral);
+  const ImFont* digits = ui.fonts.digits;
+  const float wide =
+      ImGui::CalcTextSize(label).x + digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, names.c_str()).x;
+  if (wide + 10 * ui.scale <= ImGui::GetContentRegionAvail().x) {
+    row(ui, label, names, "", help);
+  } else {
+    ImGui::BeginGroup();
+    paragraph(label, colors_of(ui).dim);
+    paragraph(names, colors_of(ui).text);
+    ImGui::EndGroup();
+    offer_copy(names);
+    help_on_hover(help);
+  }
+  note_widget(ui.widgets, "results/neutral", KeyUse::none);
 }
 
 // Why there is nothing to tell: the first mistake in large, the others below.

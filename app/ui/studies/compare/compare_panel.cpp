@@ -118,6 +118,22 @@ void shown_choice(Session& session, Ui& ui, const Comparison& c) {
     shown = *other == all_coordinates ? "" : *other;
 }
 
+void time_field(Session& session, Ui& ui) {
+  const char* help =
+      "How long it measures at most. Then it keeps what it has; a single run is given up after "
+      "a tenth of it.";
+  const float width = row_label(ui, "Time limit", help);
+  quantity_field(session, ui,
+                 {.name = "compare/time_limit",
+                  .value = session.study.compare.time_limit,
+                  .unit = "s",
+                  .help = help,
+                  .least = Least::above_zero,
+                  .set = [&session](double typed) { session.study.compare.time_limit = typed; },
+                  .at_once = true},
+                 width);
+}
+
 void words(Session& session, Ui& ui) {
   auto& measured = session.study.compare.measured;
   const UiColors& colors = colors_of(ui);
@@ -130,6 +146,14 @@ void words(Session& session, Ui& ui) {
   if (text_button(ui, "compare/run", measured.found ? "Measure again" : "Measure", true))
     begin_comparison(session);
   ImGui::EndDisabled();
+  if (measured.found) {
+    ImGui::SameLine();
+    if (text_button(ui, "compare/copy", "Copy the table")) {
+      ImGui::SetClipboardText(comparison_csv(measured.found->result).c_str());
+      session.notice = "The measurements are on the clipboard, as CSV.";
+    }
+  }
+  time_field(session, ui);
   if (!measured.problem.empty()) paragraph(measured.problem, colors.bad);
   if (!measured.found) {
     paragraph(
@@ -138,11 +162,6 @@ void words(Session& session, Ui& ui) {
         "each repeated.",
         colors.dim);
     return;
-  }
-  ImGui::SameLine();
-  if (text_button(ui, "compare/copy", "Copy the table")) {
-    ImGui::SetClipboardText(comparison_csv(measured.found->result).c_str());
-    session.notice = "The measurements are on the clipboard, as CSV.";
   }
   if (!comparison_is_current(session)) paragraph("Measured before the last changes.", colors.warn);
   shown_choice(session, ui, measured.found->result);
