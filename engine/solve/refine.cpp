@@ -1,5 +1,6 @@
 #include "engine/solve/refine.hpp"
 
+#include "engine/solve/factored_state.hpp"
 #include "engine/solve/singular_loops.hpp"
 
 #include <bit>
@@ -263,6 +264,22 @@ void add_singular_directions(const Problem& problem, const Unknowns& z, Workspac
   }
 }
 
+// The correction of z by the factors at hand, scaled, in the workspace; returns its size. Multipliers are
+// corrected like the rest, so that the forces they balance do not drown what they cannot.
+double find_correction(const Problem& problem, const Unknowns& z, Workspace& w) {
+  evaluate_rounded(problem, z, w);
+  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
+  return w.scaled_step.lpNorm<Eigen::Infinity>();
+}
+
+// Whether corrections by the same factors shrink so slowly that the balance bends within them, as a table of
+// torques does at the foot of a steep interval: then stiffness and eigenvalues are not those of the factors
+// either. By double precision's last digits they shrink no further.
+bool bends_within(double size, double previous) {
+  constexpr double straight = 1e-6;
+  return size > straight * previous && size > tolerance::least_closing_step && std::isfinite(previous);
+}
+
 // A shift that kept null directions still shortens the steps along soft ones: without it, unless there is a
 // null direction indeed.
 void drop_shift(const Problem& problem, Workspace& w) {
@@ -301,14 +318,20 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   drop_shift(problem, w);
   const DenseKkt* dense = w.matrices(problem);
   double previous = std::numeric_limits<double>::infinity(), left = 0, opening = 0;
-  constexpr int last_round = 4;
-  for (int round = 0; round <= last_round; ++round) {
-    evaluate_rounded(problem, z, w);
+  double bent = 0;         // the first correction within which the balance bends, scaled
+  bool straightens = true; // else that is a root of higher order
+  constexpr int last_round = 4, most_factored = 24;
+  for (int round = 0, factored = 0; round <= last_round + factored; ++round) {
+    double size = find_correction(problem, z, w);
+    if (dense && !outcome.linear && !dense->singular() && factored < most_factored &&
+        bends_within(size, previous)) {
+      if (factored++ == 0) bent = size;
+      factor_at(problem, z, w);
+      size = find_correction(problem, z, w);
+    }
+    straightens = size < 0.1 * previous;
     left = w.residual.f.cwiseProduct(problem.scaling.column).lpNorm<Eigen::Infinity>();
-    // Multipliers are corrected like the rest, so that the forces they balance do not drown what they cannot.
-    newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
     if (!w.scaled_step.allFinite()) break;
-    const double size = w.scaled_step.lpNorm<Eigen::Infinity>();
     w.step = w.scaled_step.cwiseProduct(problem.scaling.column);
     error = w.step.cwiseAbs();
     if (dense && dense->constraints().rank() < system.rows) {
@@ -316,7 +339,8 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
       w.scaled_phi.noalias() += dense->jacobian() * w.scaled_step;
       opening = w.scaled_phi.lpNorm<Eigen::Infinity>();
     }
-    if (size > 0.5 * previous) { // no longer contracting: rounding, or a singular state
+    // No longer contracting: rounding, or a singular state. Beside a double root steps are halved.
+    if (size > (factored > 0 ? 0.75 : 0.5) * previous) {
       error *= 4 * std::max(1., previous / size);
       break;
     }
@@ -324,9 +348,10 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
     z.lambda += w.trial.lambda;
     previous = size;
     if (size < tolerance::least_closing_step) break;
-    if (round == last_round)
+    if (round == last_round + factored)
       error *= 4; // converging slowly: what is left may be more than the last correction
   }
+  if (bent > 0 && !straightens) error = error.cwiseMax(4 * bent * problem.scaling.column);
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   const bool stepped = w.scaled_step.allFinite();

@@ -169,6 +169,29 @@ TEST_CASE("a motor's curve as a table over the speed", "[torque]") {
   CHECK(s.stable == true);
 }
 
+TEST_CASE("at the foot of a steep interval of a torque's table the eigenvalue is that of the speed found",
+          "[torque]") {
+  const auto [end, width] = GENERATE(std::pair{"3.0001", 1e-4}, std::pair{"3.00001", 1e-5});
+  const double from = GENERATE(0.5, 1., 2., 3., 3.00001, 4., 10.);
+  CAPTURE(end, from);
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {
+      torque_driven(revolute("shaft", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), from,
+                    std::string("table(rate(shaft), [0, 3 N m], [3, 0 N m], [") + end + " rad/s, -50 N m])")};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "shaft"), WithinRel(3, 1e-14));
+  // The slope there is the harmonic mean of those beside, -1 and -50 / width, by the intervals' widths. It
+  // changes by 300 / width^2 times what the speed does, of which the last digit is 4e-16.
+  const double before = 2 * width + 3, after = width + 6,
+               slope = (before + after) / (before / -1 + after * width / -50);
+  REQUIRE(s.eigenvalues->size() == 1);
+  CHECK_THAT(s.eigenvalues->front().real(), WithinRel(slope / 0.1, 1e-13 / (width * width)));
+  CHECK(s.stable == true);
+}
+
 TEST_CASE("laws of torque that mean nothing are mistakes with their place", "[torque]") {
   Mechanism m = shipped("governor_engine");
   Joint& spin = m.joints[0];
