@@ -39,8 +39,15 @@ Json line_json(const VibrationMode& mode, const std::string& name, const std::op
   return out;
 }
 
-Json diagram_json(const CampbellDiagram& d, const std::string& unit) {
-  Json out = {{"status", word(d.response.status)}, {"message", d.response.message}, {"unit", unit}};
+// Of numbers that are no speed of a drive that turns.
+constexpr const char* no_critical_speeds =
+    "Critical speeds and whirl are not looked for: the number is not the speed of a drive that turns.";
+
+// `turns`: the number is such a speed.
+Json diagram_json(const CampbellDiagram& d, const std::string& unit, bool turns) {
+  std::string message = d.response.message;
+  if (!turns) message += fmt::format("{}{}", message.empty() ? "" : " ", no_critical_speeds);
+  Json out = {{"status", word(d.response.status)}, {"message", message}, {"unit", unit}};
   out["branches"] = Json::array();
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const CampbellBranch& branch = d.branches[b];
@@ -144,9 +151,7 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
   }
   for (const CriticalSpeed& c : d.critical)
     out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)]);
-  if (!turns)
-    out += "  Critical speeds and whirl are not looked for: the number is not the speed of a drive that "
-           "turns.\n";
+  if (!turns) out += fmt::format("  {}\n", no_critical_speeds);
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
 }
 
@@ -195,6 +200,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
       throw options->scene.in_file(error);
     }
     progress.reset();
+    const bool turns = !driven_joint(mechanism, range.address).empty();
     const bool any = diagram.response.status == Status::converged && !diagram.branches.empty();
     if (any && !options->svg.empty())
       write_bytes(options->svg,
@@ -203,9 +209,9 @@ void add_campbell(CLI::App& app, Ending& ending) {
                                        orders, true)));
     if (any && !options->csv.empty()) write_bytes(options->csv, diagram_csv(diagram, range.address));
     if (options->json)
-      print_json(with_warnings(diagram_json(diagram, unit), mechanism));
+      print_json(with_warnings(diagram_json(diagram, unit, turns), mechanism));
     else if (options->csv.empty() && options->svg != "-")
-      print_text(diagram_text(mechanism, diagram, unit, !driven_joint(mechanism, range.address).empty()));
+      print_text(diagram_text(mechanism, diagram, unit, turns));
     ending = end_with(any, options->scene.file, diagram.response.message);
   });
 }

@@ -273,6 +273,15 @@ def units_of_ranges(folder):
     check(f"units of something else are refused: {error}", code == 2 and "--vary " + SPEED in error)
 
 
+def modes_over_other_numbers(_):
+    """Over what is no speed there are no critical speeds; the JSON object says so as the text does."""
+    why = "Critical speeds and whirl are not looked for"
+    for address, told in (("joints.slide.spring.stiffness", True), (SPEED, False)):
+        low, high = (900, 1100) if told else (8, 12)
+        out = json.loads(run("campbell", SCENE, "--vary", f"{address}={low}:{high}", "--json")[1])
+        check(f"why there are no critical speeds over {address}", out["branches"] and (why in out["message"]) == told)
+
+
 def resonance(folder):
     """A sweep of periodic motions has at each point what `solve` tells there, and of steady states these."""
     rotor = pathlib.Path(SCENE).parent / "horizontal_rotor.json"
@@ -404,7 +413,7 @@ def parts(folder):
 
 with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
-                 units_of_ranges, hunting, loads, parts):
+                 units_of_ranges, modes_over_other_numbers, hunting, loads, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)
