@@ -145,6 +145,7 @@ struct Analysis::State {
   Eigen::VectorXd drawn, answer, start;
   bool answered = false;
   bool settled = false; // the last solve converged, and no number has changed since
+  bool moved = false;   // numbers have changed since the system was compiled
   bool turned = false;  // what turns at found speeds stands otherwise than drawn in `parameters`
   AngleTies ties;       // of such
   // Of the last solve's answer where that rests on dry friction: it is not among the states of this system.
@@ -324,6 +325,7 @@ void Analysis::update(std::shared_ptr<const Mechanism> mechanism) {
   s.mechanism = std::move(mechanism);
   s.varied.reset();
   s.settled = false;
+  s.moved = true;
   s.bind_numbers();
 }
 
@@ -341,6 +343,7 @@ void Analysis::set(std::span<const double> values) {
   State& s = *state_;
   State::Varied& varied = *s.varied;
   s.settled = false;
+  s.moved = true;
   varied.numbers.set(values);
   validate_numbers(*varied.mechanism);
   varied.dampers_before.swap(varied.dampers);
@@ -354,12 +357,33 @@ void Analysis::set(std::span<const double> values) {
 Solution Analysis::solve(const SolveOptions& options) {
   const Interruptible scope(options.cancel);
   try {
+    if (state_->moved && !state_->system.torques.empty() && !options.nearest && !options.newton_only) {
+      SolveOptions brief = options;
+      brief.search = 0;
+      brief.friction = brief.explain = false;
+      if (Solution found = solve_through(brief); found.status == Status::converged) return found;
+      if (options.cancel && *options.cancel) throw Interrupted();
+      turn_otherwise();
+    }
     return solve_through(options);
   } catch (const Interrupted&) {
     state_->settled = false;
     Solution cancelled;
     cancelled.message = "The solve was cancelled.";
     return cancelled;
+  }
+}
+
+void Analysis::turn_otherwise() {
+  State& s = *state_;
+  s.moved = false; // asked once for these numbers
+  try {
+    if (same_choice(s.system, compile_for_drives(*s.mechanism))) return;
+    std::optional<State::Varied> kept = std::move(s.varied);
+    *this = Analysis(s.mechanism);
+    state_->varied = std::move(kept);
+  } catch (const SceneError&) {
+    // The loops are as they were, and why there is no state is told of them.
   }
 }
 

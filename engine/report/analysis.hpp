@@ -83,8 +83,8 @@ class Analysis {
   Analysis(Analysis&&) noexcept;
   Analysis& operator=(Analysis&&) noexcept;
 
-  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did. Keeps the
-  // last answer as a warm start where it still fits.
+  // Takes new numbers. Cheap where only numbers changed; recompiles where parts or topology did, and solving
+  // does where numbers set turning what stood. Keeps the last answer as a warm start where it still fits.
   void update(const Mechanism& mechanism);
   void update(std::shared_ptr<const Mechanism> mechanism);
 
@@ -133,6 +133,8 @@ class Analysis {
   // The same, to the end or an interruption.
   Solution solve_through(const SolveOptions& options);
   AllSolutions solve_all_through(const SolveOptions& options);
+  // Compiles anew where numbers that have changed since make something else turn.
+  void turn_otherwise();
 
   struct State;
   std::unique_ptr<State> state_;

@@ -71,12 +71,17 @@ bool balance_varies(const System& system, const Parameters& p, const Scaling& sc
 // alike, as the wheels of a differential, whatever turns by their difference seems to stand.
 enum class Begin { as_drawn, apart };
 
+// Factors of which no two are alike, nor one twice another, however many there are.
+double unlike(int i) {
+  return 1.5 + 0.4 * std::sin(1.1 + 2.3 * i);
+}
+
 Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) {
   Parameters p;
   bind(system, mechanism, p);
   if (begin == Begin::as_drawn) return p;
-  int drives = 0; // no two alike, nor twice one another, however many there are
-  const auto factor = [&] { return 1.5 + 0.4 * std::sin(1.1 + 2.3 * drives++); };
+  int drives = 0;
+  const auto factor = [&] { return unlike(drives++); };
   for (const DriveTorqueElement& torque : system.torques) {
     const Link& link = system.links[static_cast<std::size_t>(torque.link)];
     if (torque.implied || !finds_speed(link)) continue;
@@ -93,6 +98,19 @@ Parameters bound(const System& system, const Mechanism& mechanism, Begin begin) 
     LinkParameters& l = p.links[static_cast<std::size_t>(d.link)];
     l.speed = (l.speed != 0 ? l.speed : l.gear_ratio) * factors[static_cast<std::size_t>(d.motor)];
   }
+  return p;
+}
+
+// As drawn, but for dampers that are unlike each other: where they are alike, as at the wheels of a
+// differential, they may push nothing that they push as soon as one of them is another.
+Parameters with_unlike_dampers(const System& system, const Mechanism& mechanism) {
+  Parameters p = bound(system, mechanism, Begin::as_drawn);
+  int dampers = 0;
+  for (LinkParameters& link : p.links)
+    for (CoordinateForce& force : link.force)
+      force.damping *= unlike(dampers++);
+  for (CutDamperParameters& damper : p.cut_dampers)
+    damper.damping *= unlike(dampers++);
   return p;
 }
 
@@ -286,7 +304,10 @@ System compile_for_drives(const Mechanism& mechanism) {
     }
   if (fate.opened == 0 && !best.drives.empty() && best.nv <= few && !keeps_momentum(best)) {
     const System standing = best;
-    let_turn(standing, slipping_turning(standing, bound(standing, mechanism, Begin::as_drawn)));
+    std::vector<CoordinateReference> pushed =
+        slipping_turning(standing, bound(standing, mechanism, Begin::as_drawn));
+    if (pushed.empty()) pushed = slipping_turning(standing, with_unlike_dampers(standing, mechanism));
+    let_turn(standing, pushed);
   }
   expect_no_loop_on_momenta(best, mechanism, fate.open);
   for (std::size_t c = 0; c < best.cuts.size(); ++c)
@@ -297,6 +318,11 @@ System compile_for_drives(const Mechanism& mechanism) {
 System compile_for_motion(const Mechanism& mechanism, const System& steady) {
   if (steady.torques.empty()) return steady;
   return compile(mechanism, choice_of(steady), TorqueDriven::moves_freely);
+}
+
+bool same_choice(const System& a, const System& b) {
+  const CutChoice of_a = choice_of(a), of_b = choice_of(b);
+  return of_a.cut == of_b.cut && of_a.turning == of_b.turning;
 }
 
 } // namespace flyball

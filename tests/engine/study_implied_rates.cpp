@@ -18,6 +18,7 @@
 
 using namespace flyball;
 using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 namespace {
@@ -161,6 +162,68 @@ TEST_CASE("a differential shares the torque and not the speed", "[implied]") {
   for (const CoordinateTrack& track : motion.coordinates)
     if (track.joint == "left" || track.joint == "right")
       CHECK_THAT(track.rate.back(), WithinRel(wheel_rate(track.joint), 1e-7));
+}
+
+TEST_CASE("dampers that were alike, of wheels behind a differential, may become unlike", "[implied]") {
+  // The planet pushes nothing while the wheels turn alike. What it hangs on is drawn off the axis.
+  const double torque = 10;
+  const auto with_dampers = [&](double left, double right) {
+    Mechanism m;
+    m.bodies = {body("case", 4, {0, 0, 0}, {0.2, 0.1, 0.1}), body("left", 3, {-0.5, 0, 0}, {0.3, 0.2, 0.2}),
+                body("right", 3, {0.5, 0, 0}, {0.3, 0.2, 0.2}),
+                body("planet", 0.2, {0, 0.2, 0}, {0.01, 0.01, 0.01})};
+    m.joints = {torque_driven(revolute("case", "ground", "case", {0, 0, 0}, {1, 0, 0}), 10, "10"),
+                dampened(revolute("left", "ground", "left", {-0.4, 0, 0}, {1, 0, 0}), left),
+                dampened(revolute("right", "ground", "right", {0.4, 0, 0}, {1, 0, 0}), right),
+                revolute("planet", "case", "planet", {0, 0.2, 0}, {0, 1, 0}),
+                revolute("left in case", "case", "left", {-0.1, 0, 0}, {1, 0, 0}),
+                revolute("right in case", "case", "right", {0.1, 0, 0}, {1, 0, 0}),
+                gear("left mesh", "planet", "left in case", -1),
+                gear("right mesh", "planet", "right in case", 1)};
+    validate(m);
+    return m;
+  };
+  Analysis analysis(with_dampers(1, 1));
+  for (const auto& [left, right] : {std::pair{1., 1.}, std::pair{1., 0.5}, std::pair{2., 0.5}}) {
+    CAPTURE(left, right);
+    analysis.update(with_dampers(left, right));
+    SolveOptions warm;
+    warm.warm = true;
+    const Solution s = analysis.solve(warm);
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_THAT(speed(s, "case"), WithinRel(torque * (1 / left + 1 / right) / 4, 1e-11));
+    CHECK_THAT(speed(s, "planet"), WithinAbs(torque * (1 / right - 1 / left) / 4, 1e-10));
+    CHECK(s.stable == true);
+  }
+}
+
+TEST_CASE("a wheel that stands while nothing turns it turns as soon as something does", "[implied]") {
+  const auto with_torque = [](double torque) {
+    Mechanism m;
+    m.bodies = {body("shaft", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("wheel", 2, {0, 1, 0}, {0.2, 0.1, 0.1})};
+    m.joints = {torque_driven(revolute("shaft", "ground", "shaft", {0, 0, 0}, {1, 0, 0}), 4,
+                              "3 N m - 0.5 N m s * rate(shaft)"),
+                dampened(revolute("wheel", "ground", "wheel", {0, 1, 0}, {1, 0, 0}), 0.4)};
+    Force push;
+    push.name = "push";
+    push.type = ForceType::torque;
+    push.body = "wheel";
+    push.vector = {torque, 0, 0};
+    m.forces = {push};
+    validate(m);
+    return m;
+  };
+  Analysis analysis(with_torque(0));
+  REQUIRE(analysis.solve().status == Status::converged);
+  analysis.update(with_torque(2));
+  SolveOptions warm;
+  warm.warm = true;
+  const Solution s = analysis.solve(warm);
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "wheel"), WithinRel(5., 1e-11));
+  CHECK_THAT(speed(s, "shaft"), WithinRel(6., 1e-11));
 }
 
 TEST_CASE("two drives of a planetary set may begin alike, where the planet seems to stand", "[implied]") {
