@@ -56,7 +56,9 @@ struct Stage {
     nothing = bounds.empty;
     center = bounds.empty ? Vec3(Vec3::Zero()) : Vec3((bounds.center() - units.origin) / units.length);
     radius = std::clamp(bounds.empty ? 0.3 : bounds.radius() / units.length, 1e-6, 1e6);
-    floor_reach = std::min(5 * radius, 60.0);
+    // Seen from above it covers the picture beside whatever is small, as it does where there is nothing; from
+    // the side it would come to the eye.
+    floor_reach = std::clamp(5 * radius, 1.5 * std::abs(std::sin(camera.elevation)), 60.0);
     floor_height = bounds.empty ? up.dot(-units.origin) / units.length
                                 : (scene.floor - up.dot(units.origin)) / units.length;
     view_projection = camera.projection_matrix(size, center, floor_reach + 2 * radius) * camera.view_matrix();

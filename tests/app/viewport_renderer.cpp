@@ -5,6 +5,8 @@
 #include "tests/catch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -70,6 +72,39 @@ TEST_CASE("where nothing is drawn there is no floor to be seen from the side, wh
   m = governor();
   frame.camera.elevation = 0;
   CHECK(has(renderer.draw(frame, target), "grid"));
+}
+
+TEST_CASE("beside a small body seen from above the grid reaches as far as where there is none") {
+  OffscreenContext context;
+  ViewRenderer renderer;
+  Framebuffer target(240, 180, 1);
+  ViewFrame frame;
+  frame.camera.distance = 1;
+  frame.camera.elevation = 1.5;
+  frame.options.shadow = false;
+  // How much of the picture's outer parts the grid changes.
+  const auto inked = [&](const Mechanism& m) {
+    frame.mechanism = &m;
+    std::array<Image, 2> pictures;
+    for (const bool grid : {false, true}) {
+      frame.options.grid = grid;
+      renderer.draw(frame, target);
+      pictures[grid] = target.read();
+    }
+    int changed = 0;
+    for (int y = 0; y < 180; ++y)
+      for (int x = 0; x < 240; ++x)
+        changed += std::hypot(x - 120, y - 90) > 60 && *pictures[0].at(x, y) != *pictures[1].at(x, y);
+    return changed;
+  };
+  Mechanism small;
+  small.bodies = {body("bead", 1, {0, 0, 0})};
+  Shape bead;
+  bead.radius = 0.01;
+  small.bodies[0].shapes = {bead};
+  const int without = inked(Mechanism());
+  REQUIRE(without > 1000);
+  CHECK(inked(small) > 0.9 * without);
 }
 
 TEST_CASE("a ghost that coincides with the solid stays hidden behind it") {
