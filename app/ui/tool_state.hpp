@@ -111,10 +111,11 @@ struct ToolState {
   Tool tool = Tool::select;
   bool snap = true;                           // to points, the grid and round angles
   JointType joint_type = JointType::revolute; // of the next joint
-  bool leave_joints = false;                  // a body that is moved leaves its joints where they are
-  std::optional<Vec3> last_point{};           // m, that was used: the next one is on a plane through it
-  std::string point{};                        // a named one that is selected, while no part is
-  std::string standing{};                     // the vector that shall stand at one, "joints.arm.at"
+  std::optional<JointType> type_aside{}; // the same once a disc sits on its shaft, which is offered first
+  bool leave_joints = false;             // a body that is moved leaves its joints where they are
+  std::optional<Vec3> last_point{};      // m, that was used: the next one is on a plane through it
+  std::string point{};                   // a named one that is selected, while no part is
+  std::string standing{};                // the vector that shall stand at one, "joints.arm.at"
 
   // Of one movement of the hand, or of the few clicks that a tool takes.
   Tool begun = Tool::select; // the tool that these belong to

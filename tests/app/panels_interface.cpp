@@ -7,6 +7,8 @@
 #include "tests/catch.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -156,6 +158,12 @@ TEST_CASE("a scene that cannot be read says so and leaves the open one") {
   robot.frames(3);
   CHECK_THAT(robot.app.session.problem, ContainsSubstring("colour"));
   CHECK(robot.app.session.mechanism().name == "Governor");
+  robot.key(258); // Tab: the tools of Build stay in reach
+  robot.frames(2);
+  REQUIRE(robot.app.session.mode == Mode::build);
+  const ImGuiWindow* card = ImGui::FindWindowByName("problem");
+  REQUIRE(card);
+  CHECK(card->Pos.x >= robot.widget("tool strip").to.x);
   robot.click("problem/close");
   CHECK(robot.app.session.problem.empty());
   std::filesystem::remove(file);

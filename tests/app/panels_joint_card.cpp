@@ -17,7 +17,7 @@ using Pair = std::array<std::string, 2>;
 
 // One metre in view, and the joint's tool in hand.
 struct SliderCrank : Robot {
-  SliderCrank() : Robot({1440, 900}) {
+  explicit SliderCrank(PixelSize window = {1440, 900}) : Robot(window) {
     begin_empty(1);
     edit(app.session, "Build", [](Mechanism& next, Selection&) { add_slider_crank(next); });
     frames(2);
@@ -136,4 +136,53 @@ TEST_CASE("a bearing's card is no taller than what is in it") {
   const ImGuiWindow* bearing = ImGui::FindWindowByName("bearing");
   REQUIRE(bearing);
   CHECK(bearing->Size.y < joint - 60);
+}
+
+TEST_CASE("the card lies neither over the tools nor over the legend") {
+  SliderCrank d({1280, 800});
+  const Vec3 at = GENERATE(Vec3(0, 0, 0), Vec3(0.1, 0.1, 0), Vec3(0.25, 0.35, 0), Vec3(-0.3, 0.2, 0));
+  CAPTURE(at.transpose());
+  d.begin(at);
+  const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+  REQUIRE(card);
+  const ImVec2 from = card->Pos, to(from.x + card->Size.x, from.y + card->Size.y);
+  for (const char* name : {"tool strip", "legend frame"}) {
+    CAPTURE(name);
+    const WidgetRect other = d.widget(name);
+    CHECK_FALSE((from.x < other.to.x && other.from.x < to.x && from.y < other.to.y && other.from.y < to.y));
+  }
+}
+
+TEST_CASE(
+    "a disc on a shaft is offered to be held on it, and the type chosen before is the next joint's again") {
+  Robot d({1280, 800});
+  d.begin_empty(1);
+  const Vec3 middle(0, 0, 0), end(-0.3, 0, 0);
+  edit(d.app.session, "Build", [&](Mechanism& next, Selection&) {
+    add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = end, .to = {0.3, 0, 0}});
+    add_body(next, {.form = BodyForm::disc, .radius = 0.1, .from = {-0.01, 0, 0}, .to = {0.01, 0, 0}});
+    add_joint(next, JointType::revolute, {"ground", "rod1"}, end, Vec3::UnitX());
+  });
+  d.frames(2);
+  const auto begin = [&](const Vec3& at) {
+    d.key('J');
+    d.click_at(at);
+    d.frames(2);
+    REQUIRE(d.app.tool.joint);
+  };
+  begin(middle);
+  CHECK(d.app.tool.joint->bodies == Pair{"rod1", "disc1"});
+  CHECK(d.app.tool.joint_type == JointType::fixed);
+  d.key(key_escape);
+  begin({0.3, 0, 0});
+  CHECK(d.app.tool.joint_type == JointType::revolute);
+  d.key(key_escape);
+  // Chosen by hand it stays.
+  begin(middle);
+  d.click("tools/type/cylindrical");
+  d.frames(1);
+  d.click("tools/join");
+  CHECK(d.app.session.mechanism().joints.back().type == JointType::cylindrical);
+  begin({0.3, 0, 0});
+  CHECK(d.app.tool.joint_type == JointType::cylindrical);
 }

@@ -3,6 +3,8 @@
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 
+#include <imgui_internal.h>
+
 using namespace flyball;
 using namespace flyball::test;
 
@@ -86,6 +88,9 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk while there are unsa
   SECTION("noticed by looking") {
     robot.pass(3);
     REQUIRE(robot.shows("banner/keep"));
+    const ImGuiWindow* banner = ImGui::FindWindowByName("file banner");
+    REQUIRE(banner);
+    CHECK(banner->Pos.x + banner->Size.x <= robot.widget("legend frame").from.x);
     CHECK(robot.speed_now() == 5);
     SECTION("keep mine") {
       robot.click("banner/keep");

@@ -73,8 +73,14 @@ void file_banner(Session& session, Ui& ui, DialogState& dialog, ReportExport& re
   const bool writing = writing_report(report) && report.task->seconds() > patience;
   if (dialog.showing || (!both_changed && !writing && session.files.aside.empty())) return;
   const float s = ui.scale;
-  ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
-  if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, view.width - 24 * s), 0});
+  // Beside the legend where that leaves room enough: words take lines, a bar and its button do not.
+  const float room = (both_changed ? 240 : 470) * s;
+  float right = view.x + view.width;
+  if (const auto legend = ui.widgets.find("legend frame");
+      legend != ui.widgets.end() && legend->second.from.x > view.x + room)
+    right = legend->second.from.x + 4 * s;
+  ImGui::SetNextWindowPos({std::round((view.x + right) / 2), view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
+  if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, right - view.x - 24 * s), 0});
   begin_card("file banner", s, ImGui::GetStyle().WindowPadding, ImGuiWindowFlags_NoFocusOnAppearing);
   if (both_changed)
     conflict(session, ui, commands);

@@ -210,8 +210,11 @@ void explored_chip(Session& session, Ui& ui, const DialogState& dialog, const Pa
 void problem_banner(Session& session, Ui& ui, const CommandRunner& commands, const PanelRect& rect) {
   if (session.problem.empty()) return;
   const UiColors& colors = colors_of(ui);
-  const float s = ui.scale, width = std::max(rect.width - 48 * s, 40 * s);
-  ImGui::SetNextWindowPos({rect.x + 24 * s, rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
+  const float s = ui.scale, margin = 24 * s;
+  const auto tools = ui.widgets.find("tool strip"); // which stay in reach
+  const float left = tools == ui.widgets.end() ? rect.x + margin : tools->second.to.x + 12 * s;
+  const float width = std::max(rect.x + rect.width - margin - left, 40 * s);
+  ImGui::SetNextWindowPos({std::round(left), rect.y + rect.height / 2}, ImGuiCond_Always, {0, 0.5f});
   ImGui::SetNextWindowSize({width, 0});
   begin_card("problem", s, {16 * s, 14 * s});
   ImGui::PushFont(ui.fonts.strong);

@@ -135,6 +135,7 @@ void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput&
     const std::string name = "tools/type/" + std::string(type_name(type.type));
     if (!choice(ui, name, type.title, tool.joint_type == type.type, type.help, width)) continue;
     tool.joint_type = type.type;
+    tool.type_aside.reset();
     if (!draft.axis_chosen) {
       draft.axis = guess_axis(session.mechanism(), type.type, draft.bodies, axis_in_view(input.camera));
       draft.axis2 = axis_across(draft.axis);
@@ -230,33 +231,39 @@ float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
   return std::max(width, 0.f) * std::max(height, 0.f);
 }
 
-// Beside the point, rather on the side where less of the mechanism is, and within the view, above what is
-// written at its foot; in a corner of it where the card would lie on the bodies that are joined.
+// Beside the point, rather on the side where less of the mechanism is, and within the view, beside the tools
+// and above what is written at its foot; in a corner of it where the card would lie on the bodies that are
+// joined, or on the legend.
 void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size) {
-  const float s = context.ui.scale, gap = 28 * s, edge = 8 * s;
+  const float s = context.ui.scale, gap = 28 * s, least_gap = 14 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
+  const WidgetMap& widgets = context.ui.widgets;
   const ImVec2 corner(rect.x, rect.y);
   const ImVec2 at = input.on_screen(context.tool.joint->at).value_or(corner);
   const ImVec2 middle = input.on_screen(cached_scene(context).bounds.center()).value_or(corner);
-  const float right = at.x + gap, left = at.x - gap - size.x;
-  const float most = rect.x + rect.width - size.x - edge, least = rect.x + edge;
-  const bool to_left = left >= least && (at.x < middle.x || right > most);
+  const auto tools = widgets.find("tool strip");
+  const float most = rect.x + rect.width - size.x - edge,
+              least = (tools == widgets.end() ? rect.x : tools->second.to.x) + edge;
+  const float right = at.x + gap, left = std::max(at.x - gap - size.x, least);
+  const bool to_left = left + size.x + least_gap <= at.x && (at.x < middle.x || right > most);
   ImVec2 from(to_left || (right > most && at.x > rect.x + rect.width / 2) ? left : right, at.y - 100 * s);
   const float top = rect.y + edge, foot = std::max(top, context.view.lines_top - size.y - edge);
   from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, top, foot);
-  const std::vector<PanelRect> covered = covered_by_bodies(context, input);
+  std::vector<PanelRect> covered = covered_by_bodies(context, input);
+  if (const auto legend = widgets.find("legend frame"); legend != widgets.end()) {
+    const auto& [upper, lower] = legend->second;
+    covered.push_back({upper.x, upper.y, lower.x - upper.x, lower.y - upper.y});
+  }
   const auto hidden = [&](ImVec2 place) {
     float area = 0;
     for (const PanelRect& each : covered)
       area += common_area(each, place, size);
     return area;
   };
-  const float strip = 52 * s; // the tools
   const float other = std::clamp(to_left ? right : left, least, std::max(least, most));
-  for (const ImVec2 place :
-       {ImVec2(other, from.y), ImVec2(std::max(least, most), foot), ImVec2(std::max(least, most), top),
-        ImVec2(least + strip, foot), ImVec2(least + strip, top)})
+  for (const ImVec2 place : {ImVec2(other, from.y), ImVec2(std::max(least, most), foot),
+                             ImVec2(std::max(least, most), top), ImVec2(least, foot), ImVec2(least, top)})
     if (hidden(place) < 0.8f * hidden(from)) from = place;
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
 }

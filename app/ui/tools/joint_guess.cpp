@@ -142,6 +142,21 @@ std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<co
   return names(pair_at(structure, there, only >= 0 && !structure.hangs(only) ? only : -1, again));
 }
 
+bool sits_on_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& bodies, const Vec3& at) {
+  const Body *a = find_body(mechanism, bodies[0]), *b = find_body(mechanism, bodies[1]);
+  if (!a || !b || a->shapes.size() != 1 || b->shapes.size() != 1) return false;
+  const auto slender = rod_axis(*a, true) ? std::array{a, b} : std::array{b, a};
+  const std::optional<Vec3> rod = rod_axis(*slender[0], true), disc = rod_axis(*slender[1]);
+  if (!rod || !disc || !parallel(*rod, *disc)) return false;
+  const Shape &shaft = slender[0]->shapes.front(), &wheel = slender[1]->shapes.front();
+  const double length = (shaft.to - shaft.from).norm(), near = 1e-6 * length;
+  const auto off = [&](const Vec3& point) {
+    return (point - shaft.from - (point - shaft.from).dot(*rod) * *rod).norm();
+  };
+  return (wheel.to - wheel.from).norm() < wheel.radius && wheel.radius > shaft.radius &&
+         off(wheel.from) <= near && off(at) <= near;
+}
+
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies) {
   std::vector<BodyAxis> axes;
   const auto add = [&](const std::string& label, const Vec3& axis) {

@@ -19,6 +19,10 @@ namespace flyball {
 std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
                                         const Selection& selected, const Vec3& at, double reach, bool again);
 
+// Whether one of the two is a disc that lies on the other, a rod, at the point, square across it: a flywheel
+// on its shaft, which turns with it.
+bool sits_on_shaft(const Mechanism& mechanism, const std::array<std::string, 2>& bodies, const Vec3& at);
+
 // A direction that the two bodies have to offer beside the world's.
 struct BodyAxis {
   std::string label; // "along rod1", "x of block1"

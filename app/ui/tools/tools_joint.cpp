@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace flyball {
 
@@ -34,6 +35,14 @@ double distance_of(const ViewContext& context, const JointDraft& draft) {
   return 0;
 }
 
+// A disc is held on its shaft first, whatever type was chosen last: that is the next joint's again.
+void offer_type(const Session& session, ToolState& tool, const JointDraft& draft) {
+  if (tool.type_aside) tool.joint_type = *std::exchange(tool.type_aside, {});
+  if (!sits_on_shaft(session.mechanism(), draft.bodies, draft.at)) return;
+  tool.type_aside = tool.joint_type;
+  tool.joint_type = JointType::fixed;
+}
+
 void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& aim) {
   const JointDraft former = context.tool.joint.value_or(JointDraft()); // whose point is moved
   const bool bearing = context.tool.tool == Tool::bearing;
@@ -53,6 +62,7 @@ void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& 
   if (draft.away <= reach) draft.away = 0;
   draft.bodies_chosen = former.bodies_chosen;
   draft.bodies = former.bodies_chosen ? former.bodies : draft.guessed;
+  if (!context.tool.joint && !bearing) offer_type(context.session, context.tool, draft);
   draft.axis_chosen = former.axis_chosen;
   if (former.axis_chosen)
     draft.axis = former.axis;
