@@ -322,6 +322,57 @@ TEST_CASE("Enter goes ahead in Mirror and Circular copy, and in their fields end
   CHECK(app.session.mechanism().bodies.size() == bodies + (which == "mirror" ? 1 : 2));
 }
 
+TEST_CASE("a text that was refused stays, and what is typed then goes on at its end") {
+  Hand hand;
+  App& app = hand.app;
+  hand.click("inspector/drive/speed");
+  hand.key('A', true);
+  hand.type("=6*(1+");
+  hand.key(key_enter);
+  hand.frames(3);
+  REQUIRE_FALSE(app.ui.fields.typing.mistake.empty());
+  hand.type("1)");
+  hand.frames(1);
+  CHECK(app.ui.fields.typing.text == "=6*(1+1)");
+  hand.key(key_enter);
+  hand.frames(3);
+  CHECK(app.ui.fields.typing.name.empty());
+}
+
+TEST_CASE("a circular copy of more or fewer than there may be is refused, not made of another number") {
+  Hand hand;
+  App& app = hand.app;
+  select(app.session, {{{PartKind::body, "ball1"}}});
+  hand.frames(2);
+  app.commands.run("edit.circular");
+  hand.frames(3);
+  const std::size_t bodies = app.session.mechanism().bodies.size();
+  const auto count = [&](const std::string& text) {
+    hand.click("circular/count");
+    hand.key('A', true);
+    hand.type(text);
+    hand.key(key_enter);
+    hand.frames(3);
+  };
+  for (const char* impossible : {"1", "101", "-4"}) {
+    CAPTURE(impossible);
+    count(impossible);
+    CHECK(app.ui.widgets.contains("circular/refusal"));
+    hand.click("circular/ok");
+    hand.frames(2);
+    hand.key(key_enter);
+    hand.frames(2);
+    REQUIRE(app.dialog.showing);
+    CHECK(app.session.mechanism().bodies.size() == bodies);
+  }
+  count("4");
+  CHECK_FALSE(app.ui.widgets.contains("circular/refusal"));
+  hand.click("circular/ok");
+  hand.frames(3);
+  CHECK_FALSE(app.dialog.showing);
+  CHECK(app.session.mechanism().bodies.size() == bodies + 3);
+}
+
 TEST_CASE("a new document gives the keys to the view") {
   Hand hand;
   App& app = hand.app;

@@ -96,3 +96,21 @@ TEST_CASE("a right click copies a result, and of a reaction all its components")
   CHECK(bears.starts_with("0\t1990.7"));
   CHECK(bears.ends_with("\tN"));
 }
+
+TEST_CASE(
+    "joints that nothing resists are all told, in lines below where they find no room beside the words") {
+  Robot robot({1280, 800});
+  Mechanism wheels = Document::empty_mechanism();
+  const int count = GENERATE(1, 5);
+  for (int i = 0; i < count; ++i) {
+    const Vec3 at(0.5 * i, 0, 0);
+    const std::string wheel = add_body(wheels, {.form = BodyForm::ball, .at = at, .radius = 0.1});
+    add_joint(wheels, JointType::revolute, {"ground", wheel}, at, Vec3::UnitY());
+  }
+  open_document(robot.app.session, Document(wheels));
+  robot.frames(3);
+  REQUIRE(robot.app.session.answer.solution.neutral.size() == static_cast<std::size_t>(count));
+  const WidgetRect told = robot.widget("results/neutral");
+  CHECK(told.to.x <= 1280);
+  CHECK((told.to.y - told.from.y > 2.5f * ImGui::GetFontSize()) == (count > 1));
+}

@@ -10,12 +10,14 @@
 #include "app/ui/widgets/widgets.hpp"
 
 #include <array>
+#include <string>
 
 namespace flyball {
 
 namespace {
 
 constexpr std::array axis_names{"x", "y", "z"};
+constexpr int fewest_round = 2, most_round = 100; // copies of a circle, the selected one included
 
 Vec3 unit(int axis) {
   return Vec3::Unit(axis);
@@ -57,12 +59,16 @@ void point_fields(Session& session, Ui& ui, const std::string& name, Vec3& point
   }
 }
 
-// The buttons below; returns whether to go ahead. Enter does, but in a field, which it ends.
-bool accepted(Ui& ui, const std::string& name, const char* text) {
+// The buttons below; returns whether to go ahead, which it does not with what is not `possible`. Enter does,
+// but in a field, which it ends.
+bool accepted(Ui& ui, const std::string& name, const char* text, bool possible = true) {
   if (ImGui::IsWindowAppearing()) enter_dialog_at(ui, name + "/ok");
   ImGui::Dummy({0, 4 * ui.scale});
   const bool entered = !ImGui::GetIO().WantTextInput && enter_pressed(ui);
-  const bool go = text_button(ui, name + "/ok", text, true) || entered;
+  ImGui::BeginDisabled(!possible);
+  const bool pressed = text_button(ui, name + "/ok", text, true);
+  ImGui::EndDisabled();
+  const bool go = possible && (pressed || entered);
   ImGui::SameLine();
   if (text_button(ui, name + "/cancel", "Cancel") || escape_pressed() || go) close_dialog();
   return go;
@@ -116,10 +122,16 @@ void CopiesDialogs::draw_circular(Session& session, Ui& ui, DialogState& dialog)
   ImGui::SameLine(90 * ui.scale);
   ImGui::SetNextItemWidth(120 * ui.scale);
   ImGui::InputInt("##count", &choice_.count, 0);
-  choice_.count = std::clamp(choice_.count, 2, 100);
   note_widget(ui.widgets, "circular/count", KeyUse::type);
   help_on_hover("How many there are then, the selected one included.");
-  if (accepted(ui, "circular", "Copy"))
+  const bool possible = choice_.count >= fewest_round && choice_.count <= most_round;
+  if (!possible) {
+    paragraph("From " + std::to_string(fewest_round) + " to " + std::to_string(most_round) +
+                  ", the selected one included.",
+              colors_of(ui).warn);
+    note_widget(ui.widgets, "circular/refusal", KeyUse::none);
+  }
+  if (accepted(ui, "circular", "Copy", possible))
     edit(session, "Circular copy", [&](Mechanism& mechanism, Selection& selection) {
       selection = circular_copy(mechanism, selection, choice_.point, unit(choice_.axis), choice_.count);
     });

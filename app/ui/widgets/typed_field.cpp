@@ -140,6 +140,8 @@ void go_on(Session& session, Ui& ui, const TextField& field, bool entered) {
     ui.keyboard.focus = {};
   } else if (entered && !typing.mistake.empty()) {
     typing.wants_focus = true;
+    ui.completion.cursor_wanted =
+        static_cast<int>(typing.text.size()); // selected, the next key would replace it
   } else {
     leave(session, ui, field.at_once);
     if (entered) ui.keyboard.focus = {}; // done: keys are commands again
