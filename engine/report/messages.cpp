@@ -92,6 +92,28 @@ bool pulled_by_law(const System& system, const Unbounded& found) {
   });
 }
 
+// Of slides that springs hold, which the centrifugal force outgrows.
+std::string softer_springs(const Unbounded& found, bool unstable) {
+  constexpr double noticeable = 1e-4;
+  const bool one = found.softened.size() == 1;
+  const auto list = [&](double Softening::*which) {
+    std::vector<std::string> all;
+    for (const Softening& along : found.softened)
+      all.push_back(rounded_text(along.*which, 4) + " N/m");
+    if (!one && std::ranges::count(all, all.front()) == std::ssize(all)) return all.front() + " each";
+    return word_list(std::vector<std::string_view>(all.begin(), all.end()), "and");
+  };
+  const bool softer = std::ranges::all_of(
+      found.softened, [](const Softening& along) { return along.held < (1 - noticeable) * along.driven; });
+  return "What holds " + names_of(found) + ", " + list(&Softening::held) + ", is " +
+         (softer ? "softer" : "hardly stiffer") +
+         " than the centrifugal force, which at this speed grows by " + list(&Softening::driven) + ": " +
+         (one ? "it goes" : "they go") + " on without end" +
+         (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+         (one ? "It needs a stiffer spring, a stop" : "They need stiffer springs, stops") +
+         " or a lower speed.";
+}
+
 bool any_has_stop(const Mechanism& mechanism, const std::vector<std::string>& joints) {
   return std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
     return std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.stop.has_value(); }) &&
@@ -318,6 +340,11 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
   }
   out.unheld = found.coordinates;
   out.unheld_by_weight = found.by_weight;
+  if (!found.softened.empty() && !pulled_by_law(problem.system, found)) {
+    const std::string words = softer_springs(found, unstable);
+    out.message = unstable ? out.message + " " + words : words;
+    return;
+  }
   const std::string words =
       "Nothing holds " + names_of(found) + " against " +
       (found.by_weight    ? "the weight"

@@ -30,6 +30,7 @@ class Search {
     if (pushed_.empty() || p_.cancelled()) return out;
     blame(out);
     name(out);
+    if (out.by_inertia) soften(out);
     out.for_a_moment = turns_with_drives();
     return out;
   }
@@ -162,6 +163,30 @@ class Search {
                          link.inertia.setZero();
                        }
                      });
+  }
+
+  void soften(Unbounded& out) {
+    constexpr double little = 0.01;    // reaches
+    constexpr double by_little = 1e-4; // of the centrifugal force: a spring as little stiffer may be no help
+    Parameters still = p_.parameters;
+    still.moving = false;
+    const auto stiffness = [&](const Parameters& parameters, int v) {
+      const double by = little * p_.scaling.column[v];
+      const Problem problem{p_.system, parameters, p_.scaling, p_.cancel, p_.form};
+      Search at(problem, start_, w_);
+      return (at.slope(v, by) - at.slope(v, -by)) / (2 * by);
+    };
+    for (const CoordinateInfo& info : p_.system.coordinates) {
+      const Link& link = p_.system.links[static_cast<std::size_t>(info.link)];
+      if (std::ranges::find(pushed_, link.v, &Pushed::v) == pushed_.end()) continue;
+      if (link.type != LinkType::prismatic) return out.softened.clear();
+      Softening& along = out.softened.emplace_back();
+      along.held = stiffness(still, link.v);
+      along.driven = along.held - stiffness(p_.parameters, link.v);
+      if (!(along.held > tolerance::push_rounding * along.driven &&
+            along.held < (1 + by_little) * along.driven))
+        return out.softened.clear();
+    }
   }
 
   void name(Unbounded& out) const {

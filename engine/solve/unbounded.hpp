@@ -9,11 +9,19 @@
 
 namespace flyball {
 
+// Along a slide (N/m), at the start.
+struct Softening {
+  double held = 0;   // what its springs, or whatever else holds it, grow by
+  double driven = 0; // what the centrifugal force at these speeds grows by
+};
+
 struct Unbounded {
   std::vector<UnheldCoordinate> coordinates; // empty: nothing of the kind was found
   bool by_weight = false;                    // without gravity the forces do not push this way
   bool by_inertia = false;                   // without the drives' motion they do not
-  bool for_a_moment = false;                 // at other phases of the drives they do not push this way
+  // Of each of these, where the drives' motion pushes slides that springs hold, though not enough.
+  std::vector<Softening> softened;
+  bool for_a_moment = false; // at other phases of the drives they do not push this way
 };
 
 // From `start` (a configuration, loops open or closed) of a problem without a steady state. Two tests: along

@@ -111,6 +111,41 @@ TEST_CASE("a pendulum half built: the slide on its arm has no spring yet") {
   if (s.status == Status::converged) CHECK(s.stable == false);
 }
 
+TEST_CASE("of a slide whose spring the centrifugal force outgrows both are told") {
+  // 0.5 kg on 200 N/m: the force grows by 0.5 w^2, as much at 20 rad/s.
+  const auto hub = [](double speed, double stiffness) {
+    Mechanism m;
+    m.bodies = {body("hub", 1), body("rider", 0.5, 0.1 * x)};
+    m.joints = {driven(revolute("spin", "ground", "hub", origin, z), speed),
+                prismatic("slide", "hub", "rider", 0.1 * x, x)};
+    if (stiffness > 0) m.joints[1] = sprung(m.joints[1], stiffness);
+    return m;
+  };
+  CHECK(solve(hub(19, 200)).unheld.empty());
+  const Solution beyond = solve(hub(22, 200));
+  CHECK(beyond.stable == false);
+  CHECK_THAT(
+      beyond.message,
+      ContainsSubstring("What holds slide, 200 N/m, is softer than the centrifugal force, which at this "
+                        "speed grows by 242 N/m: it goes on without end from the drawn pose. It needs a "
+                        "stiffer spring, a stop or a lower speed."));
+  for (const double speed : {19.9999999, 20.}) {
+    const Solution at_pole = solve(hub(speed, 200));
+    CHECK(at_pole.status == Status::not_converged);
+    CHECK_THAT(at_pole.message, ContainsSubstring("What holds slide, 200 N/m, is hardly stiffer than the "
+                                                  "centrifugal force, which at this speed grows by 200 N/m"));
+  }
+  CHECK_THAT(solve(hub(22, 0)).message, ContainsSubstring("It needs a spring or a stop."));
+
+  Mechanism two = hub(22, 200);
+  two.bodies.push_back(body("other", 0.5, -0.1 * x));
+  two.joints.push_back(sprung(prismatic("opposite", "hub", "other", -0.1 * x, -x), 150));
+  CHECK_THAT(
+      solve(two).message,
+      ContainsSubstring("What holds slide and opposite, 200 N/m and 150 N/m, is softer than the centrifugal "
+                        "force, which at this speed grows by 242 N/m each: they go on without end"));
+}
+
 TEST_CASE("several things that run away are all named, and nothing else") {
   const Mechanism m = heavy(
       {body("a", 1, {0, 0, 0}), body("b", 2, {1, 0, 0}), body("c", 1, {1, -1, 0}), body("d", 1, {3, -1, 0})},
