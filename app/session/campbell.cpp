@@ -6,6 +6,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/solve/solution_difference.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,13 +52,13 @@ CampbellDiagram follow(const Mechanism& mechanism, const CampbellRequest& reques
   options.largest_step = 0.007; // lines that are smooth where they are zoomed
   options.cancel = &context.cancel;
   options.progress = context.progress;
-  ResponseDiagram response = follow_branches(mechanism, request.drive, from, to, options);
+  ResponseDiagram response = follow_response(mechanism, request.drive, from, to, options);
   // Nothing may connect the state with what the drawn pose leads to.
   const bool inside = state.speed >= std::min(from, to) && state.speed <= std::max(from, to);
   if (inside && !state.coordinates.empty() && !place_on(response.branches, state) && !context.cancel) {
     options.all = true;
     options.all_at = {state.speed};
-    response = follow_branches(mechanism, request.drive, from, to, options);
+    response = follow_response(mechanism, request.drive, from, to, options);
   }
   return campbell_diagram(mechanism, request.drive, std::move(response), request.orders, &context.cancel);
 }

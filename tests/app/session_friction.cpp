@@ -78,3 +78,43 @@ TEST_CASE("Session: a clutch engages along the edge of what friction holds, past
   }
   CHECK(before > 10);
 }
+
+TEST_CASE("Session: the Campbell diagram follows what friction holds") {
+  // On a hub a rider that friction alone holds, up to 20 rad/s, and 1 kg on a spring of 400 N/m.
+  const char* const hub = R"~({
+    "flyball": 1, "name": "Hub", "gravity": [0, 0, 0],
+    "bodies": [
+      {"name": "hub", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+      {"name": "rider", "mass": 0.5, "position": [0.1, 0, 0]},
+      {"name": "swinger", "mass": 1, "position": [0, 0, 0]}
+    ],
+    "joints": [
+      {"name": "spin", "type": "revolute", "bodies": ["ground", "hub"], "at": [0, 0, 0], "axis": [0, 1, 0],
+       "drive": {"speed": 5}},
+      {"name": "hold", "type": "prismatic", "bodies": ["hub", "rider"], "at": [0.1, 0, 0], "axis": [1, 0, 0],
+       "friction": {"limit": 20}},
+      {"name": "slide", "type": "prismatic", "bodies": ["hub", "swinger"], "at": [0, 0, 0], "axis": [0, 0, 1],
+       "spring": {"stiffness": 400}}
+    ]
+  })~";
+  Session session({.mode = LiveSolver::Mode::immediate});
+  open_document(session, Document(parse_scene(hub)));
+  CampbellState& campbell = session.study.modes.campbell;
+  campbell.from = 1;
+  campbell.to = 8;
+  open_study(session, StudyKind::modes);
+  for (int i = 0; i < 4; ++i)
+    update(session, 0);
+  REQUIRE(campbell.diagram.found);
+  const CampbellDiagram& diagram = campbell.diagram.found->result;
+  REQUIRE(diagram.branches.size() == 1);
+  CHECK(campbell.on_branch);
+  const std::vector<CampbellPoint>& points = diagram.branches[0].points;
+  CHECK(points.size() > 10);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double w = diagram.response.branches[0].points[i].parameter;
+    CAPTURE(w);
+    REQUIRE(points[i].modes.size() == 1);
+    CHECK(points[i].modes[0].frequency == Approx(std::sqrt(400 - w * w)).epsilon(1e-9));
+  }
+}
