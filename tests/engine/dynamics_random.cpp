@@ -65,7 +65,7 @@ TEST_CASE("random mechanisms of all kinds: the energies balance and the loops st
 
 TEST_CASE("random mechanisms: integrators agree") {
   int compared = 0;
-  const std::uint32_t count = few_or_all(12u, 30u);
+  const std::uint32_t count = few_or_all(8u, 30u);
   for (std::uint32_t seed = 1000; seed < 1000 + count; ++seed) {
     CAPTURE(seed);
     RandomOptions options = options_of(seed);

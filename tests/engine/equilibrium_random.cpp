@@ -137,8 +137,8 @@ void check_minimum(const Mechanism& m, const Checked& c, std::uint32_t seed) {
 } // namespace
 
 TEST_CASE("random mechanisms: what is called a steady state is one") {
-  // Each way of making them, with every number of loops and kind of drives, comes three times among 144.
-  const std::uint32_t count = few_or_all(144u, 480u);
+  // Each way of making them, with every number of loops and kind of drives, comes twice among 96.
+  const std::uint32_t count = few_or_all(96u, 480u);
   std::map<std::string, int> shares, sprung; // by status; of those that springs keep in place
   int converged = 0, minima = 0, phases = 0;
   double worst = 0;
@@ -205,7 +205,7 @@ TEST_CASE("random mechanisms: what is called a steady state is one") {
 }
 
 TEST_CASE("random mechanisms from random starts and plain Newton never break") {
-  for (std::uint32_t seed = 5000; seed < 5080; ++seed) {
+  for (std::uint32_t seed = 5000; seed < few_or_all(5048u, 5240u); ++seed) {
     CAPTURE(seed);
     const Mechanism m = ref::random_mechanism(seed, options_for(seed));
     Analysis analysis(m);

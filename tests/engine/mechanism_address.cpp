@@ -5,6 +5,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/engine/mechanism_everything.hpp"
+#include "tests/support/campaign.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
@@ -22,6 +23,7 @@ TEST_CASE("Every address of every scene can be read and set, and changes nothing
   for (const Mechanism& original : mechanisms) {
     const std::vector<std::string> addresses = parameter_addresses(original);
     CHECK(std::set<std::string>(addresses.begin(), addresses.end()).size() == addresses.size());
+    int number = 0;
     for (const std::string& address : addresses) {
       INFO(original.name << ": " << address);
       const double value = get_parameter(original, address);
@@ -44,7 +46,7 @@ TEST_CASE("Every address of every scene can be read and set, and changes nothing
       set_parameter(restored, address, value);
       for (const std::string& each : addresses)
         REQUIRE(get_parameter(restored, each) == get_parameter(original, each));
-      REQUIRE_NOTHROW(parse_scene(write_scene(changed)));
+      if (number++ % few_or_all(4, 1) == 0) REQUIRE_NOTHROW(parse_scene(write_scene(changed)));
     }
   }
 }
