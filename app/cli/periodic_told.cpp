@@ -203,7 +203,7 @@ std::string to_text(const PeriodicState& s) {
   for (const PeriodicCoordinate& c : s.coordinates) {
     rows.push_back(range_row(shown_label(c) + advance_text(c), c.range, c.angle ? "rad" : "m"));
     if (c.goes_on())
-      rows.push_back(range_row(shown_label(c) + ", its rate", c.rate, c.angle ? "rad/s" : "m/s"));
+      rows.push_back(range_row("speed of " + shown_label(c), c.rate, c.angle ? "rad/s" : "m/s"));
   }
   for (const PeriodicMeasure& m : s.measures)
     rows.push_back(range_row(printable(m.name), m.range, m.unit));

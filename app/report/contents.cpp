@@ -114,7 +114,9 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   if (has_friction(m)) ribbons = friction_ribbons(m, over.parameter, *diagram, options.cancel);
   for (const PlottedQuantity& shown : plotted_quantities(m, *diagram, options.plotted)) {
     Plot plot = branch_plot(m, over.parameter, *diagram, shown);
-    const std::string name = plotted_name(diagram->branches.front().points.front(), shown);
+    const ResponsePoint& first = diagram->branches.front().points.front();
+    const std::string name = plotted_name(first, shown);
+    if (shown.speed) plot.y.label = "speed of " + coordinate_label(first.coordinates[shown.index]);
     for (const std::vector<RibbonPoint>& ribbon : ribbons)
       add_ribbon(plot, ribbon, name);
     plot.title.clear(); // the page has words for it

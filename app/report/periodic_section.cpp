@@ -30,7 +30,7 @@ Html ranges_table(const PeriodicState& s) {
     table.row(range_cells(coordinate_label(c) + (c.goes_on() ? ", less its even share" : ""), c.range,
                           coordinate_unit_of(c.angle)));
     if (c.goes_on())
-      table.row(range_cells(coordinate_label(c) + ", its rate", c.rate, c.angle ? "rad/s" : "m/s"));
+      table.row(range_cells("speed of " + coordinate_label(c), c.rate, c.angle ? "rad/s" : "m/s"));
   }
   for (const PeriodicMeasure& m : s.measures)
     table.row(range_cells(m.name, m.range, m.unit));

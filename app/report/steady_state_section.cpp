@@ -23,9 +23,10 @@ Html coordinates_table(const Solution& s) {
     if (c.speed) {
       const std::string_view unit = c.angle ? "rad/s" : "m/s";
       const double shown = c.angle ? 30 / std::numbers::pi : 1000;
-      table.row({label, quantity_within(*c.speed, c.speed_error, unit), magnitude(c.speed_error, unit),
+      table.row({"speed of " + label, quantity_within(*c.speed, c.speed_error, unit),
+                 magnitude(c.speed_error, unit),
                  everyday(*c.speed, c.speed_error, shown, c.angle ? "rpm" : "mm/s"),
-                 c.dependent ? "speed, closes a loop" : "speed, found"});
+                 c.dependent ? "closes a loop" : "found"});
       continue;
     }
     if (c.driven) {
@@ -104,7 +105,7 @@ OptionalSection sensitivities_section(const ReportContents& contents) {
       const JointType type = joint < 0 ? JointType::free : m.joints[static_cast<std::size_t>(joint)].type;
       const bool angle = is_angle(type, r.index);
       const std::string unit = std::string(coordinate_unit_of(angle)) + (r.speed ? "/s" : "");
-      table.row({coordinate_label(r) + (r.speed ? ".speed" : ""), s.address,
+      table.row({(r.speed ? "speed of " : "") + coordinate_label(r), s.address,
                  rate_quantity(m, r.value, r.speed ? "(" + unit + ")" : unit, s.address)});
     }
   if (table.empty()) return std::nullopt;

@@ -20,6 +20,10 @@ std::string coordinate_words(const std::string& joint, int index, int count, boo
   return name + (angle ? ", rotation " : ", shift ") + "xyz"[index % 3];
 }
 
+std::string speed_words(const std::string& coordinate) {
+  return "speed of " + coordinate;
+}
+
 std::string label_words(const Mechanism& mechanism, const std::string& label) {
   constexpr std::string_view speed = ".speed";
   const auto words = [&](const std::string& joint, int count,
@@ -29,7 +33,7 @@ std::string label_words(const Mechanism& mechanism, const std::string& label) {
       const std::string own = coordinate_label(joint, i, count);
       if (label == own) return coordinate_words(joint, i, count, is_an_angle(i));
       if (label == own + std::string(speed))
-        return coordinate_words(joint, i, count, is_an_angle(i)) + std::string(speed);
+        return speed_words(coordinate_words(joint, i, count, is_an_angle(i)));
     }
     return std::nullopt;
   };
@@ -44,7 +48,7 @@ std::string label_words(const Mechanism& mechanism, const std::string& label) {
 }
 
 std::string found_words(const CoordinateSolution& c) {
-  return coordinate_words(c) + (c.speed ? ".speed" : "");
+  return c.speed ? speed_words(coordinate_words(c)) : coordinate_words(c);
 }
 
 } // namespace flyball

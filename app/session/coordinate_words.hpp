@@ -18,10 +18,12 @@ template <class Coordinate>
 std::string coordinate_words(const Coordinate& c) {
   return coordinate_words(c.joint, c.index, c.count, c.angle);
 }
+// "speed of spin": of a coordinate in words, as of a drive's number.
+std::string speed_words(const std::string& coordinate);
 // Of what coordinate_label() gave, "tilt.1", also with ".speed" behind it; as it is where the mechanism has
 // no such coordinate.
 std::string label_words(const Mechanism& mechanism, const std::string& label);
-// Of what found_number() tells: of a speed "spin.speed".
+// Of what found_number() tells: a coordinate or a speed.
 std::string found_words(const CoordinateSolution& coordinate);
 
 } // namespace flyball

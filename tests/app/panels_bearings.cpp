@@ -138,7 +138,7 @@ TEST_CASE("coordinates are told in words") {
   mechanism.joints[1].name = "slide";
   mechanism.joints[1].type = JointType::prismatic;
   CHECK(label_words(mechanism, "tilt.1") == "tilt, angle at the child");
-  CHECK(label_words(mechanism, "tilt.0.speed") == "tilt, angle.speed");
+  CHECK(label_words(mechanism, "tilt.0.speed") == "speed of tilt, angle");
   CHECK(label_words(mechanism, "slide") == "slide");
   CHECK(label_words(mechanism, "rotor.free.5") == "rotor, rotation z");
   CHECK(label_words(mechanism, "elsewhere.2") == "elsewhere.2");

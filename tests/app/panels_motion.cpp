@@ -1,6 +1,7 @@
 // The damped motion beside the steady state, as a person uses it.
 #include "robot.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/motion.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/panel_list.hpp"
@@ -294,7 +295,7 @@ TEST_CASE("plots show the motion, the motion without dampers, and the steady val
     CHECK(curve.points[7][1] == Approx(track(run, "slide").value[7]));
   }
   // Everything that is offered can be drawn.
-  for (const MotionQuantity& each : motion_quantities(app.session, run)) {
+  for (const MotionQuantity& each : motion_quantities(run)) {
     CAPTURE(each.key);
     const Plot offered = motion_plot(app.session, each.key);
     CHECK_FALSE(offered.curves.empty());
@@ -317,7 +318,8 @@ TEST_CASE("plots show the speed that a drive by torque settles at") {
   CHECK(app.panels->studies.shown().motion[0].quantity == "rate " + found->joint);
   CHECK(app.panels->studies.shown().motion[1].quantity == "measure power");
   const Plot rate = motion_plot(app.session, "rate " + found->joint);
-  CHECK(rate.y.label == found->joint + ".speed"); // as in the results
+  CHECK(rate.y.label == "speed of " + found->joint); // as in the results
+  CHECK(found_words(*found) == rate.y.label);
   REQUIRE(rate.references.size() == 1);
   CHECK(rate.references[0].at == Approx(*found->speed));
   CHECK(motion_plot(app.session, "value " + found->joint).references.empty()); // it goes on

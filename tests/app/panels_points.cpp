@@ -132,7 +132,7 @@ TEST_CASE("plots of the motion offer the point beside the mass centre") {
   hand.frames(3);
   REQUIRE(shown_motion(app.session));
   const auto offered = [&](const char* key) {
-    const std::vector<MotionQuantity> all = motion_quantities(app.session, *shown_motion(app.session)->run);
+    const std::vector<MotionQuantity> all = motion_quantities(*shown_motion(app.session)->run);
     return std::ranges::find(all, key, &MotionQuantity::key) != all.end();
   };
   CHECK(offered("position.x ball1"));

@@ -249,7 +249,7 @@ TEST_CASE("the limit cycle of a governor that hunts is found when it is asked fo
   REQUIRE(cycle->status == PeriodicStatus::found);
   CHECK(cycle->stable == true);
   CHECK(cycle->period == Approx(1.74484).epsilon(1e-5));
-  for (const char* name : {"results/cycle/message", "results/cycle/slide", "results/cycle/spin, its rate",
+  for (const char* name : {"results/cycle/message", "results/cycle/slide", "results/cycle/speed of spin",
                            "results/cycle/motion"})
     CHECK(app.ui.widgets.count(name) == 1);
   CHECK(converged(app.session)); // the steady state stays what is shown

@@ -580,6 +580,7 @@ TEST_CASE("of an engine its speed over the load is drawn at first: the droop cur
   ResponseRobot robot("governor_engine");
   REQUIRE(robot.state().choice.address == "joints.spin.drive.load");
   CHECK(robot.state().choice.quantity == "value spin.speed");
+  CHECK(robot.drawn().plot.y.label == "speed of spin"); // as everywhere in the window
   const std::vector<PlotCurve>& curves = robot.drawn().plot.curves;
   REQUIRE_FALSE(curves.empty());
   std::vector<std::array<double, 2>> points = curves.front().points;

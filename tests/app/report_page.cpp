@@ -165,7 +165,7 @@ TEST_CASE("a report of an engine with its governor tells the law, the droop and 
     CHECK(nearest < 1e-5);
   }
   const std::string rates = section(page, "sensitivities");
-  CHECK(rates.find("spin.speed") != std::string::npos);
+  CHECK(rates.find("speed of spin") != std::string::npos);
   CHECK(rates.find("(rad/s)/(N") != std::string::npos);
   // A mode that does not swing has no frequency of any kind.
   const std::string modes = section(page, "stability");
@@ -263,7 +263,7 @@ TEST_CASE("curves of a report show what friction holds and what slips") {
   REQUIRE(contents.curves.size() == 1);
   REQUIRE(contents.curves[0].plots.size() == 1);
   const Plot& plot = contents.curves[0].plots[0];
-  CHECK(plot.y.label == "clutch.speed");
+  CHECK(plot.y.label == "speed of clutch");
   std::set<std::string> names;
   for (const PlotCurve& curve : plot.curves)
     names.insert(curve.name);

@@ -23,7 +23,7 @@ void free_coordinate(Session& session, Ui& ui, const CoordinateSolution& c, bool
   const NumberStyle& numbers = session.options.numbers;
   const UiColors& colors = colors_of(ui);
   const ShownUnit unit = shown_unit(si, session.units);
-  row(ui, coordinate_words(c), value_text(unit.shown(value), error * unit.factor, numbers), unit.text.c_str(),
+  row(ui, found_words(c), value_text(unit.shown(value), error * unit.factor, numbers), unit.text.c_str(),
       c.dependent ? "The joint closes a loop: this follows from the other coordinates." : nullptr);
   const std::string in_si = " " + std::string(si), widget = "results/" + coordinate_label(c);
   std::string second; // the same in SI, where that is another unit, and its error

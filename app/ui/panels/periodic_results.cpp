@@ -170,7 +170,7 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
     const std::string name = coordinate_label(c), title = coordinate_words(c);
     range(name, title, c.range, unit, advance_help(c, unit), advance_words(c, unit));
     if (c.goes_on())
-      range(name + ", its rate", title + ", its rate", c.rate,
+      range("speed of " + name, speed_words(title), c.rate,
             shown_unit(c.angle ? "rad/s" : "m/s", session.units));
   }
   for (const PeriodicMeasure& m : state.measures)

@@ -50,7 +50,7 @@ struct MotionQuantity {
   std::string title; // "theta"
   std::string group; // "Coordinates"
 };
-std::vector<MotionQuantity> motion_quantities(const Session& session, const Run& run);
+std::vector<MotionQuantity> motion_quantities(const Run& run);
 // The quantity over the runs there are, with the steady value.
 Plot motion_plot(const Session& session, const std::string& quantity);
 

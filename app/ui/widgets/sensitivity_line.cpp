@@ -65,7 +65,7 @@ std::vector<ShownRate> shown_rates(const Session& session, const std::string& ad
     if (c == solution.coordinates.end() || c->driven) continue;
     from = c;
     ShownRate shown;
-    shown.name = coordinate_words(*c);
+    shown.name = found_words(*c);
     const ShownUnit of = coordinate_unit(c->angle, session.units),
                     by = shown_unit(control->unit, session.units);
     shown.value = rate.value * of.factor / by.factor;

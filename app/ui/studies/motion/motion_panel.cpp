@@ -291,7 +291,7 @@ void draw_plots(Session& session, Ui& ui, std::array<MotionPlot, 2>& shown_plots
     paragraph(computing_motion(session) ? "Computing…" : "No motion.", colors_of(ui).dim);
     return;
   }
-  const std::vector<MotionQuantity> all = motion_quantities(session, *shown->run);
+  const std::vector<MotionQuantity> all = motion_quantities(*shown->run);
   for (std::size_t i = 0; i < shown_plots.size(); ++i) {
     const bool known = std::ranges::find(all, shown_plots[i].quantity, &MotionQuantity::key) != all.end();
     if (!known) shown_plots[i].quantity = first_shown(session, all, i);

@@ -79,7 +79,7 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
   for (const CoordinateTrack& c : run.coordinates) {
     const std::string name = coordinate_label(c), words = coordinate_words(c);
     if (key == "value " + name) return {words, c.angle ? "rad" : "m", {{"", c.value}}};
-    if (key == "rate " + name) return {"rate of " + words, c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
+    if (key == "rate " + name) return {speed_words(words), c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
   }
   for (const DriveTrack& d : run.drives) {
     if (key == "drive " + coordinate_label(d))
@@ -112,13 +112,6 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
     out = {"energy balance", "J", {{"", e.balance}}};
   }
   return out;
-}
-
-// A speed that the steady state is solved for is called as there.
-std::string title_in(const Session& session, const std::string& key, const std::string& title) {
-  for (const CoordinateSolution& c : session.answer.solution.coordinates)
-    if (c.speed && key == "rate " + coordinate_label(c)) return found_words(c);
-  return title;
 }
 
 // What the quantity is in the steady state, in SI units.
@@ -167,10 +160,10 @@ void keep_damped_in_sight(Plot& plot) {
 
 } // namespace
 
-std::vector<MotionQuantity> motion_quantities(const Session& session, const Run& run) {
+std::vector<MotionQuantity> motion_quantities(const Run& run) {
   std::vector<MotionQuantity> out;
   const auto add = [&](const std::string& key, const char* group) {
-    out.push_back({key, title_in(session, key, shown_quantity(run, key).title), group});
+    out.push_back({key, shown_quantity(run, key).title, group});
   };
   for (const CoordinateTrack& c : run.coordinates)
     if (!c.driven) add("value " + coordinate_label(c), "Coordinates");
@@ -208,7 +201,7 @@ Plot motion_plot(const Session& session, const std::string& quantity) {
     const Run& run = *motion.run;
     const ShownRun shown = shown_quantity(run, quantity);
     if (!shown.title.empty()) {
-      plot.y.label = title_in(session, quantity, shown.title);
+      plot.y.label = shown.title;
       plot.y.unit = shown.unit;
     }
     // Several energies of two runs would be too much to look at.
