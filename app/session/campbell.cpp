@@ -165,18 +165,20 @@ std::vector<std::string> campbell_names(const Session& session, const CampbellPl
   const auto& diagram = session.study.modes.campbell.diagram.found;
   const CampbellBranch& branch = diagram->result.branches[place.branch];
   std::vector<int> listed(branch.names.size(), -1);
-  if (const auto& list = session.study.modes.list.found)
+  const auto& list = session.study.modes.list.found;
+  if (list)
     listed = modes_on_lines(diagram->result.response.branches[place.branch], branch, place.after,
                             get_parameter(session.mechanism(), diagram->of.drive), list->result.modes);
   std::vector<std::string> names = branch.names;
   for (std::size_t l = 0; l < names.size(); ++l) {
     if (names[l].empty()) continue;
-    if (listed[l] < 0) {
-      names[l].replace(0, names[l].find(' '), "line");
-    } else {
-      names[l] = "mode " + std::to_string(listed[l] + 1) +
-                 names[l].substr(std::min(names[l].find(','), names[l].size()));
+    if (listed[l] >= 0) { // as in the list: elsewhere on the line another coordinate may move most
+      const auto mode = static_cast<std::size_t>(listed[l]);
+      const ModeAmplitude* most = list->result.modes[mode].leading();
+      names[l] = "mode " + std::to_string(mode + 1) + (most ? ", " + coordinate_words(*most) : "");
+      continue;
     }
+    names[l].replace(0, names[l].find(' '), "line");
     if (const std::size_t comma = names[l].find(", "); comma != std::string::npos)
       names[l].replace(comma + 2, std::string::npos,
                        label_words(session.mechanism(), names[l].substr(comma + 2)));

@@ -2,6 +2,7 @@
 #include "robot.hpp"
 
 #include "app/session/campbell.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/session/modes.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/panel_list.hpp"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -60,6 +62,24 @@ double opened(const Mechanism& m, const std::vector<Pose>& drawn, const std::vec
 }
 
 } // namespace
+
+TEST_CASE("lines of the Campbell diagram are called as the list's modes, circular whirls too") {
+  ModesRobot robot("rotor_oil_whip");
+  const Session& session = robot.app.session;
+  const auto place = campbell_place(session);
+  REQUIRE(place);
+  std::set<std::string> names;
+  for (const std::string& name : campbell_names(session, *place))
+    if (name.starts_with("mode ")) names.insert(name);
+  std::set<std::string> listed;
+  for (std::size_t i = 0; i < robot.modes().size(); ++i)
+    if (const VibrationMode& mode = robot.modes()[i]; mode.oscillates()) {
+      REQUIRE(mode.leading());
+      listed.insert("mode " + std::to_string(i + 1) + ", " + coordinate_words(*mode.leading()));
+    }
+  CHECK(listed.size() == 4);
+  CHECK(names == listed);
+}
 
 TEST_CASE("no modes before they are asked for, and a closed study leaves nothing that moves") {
   Robot robot(wide);
