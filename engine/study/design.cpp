@@ -70,7 +70,8 @@ class Designer {
   }
 
  private:
-  static constexpr double slack = 1e-9; // of unit(): what differs by less is the same
+  static constexpr double slack = 1e-9;          // of unit(): what differs by less is the same
+  static constexpr double same_parameter = 1e-8; // of the range
 
   // For branches of states that stand turned against the drawn pose, or of others.
   void prepare(bool turned) {
@@ -148,8 +149,8 @@ class Designer {
         continue;
       }
       if (last && i > 0 && std::abs(d[i]) < 1e-9 && std::abs(d[i - 1]) < 1e-9) continue;
-      if (d[i] == 0) {
-        solve(branch, points[i], points[i], 0);
+      if (d[i] == 0 || ((last || i == 0) && std::abs(d[i]) < 1e-9)) {
+        solve(branch, points[i], points[i], 0); // an end of the range may be short of it by rounding
       } else if (!last && d[i] * d[i + 1] < 0 && std::abs(d[i] - d[i + 1]) < 1) {
         solve(branch, points[i], points[i + 1], d[i] / (d[i] - d[i + 1]));
       } else if (i > 0 && !last && std::abs(d[i]) <= std::abs(d[i - 1]) &&
@@ -158,16 +159,51 @@ class Designer {
         const double slope = (d[i + 1] - d[i - 1]) / 2, bend = d[i + 1] - 2 * d[i] + d[i - 1];
         const double discriminant = slope * slope - 2 * bend * d[i];
         if (bend == 0 || discriminant < -0.1 * bend * bend) continue;
-        for (double sign : {-1., 1.}) {
-          const double at = (-slope + sign * std::sqrt(std::max(0., discriminant))) / bend;
-          if (std::abs(at) <= 1) solve(branch, points[i], points[at < 0 ? i - 1 : i + 1], std::abs(at));
+        std::array<std::optional<std::size_t>, 2> found;
+        for (std::size_t k = 0; k < 2; ++k) {
+          const double at = (-slope + (k == 0 ? -1 : 1) * std::sqrt(std::max(0., discriminant))) / bend;
+          if (std::abs(at) <= 1)
+            found[k] = solve(branch, points[i], points[at < 0 ? i - 1 : i + 1], std::abs(at));
         }
+        if (const auto one = found[0] ? found[0] : found[1]; one && (!found[1] || found[1] == one))
+          solve_beyond_turn(branch, out_.solutions[*one], points[i - 1], points[i], points[i + 1],
+                            {d[i - 1] * unit(), d[i + 1] * unit()});
       }
     }
   }
 
-  // From a part of the way between two points of a branch, else from either.
-  void solve(std::size_t branch, const ResponsePoint& a, const ResponsePoint& b, double part) {
+  // Three points of a branch stand on one side of the value, by `off` the outer two, and one solution between
+  // them is known, where it crosses the value: there is another one where it comes back. It is sought along
+  // the parabola through that solution, with its slope, and the outer point towards which it comes back.
+  void solve_beyond_turn(std::size_t branch, const DesignSolution& known, const ResponsePoint& before,
+                         const ResponsePoint& turn, const ResponsePoint& after,
+                         const std::array<double, 2>& off) {
+    if (!known.rate || *known.rate == 0 || !(off[0] * off[1] > 0)) return;
+    const double first = known.parameter, rate = *known.rate;
+    const bool upwards = (rate < 0) == (off[0] > 0), forth = (after.parameter > before.parameter) == upwards;
+    const ResponsePoint& end = forth ? after : before;
+    const double width = end.parameter - first;
+    if ((first > before.parameter) == (first > after.parameter)) return; // not one of these
+    if ((width > 0) != upwards ||
+        (turn.parameter - before.parameter > 0) != (after.parameter > turn.parameter))
+      return; // it folds
+    const double bend = (off[forth ? 1 : 0] - rate * width) / (width * width);
+    if (bend == 0) return;
+    const double second = first - rate / bend;
+    if (std::abs(second - first) < same_parameter * std::abs(to_ - from_)) return; // a double root
+    const std::size_t solutions = out_.solutions.size();
+    for (double part : {0., 0.25, 0.5, 0.75}) { // of the way on to the outer point
+      const double there = second + part * (end.parameter - second);
+      const bool beside_end = (there > turn.parameter) == (end.parameter > turn.parameter);
+      const ResponsePoint& b = beside_end ? end : forth ? before : after;
+      solve(branch, turn, b, (there - turn.parameter) / (b.parameter - turn.parameter));
+      if (out_.solutions.size() > solutions) return;
+    }
+  }
+
+  // From a part of the way between two points of a branch, else from either. Which of the solutions it is.
+  std::optional<std::size_t> solve(std::size_t branch, const ResponsePoint& a, const ResponsePoint& b,
+                                   double part) {
     const double near =
         std::abs(b.parameter - a.parameter) + 2 * options_.largest_step * std::abs(to_ - from_);
     for (double t : {part, 0., 1., 0.5}) {
@@ -191,18 +227,18 @@ class Designer {
       const double p = state.parameters[0];
       if (!outcome.converged || std::abs(p - a.parameter) > near) continue;
       const double edge = 1e-12 * std::abs(to_ - from_);
-      if (p < std::min(from_, to_) - edge || p > std::max(from_, to_) + edge) return;
-      keep(branch, state, outcome);
-      return;
+      if (p < std::min(from_, to_) - edge || p > std::max(from_, to_) + edge) return {};
+      return keep(branch, state, outcome);
     }
+    return {};
   }
 
-  void keep(std::size_t branch, const ExtendedState& state, const ExtendedOutcome& outcome) {
+  std::size_t keep(std::size_t branch, const ExtendedState& state, const ExtendedOutcome& outcome) {
     const Problem problem = balance_->problem();
     for (std::size_t i = 0; i < states_.size(); ++i)
-      if (std::abs(states_[i].parameters[0] - state.parameters[0]) < 1e-8 * std::abs(to_ - from_) &&
+      if (std::abs(states_[i].parameters[0] - state.parameters[0]) < same_parameter * std::abs(to_ - from_) &&
           same_pose(problem, states_[i].z.q, state.z.q, 1e-6) && same_angles(problem, states_[i], state))
-        return;
+        return i;
     states_.push_back(state);
     DesignSolution s;
     s.parameter = state.parameters[0];
@@ -222,7 +258,7 @@ class Designer {
     if (balance_->ties()) {
       s.rate = rate_of_turned(problem, state);
       out_.solutions.push_back(std::move(s));
-      return;
+      return out_.solutions.size() - 1;
     }
     const auto rates = sensitivities(factor_at(problem, state.z, w), balance_->mechanism(), {&address_, 1});
     if (!rates.empty() && rates[0].size() == system_.nv) {
@@ -235,6 +271,7 @@ class Designer {
         s.rate = rate;
     }
     out_.solutions.push_back(std::move(s));
+    return out_.solutions.size() - 1;
   }
 
   bool same_angles(const Problem& problem, const ExtendedState& a, const ExtendedState& b) const {

@@ -5,6 +5,8 @@
 #include "engine/study/design.hpp"
 #include "engine/study/fold_curve.hpp"
 
+#include <numbers>
+
 using namespace flyball;
 using namespace flyball::test;
 
@@ -91,6 +93,44 @@ TEST_CASE("a value that is never reached is told with what is covered", "[design
   CHECK(answer.highest < 0.2);
   CHECK(answer.message.find("never is 0.5 m") != std::string::npos);
   CHECK(answer.message.find("covers") != std::string::npos);
+}
+
+TEST_CASE("beside each peak of a measure both places where it has a value are found", "[design]") {
+  // sin(20 a) of the lean a, cos(a) = g / (w^2 L): between points of the branch it bends much, and its peaks
+  // stand hardly above what is wanted.
+  Mechanism m = conical(0.7, 0, 1);
+  m.measures.push_back({"ripples", "", "sin(20*coordinate(swing))", ""});
+  const double length = 0.7, wanted = 0.999999, from = 4, to = 20;
+  std::vector<double> speeds;
+  for (int turn = -10; turn <= 10; ++turn)
+    for (const double beside : {-1., 1.}) {
+      const double angle =
+          (std::numbers::pi / 2 + beside * std::acos(wanted) + 2 * std::numbers::pi * turn) / 20;
+      if (std::abs(angle) >= std::numbers::pi / 2) continue;
+      const double w = std::sqrt(standard_gravity / (length * std::cos(angle)));
+      if (w > from && w < to) speeds.push_back(w);
+    }
+  REQUIRE(speeds.size() == 14);
+  const DesignAnswer answer = design(m, speed, from, to, "ripples", wanted);
+  INFO(answer.message);
+  CHECK(answer.solutions.size() == speeds.size());
+  for (const double w : speeds)
+    CHECK(std::ranges::any_of(answer.solutions,
+                              [&](const DesignSolution& s) { return std::abs(s.parameter - w) < 1e-9; }));
+}
+
+TEST_CASE("a value that is reached at the very end of the range is found", "[design]") {
+  const double w = std::sqrt(standard_gravity / (0.7 * std::cos(1.)));
+  for (const double end : {w, std::nextafter(w, 0.), std::nextafter(w, 10.)}) {
+    INFO(end - w);
+    for (const bool back : {false, true}) {
+      const DesignAnswer answer =
+          design(conical(0.7, 0, 1), speed, back ? end : 1, back ? 1 : end, "swing", 1);
+      INFO(answer.message);
+      REQUIRE(answer.solutions.size() == 1);
+      CHECK(answer.solutions[0].parameter == Approx(w).epsilon(1e-15));
+    }
+  }
 }
 
 TEST_CASE("a value that holds all along a branch singles out no parameter", "[design]") {
