@@ -28,6 +28,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace flyball {
 namespace {
@@ -357,15 +358,10 @@ void Analysis::set(std::span<const double> values) {
 Solution Analysis::solve(const SolveOptions& options) {
   const Interruptible scope(options.cancel);
   try {
-    if (state_->moved && !state_->system.torques.empty() && !options.nearest && !options.newton_only) {
-      SolveOptions brief = options;
-      brief.search = 0;
-      brief.friction = brief.explain = false;
-      if (Solution found = solve_through(brief); found.status == Status::converged) return found;
-      if (options.cancel && *options.cancel) throw Interrupted();
-      turn_otherwise();
-    }
-    return solve_through(options);
+    Solution out = solve_through(options);
+    const bool cancelled = options.cancel && *options.cancel;
+    if (out.status == Status::converged || cancelled || options.nearest || options.newton_only) return out;
+    return turn_otherwise() ? solve_through(options) : out;
   } catch (const Interrupted&) {
     state_->settled = false;
     Solution cancelled;
@@ -374,16 +370,17 @@ Solution Analysis::solve(const SolveOptions& options) {
   }
 }
 
-void Analysis::turn_otherwise() {
+bool Analysis::turn_otherwise() {
   State& s = *state_;
-  s.moved = false; // asked once for these numbers
+  if (!std::exchange(s.moved, false) || s.system.drives.empty()) return false;
   try {
-    if (same_choice(s.system, compile_for_drives(*s.mechanism))) return;
+    if (same_choice(s.system, compile_for_drives(*s.mechanism))) return false;
     std::optional<State::Varied> kept = std::move(s.varied);
     *this = Analysis(s.mechanism);
     state_->varied = std::move(kept);
+    return true;
   } catch (const SceneError&) {
-    // The loops are as they were, and why there is no state is told of them.
+    return false; // the loops are as they were, and why there is no state is told of them
   }
 }
 

@@ -133,8 +133,8 @@ class Analysis {
   // The same, to the end or an interruption.
   Solution solve_through(const SolveOptions& options);
   AllSolutions solve_all_through(const SolveOptions& options);
-  // Compiles anew where numbers that have changed since make something else turn.
-  void turn_otherwise();
+  // Compiles anew where numbers that have changed since make something else turn; returns whether.
+  bool turn_otherwise();
 
   struct State;
   std::unique_ptr<State> state_;

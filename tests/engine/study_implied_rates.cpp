@@ -226,6 +226,33 @@ TEST_CASE("a wheel that stands while nothing turns it turns as soon as something
   CHECK_THAT(speed(s, "shaft"), WithinRel(6., 1e-11));
 }
 
+TEST_CASE("what is carried round while it weighs nothing hangs as soon as it weighs something") {
+  // From a bearing on a shaft that turns, which drags at it, and from one on the ground.
+  const double drag = 0.01, turning = 5, arm = 0.2;
+  const auto with_mass = [&](double mass) {
+    Mechanism m;
+    m.gravity = {0, -9.81, 0};
+    m.bodies = {body("shaft", 1, {0, 0, 0}, {0.01, 0.01, 0.01}), body("bob", mass, {0, -arm, 0})};
+    m.joints = {driven(revolute("drive", "ground", "shaft", {0, 0, 0}, {0, 0, 1}), turning),
+                dampened(revolute("on shaft", "shaft", "bob", {0, 0, 0.1}, {0, 0, 1}), drag),
+                revolute("on ground", "ground", "bob", {0, 0, -0.1}, {0, 0, 1})};
+    validate(m);
+    return m;
+  };
+  Analysis analysis(with_mass(0));
+  REQUIRE(analysis.solve().status == Status::converged);
+  for (const double mass : {1., 0.5, 0., 2.}) {
+    CAPTURE(mass);
+    analysis.update(with_mass(mass));
+    const Solution s = analysis.solve();
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    if (mass > 0)
+      CHECK_THAT(coordinate(s, "on ground").value,
+                 WithinAbs(std::asin(drag * turning / (mass * 9.81 * arm)), 1e-11));
+  }
+}
+
 TEST_CASE("two drives of a planetary set may begin alike, where the planet seems to stand", "[implied]") {
   const double apart = GENERATE(0., 1e-6, 1e-3, 5.);
   CAPTURE(apart);
