@@ -78,6 +78,14 @@ double value_at(const std::vector<double>& times, const std::vector<double>& val
   return values[i - 1] + part * (values[i] - values[i - 1]);
 }
 
+// For the last tenth of the run, so that what swings past is not taken for it.
+bool nearly_settled(const Run& run, const Settled& settled, const Solution& steady) {
+  constexpr double nearly = 0.02; // of a radian or the mechanism's size: a plot hardly shows it
+  if (settled.time || !(settled.distance < nearly)) return false;
+  const std::optional<double> since = find_settled(run, steady, nearly).time;
+  return since && *since < 0.9 * (run.time.back() - run.time.front());
+}
+
 } // namespace
 
 bool has_dampers(const Mechanism& mechanism) {
@@ -137,12 +145,7 @@ std::string settled_words(const Session& session) {
   const std::vector<double>& times = shown->run->time;
   const std::string after = " after " + short_text(times.back() - times.front(), 4) + " s: " + away;
   if (session.answer.solution.stable == false) return "Not settled, as the steady state is unstable;" + after;
-  // For the last tenth of the run, so that what swings past is not taken for it.
-  constexpr double nearly = 0.02; // of a radian or the mechanism's size: a plot hardly shows it
-  if (settled.distance < nearly && !computing_motion(session)) {
-    const std::optional<double> since = find_settled(*shown->run, session.answer.solution, nearly).time;
-    if (since && *since < 0.9 * (times.back() - times.front())) return "Nearly settled" + after;
-  }
+  if (session.motion.nearly_settled && !computing_motion(session)) return "Nearly settled" + after;
   return "Not settled" + after;
 }
 
@@ -265,6 +268,7 @@ void update_motion(Session& session) {
   if (!shown) {
     motion.poses.clear();
     motion.settled.reset();
+    motion.nearly_settled = false;
     motion.elsewhere.reset();
     motion.shown = {};
     return;
@@ -276,9 +280,11 @@ void update_motion(Session& session) {
     motion.poses = poses_at(run, session.playback.time);
   if (before.run != shown->run || before.answer != session.answer.ticket) {
     motion.settled.reset();
+    motion.nearly_settled = false;
     motion.elsewhere.reset();
     if (run.damped && converged(session) && !solving(session)) {
       motion.settled = find_settled(run, session.answer.solution);
+      motion.nearly_settled = nearly_settled(run, *motion.settled, session.answer.solution);
       if (shown->rests_in && runs_into(run, session.answer.solution, *shown->rests_in))
         motion.elsewhere = shown->rests_in;
     }

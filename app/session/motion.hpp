@@ -43,6 +43,7 @@ struct MotionState {
   std::array<MotionRun, 2> runs; // damped, undamped
   std::vector<Pose> poses;       // of the shown run at playback.time; empty: none
   std::optional<Settled> settled;
+  bool nearly_settled = false; // at the end, and for its last tenth, as near as a plot hardly shows
   std::shared_ptr<const Solution>
       elsewhere{}; // another steady state that the shown run runs into; null: none
   // What these two are of.

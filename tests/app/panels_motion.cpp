@@ -101,6 +101,11 @@ TEST_CASE("how near a motion has come is told in the units of the screen, and a 
   CHECK(settled_words(session) == told(180 / std::acos(-1), "°"));
   session.units.angle = AngleUnit::radian;
   CHECK(settled_words(session) == told(1, " rad"));
+  // Known from when the run came, not looked for at each frame.
+  CHECK(session.motion.nearly_settled);
+  session.motion.nearly_settled = false;
+  robot.frames(2);
+  CHECK_THAT(settled_words(session), Catch::Matchers::StartsWith("Not settled after 12 s: "));
   session.motion.duration = 1;
   restart_motion(session);
   robot.frames(3);
@@ -109,6 +114,7 @@ TEST_CASE("how near a motion has come is told in the units of the screen, and a 
   restart_motion(session);
   robot.frames(3);
   CHECK_THAT(settled_words(session), Catch::Matchers::StartsWith("Settled after "));
+  CHECK_FALSE(session.motion.nearly_settled);
 }
 
 TEST_CASE("a motion that settles in another steady state says in which, and shows it") {
