@@ -88,6 +88,8 @@ bool keys_are_wanted(const Panels& panels, const DialogState& dialog) {
 void act_on(App& app, const KeyPress& key) {
   // The first Escape gives the keys back to the view.
   if (key == KeyPress{keys::escape} && std::exchange(app.ui.keyboard.focus, {}).in_panel) return;
+  // The next one takes away what lies over the view.
+  if (key == KeyPress{keys::escape} && !std::exchange(app.session.problem, {}).empty()) return;
   for (const Command& command : commands())
     if (pressed(command, key) && app.commands.enabled(command)) {
       if (may_command(app.session, app.ui, key)) command.run(app);
