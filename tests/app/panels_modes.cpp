@@ -290,8 +290,27 @@ TEST_CASE("where there is little room the Campbell diagram has it, and critical 
   CHECK(plot.to.y - plot.from.y > 60); // its axes stand around it
   const auto& widgets = robot.app.ui.widgets;
   const auto row = widgets.find("campbell/critical/1");
-  if (row != widgets.end()) CHECK(row->second.from.y >= plot.to.y);
+  const bool below_list = row != widgets.end() && row->second.to.x <= plot.from.x;
+  if (row != widgets.end() && !below_list) CHECK(row->second.from.y >= plot.to.y);
   if (window.height == 900) CHECK(row != widgets.end());
+}
+
+TEST_CASE("the Campbell diagram has the width beside the list, below which critical speeds stand") {
+  Robot robot({1280, 720});
+  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
+  robot.frames(3);
+  robot.key('O');
+  robot.frames(5);
+  const WidgetRect plot = robot.widget("plot/campbell/area"), mode = robot.widget("modes/row/4"),
+                   speed = robot.widget("campbell/critical/1"), third = robot.widget("campbell/critical/3");
+  CHECK(plot.to.x - plot.from.x > 700);
+  CHECK(speed.to.x <= plot.from.x);
+  CHECK(speed.from.y >= mode.to.y);
+  CHECK(third.to.y <= 720);
+  robot.click("campbell/critical/1");
+  robot.frames(2);
+  CHECK(get_parameter(robot.app.session.mechanism(), "parameters.n") ==
+        Approx((*robot.app.panels->studies.shown().campbell.critical)[0].at));
 }
 
 TEST_CASE("only of the branch that is shown is it said where it has no modes") {

@@ -14,7 +14,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float padding = 5; // points, at either side of a cell
+constexpr float padding = 4; // points, at either side of a cell
 
 struct CriticalColumn {
   const char* title;
@@ -22,13 +22,13 @@ struct CriticalColumn {
   const char* help;
 };
 constexpr std::array columns{
-    CriticalColumn{"Line", 30, "So many oscillations a turn of the drive."},
-    CriticalColumn{"Mode", 100, "As the list numbers the modes at the present speed."},
-    CriticalColumn{"Whirl", 64, "Which way it goes round the drive's axis at that speed."},
-    CriticalColumn{"Unbalance", 68,
+    CriticalColumn{"Line", 28, "So many oscillations a turn of the drive."},
+    CriticalColumn{"Mode", 96, "As the list numbers the modes at the present speed."},
+    CriticalColumn{"Whirl", 60, "Which way it goes round the drive's axis at that speed."},
+    CriticalColumn{"Unbalance", 66,
                    "Whether an unbalance can excite it: that turns with the drive, once a turn, and does not "
                    "excite what goes round against it in circles."},
-    CriticalColumn{"Speed", 88, "A click on a row sets the drive to it."}};
+    CriticalColumn{"Speed", 84, "A click on a row sets the drive to it."}};
 
 std::string help_of(const CriticalSpeed& at, const std::string& name, const std::string& speed,
                     const ShownUnit& unit) {

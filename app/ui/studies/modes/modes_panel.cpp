@@ -22,7 +22,7 @@ namespace flyball {
 
 namespace {
 
-constexpr float list_width = 376;       // points
+constexpr float list_width = 392;       // points; the table of critical speeds fits into it
 constexpr double modes_patience = 0.25; // s: a shorter wait is not worth a bar
 constexpr ImGuiTableFlags table_flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                         ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
@@ -227,32 +227,66 @@ std::string without_modes(const Session& session) {
          "are those that unbalance excites. How far it swings with it, Response shows over the speed.";
 }
 
-void modes_list(Session& session, Ui& ui, const CommandRunner& commands) {
+float table_line(const Ui& ui) {
+  return ImGui::GetTextLineHeight() + 4 * ui.scale;
+}
+
+// How high the table of critical speeds is below a list of so many modes, where the diagram then has all the
+// width beside them; 0 where there is no room for some of its rows (pixels).
+float critical_height(const Session& session, const Ui& ui, const CampbellView& drawn, std::size_t modes,
+                      float foot) {
+  constexpr std::size_t fewest = 3; // rows
+  if (!session.study.modes.campbell.diagram.found || !drawn.critical || drawn.critical->empty()) return 0;
+  if (ImGui::GetContentRegionAvail().x < critical_table_width(ui)) return 0;
+  const float line = table_line(ui), gap = ImGui::GetStyle().ItemSpacing.y;
+  const std::size_t rows = drawn.critical->size();
+  const float room = ImGui::GetContentRegionAvail().y - line * static_cast<float>(1 + modes) - foot - 2 * gap;
+  if (room < line * static_cast<float>(1 + std::min(rows, fewest))) return 0;
+  return std::min(room, line * static_cast<float>(1 + rows));
+}
+
+// Returns whether the critical speeds are told below the list.
+bool modes_list(Session& session, Ui& ui, const CampbellView& drawn, const CommandRunner& commands) {
   ModesState& modes = session.study.modes;
   const UiColors& colors = colors_of(ui);
   auto& search = modes.list;
-  if (!search.problem.empty()) return paragraph(search.problem, colors.bad);
-  if (!converged(session)) return paragraph(without_modes(session), colors.dim);
+  if (!search.problem.empty()) {
+    paragraph(search.problem, colors.bad);
+    return false;
+  }
+  if (!converged(session)) {
+    paragraph(without_modes(session), colors.dim);
+    return false;
+  }
   const bool finding = search.running();
   if (finding && (!search.found || search.seconds() > modes_patience)) {
     if (text_button(ui, "modes/cancel", "Cancel")) search.stop();
     ImGui::SameLine();
     task_bar(ui, "modes/progress", search.progress(), search.seconds());
   }
-  if (!search.found) return;
+  if (!search.found) return false;
   const FoundModes& found = search.found->result;
   if (!modes_are_current(session) && !finding) {
     paragraph("Of the state before the last changes.", colors.warn);
     if (text_button(ui, "modes/again", "Find again", true)) find_modes_again(session);
   }
   verdict(session, ui, found);
-  if (found.modes.empty())
-    return paragraph(found.singular_loops ? std::string(singular_loops_message)
-                                          : "No coordinate is free to swing.",
-                     colors.dim);
+  if (found.modes.empty()) {
+    paragraph(found.singular_loops ? std::string(singular_loops_message) : "No coordinate is free to swing.",
+              colors.dim);
+    return false;
+  }
   const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * ui.scale;
-  list(session, ui, found, std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
+  const float critical = critical_height(session, ui, drawn, found.modes.size(), foot);
+  const float all = table_line(ui) * static_cast<float>(1 + found.modes.size());
+  list(session, ui, found,
+       critical > 0 ? all : std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
   transport(session, ui, commands);
+  if (critical <= 0) return false;
+  ImGui::SetCursorPosY(ImGui::GetWindowHeight() - critical);
+  critical_table(session, ui, *drawn.critical, drawn.unit,
+                 session.study.modes.campbell.diagram.found->of.drive, critical);
+  return true;
 }
 
 // Drive, range and unit, in one line.
@@ -332,17 +366,19 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   }
 }
 
-// Where the table of critical speeds is: beside the plot where there is room for both, else below it.
+// Where the table of critical speeds is if not below the list of modes: beside the plot where there is room
+// for both, else below it.
 struct CampbellPlaces {
   ImVec2 plot;     // pixels
   float below = 0; // pixels, of the table; 0: none there
 };
 
-CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive) {
+CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive,
+                             bool told) {
   constexpr float least_width = 360, least_height = 200; // points, of the plot with its legend
   constexpr std::size_t fewest = 1, most_below = 3;      // rows
   const ImVec2 before = ImGui::GetContentRegionAvail();
-  if (!drawn.critical) return {before};
+  if (!drawn.critical || told) return {before};
   const std::vector<CriticalRow>& rows = *drawn.critical;
   if (rows.empty()) {
     paragraph("No critical speed in this range.", colors_of(ui).dim);
@@ -350,7 +386,7 @@ CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn
     return {ImGui::GetContentRegionAvail()};
   }
   const float width = critical_table_width(ui), gap = 10 * ui.scale;
-  const float line = ImGui::GetTextLineHeight() + 4 * ui.scale;
+  const float line = table_line(ui);
   if (before.x >= width + gap + least_width * ui.scale) {
     const ImVec2 at = ImGui::GetCursorPos();
     ImGui::SetCursorPos({at.x + before.x - width, at.y});
@@ -367,7 +403,8 @@ CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn
   return {before};
 }
 
-void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
+// `told`: the critical speeds are, elsewhere.
+void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   CampbellState& campbell = session.study.modes.campbell;
   const UiColors& colors = colors_of(ui);
   const std::string drive = campbell_drive(session);
@@ -393,7 +430,7 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn) {
   }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
-  const CampbellPlaces places = show_critical(session, ui, drawn, diagram.found->of.drive);
+  const CampbellPlaces places = show_critical(session, ui, drawn, diagram.found->of.drive, told);
   const PlotEvents events = plot_view(session, ui, "campbell", drawn.view, drawn.plot,
                                       {std::max(places.plot.x, 40.f), std::max(places.plot.y, 40.f)});
   if (places.below > 0)
@@ -413,13 +450,13 @@ void modes_panel(Session& session, Ui& ui, CampbellView& drawn, const CommandRun
   const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
   ImGui::BeginChild("modes", {width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
-  modes_list(session, ui, commands);
+  const bool told = modes_list(session, ui, drawn, commands);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
   ImGui::BeginChild("campbell", {0, 0}, false,
                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  show_campbell(session, ui, drawn);
+  show_campbell(session, ui, drawn, told);
   ImGui::EndChild();
 }
 
