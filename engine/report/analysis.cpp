@@ -28,7 +28,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 namespace flyball {
 namespace {
@@ -293,6 +292,13 @@ struct Analysis::State {
                  : stability_at_constant_speed(*mechanism, system, at.found.z.q, out.coordinates);
   }
 
+  // Compiled for the numbers as they are now, which go on to vary; where that throws this stays as it is.
+  std::unique_ptr<State> compiled_anew() {
+    Analysis anew(mechanism);
+    anew.state_->varied = std::move(varied);
+    return std::move(anew.state_);
+  }
+
   void bind_numbers() {
     on_friction.reset();
     bind(system, *mechanism, parameters);
@@ -349,10 +355,10 @@ void Analysis::set(std::span<const double> values) {
   validate_numbers(*varied.mechanism);
   varied.dampers_before.swap(varied.dampers);
   find_dampers(*varied.mechanism, varied.dampers);
-  if (varied.dampers == varied.dampers_before) return s.bind_numbers();
-  std::optional<State::Varied> kept = std::move(s.varied);
-  *this = Analysis(s.mechanism);
-  state_->varied = std::move(kept);
+  if (varied.dampers == varied.dampers_before)
+    s.bind_numbers();
+  else
+    state_ = s.compiled_anew();
 }
 
 Solution Analysis::solve(const SolveOptions& options) {
@@ -372,16 +378,15 @@ Solution Analysis::solve(const SolveOptions& options) {
 
 bool Analysis::turn_otherwise() {
   State& s = *state_;
-  if (!std::exchange(s.moved, false) || s.system.drives.empty()) return false;
+  if (!s.moved || s.system.drives.empty()) return false;
+  bool otherwise = false;
   try {
-    if (same_choice(s.system, compile_for_drives(*s.mechanism))) return false;
-    std::optional<State::Varied> kept = std::move(s.varied);
-    *this = Analysis(s.mechanism);
-    state_->varied = std::move(kept);
-    return true;
-  } catch (const SceneError&) {
-    return false; // the loops are as they were, and why there is no state is told of them
+    otherwise = !same_choice(s.system, compile_for_drives(*s.mechanism));
+    if (otherwise) state_ = s.compiled_anew();
+  } catch (const SceneError&) { // the loops are as they were, and why there is no state is told of them
   }
+  state_->moved = false; // once for these numbers, unless it was interrupted
+  return otherwise;
 }
 
 Solution Analysis::solve_through(const SolveOptions& options) {
