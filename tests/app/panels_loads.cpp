@@ -329,6 +329,12 @@ TEST_CASE(
   robot.key('A');
   CHECK(loads_missing(app.session, app.tool, app.view).empty());
   CHECK(has_row(app, "Of this moment"));
+  CHECK_FALSE(has_row(app, "No free-body diagram"));
+  select(app.session, {{{PartKind::body, "rod1"}}});
+  robot.frames(2);
+  CHECK(has_row(app, "No free-body diagram"));
+  select(app.session, {});
+  robot.frames(2);
   const Run& run = *motion->motion;
   const auto check = [&](std::size_t sample) {
     app.session.playback.time = run.time[sample];

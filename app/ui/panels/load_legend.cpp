@@ -147,7 +147,13 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
             : "A click has them by the cube root, which shows small ones beside large ones (View).";
     rows.back().chooses = roots ? LoadLengths::in_proportion : LoadLengths::by_cube_root;
   }
-  if (rows.size() > before && shows_moment(context.session)) note("Of this moment; without inertial loads");
+  if (rows.size() == before || !shows_moment(context.session)) return;
+  note("Of this moment; without inertial loads");
+  if (context.session.selection().names(PartKind::body).size() == 1) {
+    note("No free-body diagram of a motion");
+    rows.back().help = "Inertial loads and the air are not kept along a motion: what acts on one body alone "
+                       "would not add up to zero.";
+  }
 }
 
 void draw_load_mark(const Ui& ui, const LegendRow& row, ImVec2 from, float height) {
