@@ -29,6 +29,15 @@ std::string names_of_drives(std::span<const std::string> drives) {
   return word_list(std::vector<std::string_view>(drives.begin(), drives.end()), "and");
 }
 
+// Where what no drive moves stands, as a start: a speed that is found is none where it is given.
+std::vector<std::pair<std::string, double>>
+places_of_free(const std::vector<CoordinateSolution>& coordinates) {
+  std::vector<std::pair<std::string, double>> out;
+  for (const CoordinateSolution& c : coordinates)
+    if (!c.driven && !c.dependent) out.emplace_back(coordinate_label(c), c.value);
+  return out;
+}
+
 // The mechanism with every drive by torque turning at a prescribed speed: that of the configuration q.
 Mechanism at_constant_speeds(const Mechanism& mechanism, const System& system, const Eigen::VectorXd& q) {
   Mechanism out = mechanism;
@@ -53,8 +62,7 @@ stability_at_constant_speed(const Mechanism& mechanism, const System& system, co
   if (std::ranges::all_of(system.torques, &DriveTorqueElement::implied)) return {};
   SolveOptions options;
   options.nearest = true;
-  for (const CoordinateSolution& c : coordinates)
-    if (!c.driven && !c.dependent) options.start.emplace_back(coordinate_label(c), c.value);
+  options.start = places_of_free(coordinates);
   Solution solution;
   try {
     solution = Analysis(at_constant_speeds(mechanism, system, q)).solve(options);
@@ -70,9 +78,6 @@ turned_stability_at_constant_speed(const Mechanism& mechanism, const Problem& pr
                                    const std::vector<CoordinateSolution>& coordinates) {
   const System& found = problem.system;
   if (std::ranges::all_of(found.torques, &DriveTorqueElement::implied)) return {};
-  std::vector<std::pair<std::string, double>> rest;
-  for (const CoordinateSolution& c : coordinates)
-    if (!c.driven && !c.dependent) rest.emplace_back(coordinate_label(c), c.value);
   try {
     const Mechanism driven = at_constant_speeds(mechanism, found, z.q);
     const System system = compile_for_drives(driven);
@@ -82,7 +87,7 @@ turned_stability_at_constant_speed(const Mechanism& mechanism, const Problem& pr
     set_scaling(system, parameters, scaling);
     Eigen::VectorXd q;
     drawn_configuration(system, parameters, q);
-    set_start(system, parameters, rest, q);
+    set_start(system, parameters, places_of_free(coordinates), q);
     TurnedState beside;
     beside.starts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.links.size()));
     bool finds = false; // the rates that loops and gears give, still
@@ -129,10 +134,7 @@ std::string missing_speed_message(const Mechanism& mechanism, const Problem& pro
   const Solution there = Analysis(at_constant_speeds(mechanism, system, q)).solve();
   if (there.status != Status::converged)
     return there.status == Status::not_converged ? "" : "At the speed it begins with: " + there.message;
-  std::vector<std::pair<std::string, double>> start;
-  for (const CoordinateSolution& c : there.coordinates)
-    if (!c.driven && !c.dependent) start.emplace_back(coordinate_label(c), c.value);
-  set_start(system, problem.parameters, start, q);
+  set_start(system, problem.parameters, places_of_free(there.coordinates), q);
   forward<double>(system, problem.parameters, q, 0, w.kinematics);
   std::string text;
   for (std::size_t i = 0; i < system.torques.size(); ++i) {
