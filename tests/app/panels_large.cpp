@@ -3,14 +3,13 @@
 #include "large_answer.hpp"
 #include "large_mechanisms.hpp"
 #include "robot.hpp"
+#include "session_wait.hpp"
 #include "tests/catch.hpp"
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdlib>
 #include <string_view>
-#include <thread>
 
 // Sanitizers bring allocation functions of their own; elsewhere there is no way in below malloc.
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -208,12 +207,8 @@ TEST_CASE("a view of thousands is a draft while it moves, and in full when it re
     robot.frames(1);
   };
   const auto rest = [](Robot& robot) {
-    for (int i = 0; i < 400 && robot.stage.resting(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      robot.frames(1);
-    }
+    CHECK(steps_until([&] { robot.frames(1); }, [&] { return !robot.stage.resting(); }));
     robot.frames(2);
-    CHECK_FALSE(robot.stage.resting());
     return robot.picture();
   };
   Robot robot({700, 500}), plain({700, 500});

@@ -1,6 +1,7 @@
 // Studies of a large mechanism are left while they compute: the window does not wait for them.
 #include "large_mechanisms.hpp"
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/live/worker.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -45,12 +46,7 @@ class Window {
   }
   template <class Until>
   void wait(const Until& until) {
-    const auto begin = Clock::now();
-    while (!until() && seconds_since(begin) < 120) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      frame();
-    }
-    REQUIRE(until());
+    REQUIRE(steps_until([&] { frame(); }, until));
   }
 
  private:

@@ -1,5 +1,6 @@
 // The map of two parameters, as a person uses it.
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/plot/csv.hpp"
 #include "app/session/map.hpp"
@@ -13,10 +14,8 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -326,11 +325,7 @@ TEST_CASE("a map in the background tells its progress, can be stopped, and goes 
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
   open_scene(app.session, shipped_file("governor"));
   const auto wait = [&](const auto& until) {
-    for (int i = 0; i < 3000 && !until(); ++i) {
-      update(app, 0.01, {400, 300});
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    REQUIRE(until());
+    REQUIRE(steps_until([&] { update(app, 0.01, {400, 300}); }, until));
   };
   wait([&] { return app.session.answer.ticket != 0; });
   app.session.study.map.choice.folds = false;

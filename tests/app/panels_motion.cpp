@@ -1,5 +1,6 @@
 // The damped motion beside the steady state, as a person uses it.
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/session/coordinate_words.hpp"
 #include "app/session/motion.hpp"
@@ -16,9 +17,7 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -410,11 +409,7 @@ TEST_CASE("while a motion is computed it is told how much of it there is") {
   Stage stage(app.ui, 1);
   open_scene(app.session, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
-    for (int i = 0; i < 3000 && !until(); ++i) {
-      stage.frame(app, wide, 0.01);
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    REQUIRE(until());
+    REQUIRE(steps_until([&] { stage.frame(app, wide, 0.01); }, until));
   };
   wait([&] { return app.session.answer.ticket != 0; });
   app.session.motion.duration = 1000;
@@ -503,13 +498,7 @@ TEST_CASE("the comparison tells how far it is, and is given up by a button") {
   app.session.options.mode = LiveSolver::Mode::background;
   robot.click("compare/run");
   auto& measured = app.session.study.compare.measured;
-  const auto wait = [&](const auto& until) {
-    for (int i = 0; i < 6000 && !until(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      robot.frames(1);
-    }
-    REQUIRE(until());
-  };
+  const auto wait = [&](const auto& until) { REQUIRE(steps_until([&] { robot.frames(1); }, until)); };
   CHECK(std::string(measured.progress().phase) == "direct solution");
   wait([&] { return measured.progress().part > 0; });
   CHECK(std::string(measured.progress().phase) == "measuring motions");

@@ -4,11 +4,9 @@
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/file.hpp"
 #include "robot.hpp"
+#include "session_wait.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
-
-#include <chrono>
-#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -60,13 +58,7 @@ TEST_CASE("a report that takes long is told of while it is written, and given up
   app.session.options.mode = LiveSolver::Mode::background;
   app.export_request = ExportRequest{.file = file, .width = 160, .height = 100, .report = true};
   export_picture(app, robot.size);
-  const auto wait = [&](const auto& until) {
-    for (int i = 0; i < 6000 && !until(); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      robot.frames(1);
-    }
-    REQUIRE(until());
-  };
+  const auto wait = [&](const auto& until) { REQUIRE(steps_until([&] { robot.frames(1); }, until)); };
   wait([&] { return app.ui.widgets.contains("banner/report/cancel"); });
   CHECK(next_progress(app) < 1);
   robot.click("banner/report/cancel");

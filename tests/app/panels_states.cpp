@@ -1,5 +1,6 @@
 // All equilibria of a mechanism in the window, as a person uses the list.
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/session/states.hpp"
 #include "app/ui/studies/study_panels.hpp"
@@ -131,11 +132,7 @@ TEST_CASE("a search in the background can be stopped, and what was found before 
   App app({.mode = LiveSolver::Mode::background, .on_news = {}, .scenes = {}, .numbers = {}});
   open_scene(app.session, shipped_file("chain20"));
   const auto wait = [&](const auto& until) {
-    for (int i = 0; i < 3000 && !until(); ++i) {
-      update(app, 0.01, {400, 300});
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    REQUIRE(until());
+    REQUIRE(steps_until([&] { update(app, 0.01, {400, 300}); }, until));
   };
   wait([&] { return app.session.answer.ticket != 0; });
   open_study(app.session, StudyKind::states);

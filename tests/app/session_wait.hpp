@@ -1,4 +1,4 @@
-// Waiting for what a session finds in the background.
+// Waiting for what is found in the background.
 #pragma once
 
 #include "app/session/session.hpp"
@@ -8,15 +8,21 @@
 
 namespace flyball::test {
 
-// Updates it until something is so; false where it is not within a minute.
-template <class Done>
-bool wait_until(Session& session, const Done& done) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+// Takes steps, as frames of a window, until something is so; false where it is not within two minutes.
+template <class Step, class Done>
+bool steps_until(const Step& step, const Done& done) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   while (!done() && std::chrono::steady_clock::now() < end) {
-    update(session, 0.01);
+    step();
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return done();
+}
+
+// The same, updating the session.
+template <class Done>
+bool wait_until(Session& session, const Done& done) {
+  return steps_until([&] { update(session, 0.01); }, done);
 }
 
 } // namespace flyball::test
