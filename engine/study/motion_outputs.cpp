@@ -111,8 +111,10 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
       out = {last, changed, wide};
       straight = (bend.array().abs() <= wide.array() / 2).all();
     } else {
+      // Over the longer steps there may be a kink, the edge of a stop near by: two that differ by far more
+      // than either tells are not of one curve, and the shorter ones are beside it.
       for (Eigen::Index i = 0; i < last.size(); ++i)
-        if (changed[i] < out.error[i]) {
+        if (changed[i] < out.error[i] || std::abs(last[i] - out.value[i]) > 8 * (changed[i] + out.error[i])) {
           out.value[i] = last[i];
           out.error[i] = changed[i];
         }
@@ -123,10 +125,21 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
     out.kink.setZero();
     return out;
   }
+  // A kink's is the same over each of them. Where it falls with the step, and rises again by rounding, it may
+  // be as large over the longest as over the shortest, but not between; and all of it is rounding where as
+  // much is left over steps within which nothing bends.
+  difference(steps[1]);
+  const Eigen::VectorXd between = bend.cwiseAbs();
+  Eigen::VectorXd rounding = Eigen::VectorXd::Zero(bend.size()); // over the last of the steps
+  for (const double h : {3e-8, 2e-8, 1e-8}) {
+    difference(h);
+    rounding = rounding.cwiseMax(bend.cwiseAbs() * (h / steps[2]));
+  }
   difference(steps[2]);
   for (Eigen::Index i = 0; i < bend.size(); ++i) {
     const double near = std::abs(bend[i]), far = out.kink[i];
-    if (!(near > far / 4 && near < 4 * far)) out.kink[i] = 0;
+    const bool same = near > far / 4 && near < 4 * far && between[i] > near / 1.6 && between[i] < 1.6 * near;
+    if (!same || near < 16 * rounding[i]) out.kink[i] = 0;
   }
   return out;
 }

@@ -11,6 +11,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -421,4 +422,41 @@ TEST_CASE("long chains have the linear models that their speed and torque ask fo
       linear_model(with_torque(m, "6 N m - 2 N m s * rate(spin)"), {"torque(spin)"}, {"rate(spin)"});
   REQUIRE(by_torque.gain);
   CHECK((*by_torque.gain)(0, 0) == Approx(0.5).epsilon(1e-9));
+}
+
+TEST_CASE("rounding in reactions of a long chain is no kink", "[linear-model]") {
+  constexpr int links = 150;
+  constexpr double length = 0.1;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  std::vector<double> borne(links + 1, 0.); // kg, by the joints
+  std::string before = "ground";
+  for (int i = 0; i < links; ++i) {
+    const std::string number = std::to_string(i);
+    m.bodies.push_back(
+        body("b" + number, 0.1 + 0.15 * (i % 7), {0, -(i + 0.5) * length, 0}, {1e-4, 1e-4, 1e-4}));
+    m.joints.push_back(revolute("j" + number, before, "b" + number, {0, -i * length, 0}, {0, 0, 1}));
+    if (i % 3 == 0)
+      m.joints.back() =
+          sprung(m.joints.back(), std::array{1., 100., 1e4}[i % 4 % 3], i % 2 != 0 ? 0.3 : -0.2);
+    before = "b" + number;
+  }
+  for (std::size_t i = links; i-- > 0;)
+    borne[i] = borne[i + 1] + m.bodies[i].mass;
+  validate(m);
+  const LinearModel model = linear_model(
+      m, {"gravity.1"}, {"reaction_y(j0)", "reaction_x(j75)", "reaction_y(j75)", "moment_z(j0)"});
+  REQUIRE(model.gain);
+  const auto gain = [&](Eigen::Index i) { return (*model.gain)(i, 0); };
+  CHECK(gain(0) == Approx(-borne[0]).epsilon(1e-6));
+  CHECK(std::abs(gain(1)) < 1e-6 * borne[75]);
+  CHECK(gain(2) == Approx(-borne[75]).epsilon(1e-6));
+  // Of the spring there, 1 N m/rad, whose angle gravity changes a little.
+  const auto angle = [&](double gravity) {
+    Mechanism other = m;
+    other.gravity.y() = gravity;
+    const Solution steady = Analysis(other).solve();
+    return std::ranges::find(steady.coordinates, "j0", &CoordinateSolution::joint)->value;
+  };
+  CHECK(gain(3) == Approx(-(angle(-9.7) - angle(-9.9)) / 0.2).margin(1e-4));
 }
