@@ -232,8 +232,8 @@ float common_area(const PanelRect& a, ImVec2 from, ImVec2 size) {
 }
 
 // Beside the point, rather on the side where less of the mechanism is, and within the view, beside the tools
-// and above what is written at its foot; in a corner of it where the card would lie on the bodies that are
-// joined, or on the legend.
+// and above what is written at its foot; below the legend, on the other side or in a corner where the card
+// would lie on that or on the bodies that are joined.
 void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size) {
   const float s = context.ui.scale, gap = 28 * s, least_gap = 14 * s, edge = 8 * s;
   const PanelRect& rect = input.rect;
@@ -251,9 +251,11 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
   from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, top, foot);
   std::vector<PanelRect> covered = covered_by_bodies(context, input);
+  ImVec2 below = from; // the legend
   if (const auto legend = widgets.find("legend frame"); legend != widgets.end()) {
     const auto& [upper, lower] = legend->second;
     covered.push_back({upper.x, upper.y, lower.x - upper.x, lower.y - upper.y});
+    below.y = std::clamp(std::max(from.y, lower.y + edge), top, foot);
   }
   const auto hidden = [&](ImVec2 place) {
     float area = 0;
@@ -262,7 +264,7 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
     return area;
   };
   const float other = std::clamp(to_left ? right : left, least, std::max(least, most));
-  for (const ImVec2 place : {ImVec2(other, from.y), ImVec2(std::max(least, most), foot),
+  for (const ImVec2 place : {below, ImVec2(other, from.y), ImVec2(std::max(least, most), foot),
                              ImVec2(std::max(least, most), top), ImVec2(least, foot), ImVec2(least, top)})
     if (hidden(place) < 0.8f * hidden(from)) from = place;
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
