@@ -150,6 +150,8 @@ struct Analysis::State {
   AngleTies ties;       // of such
   // Of the last solve's answer where that rests on dry friction: it is not among the states of this system.
   std::optional<Analysis> on_friction;
+  // Where the numbers as they are now make something else turn: as it was compiled for those before them.
+  std::unique_ptr<State> before;
 
   // How the steady state moves with the sliders' numbers.
   void add_rates(const Problem& problem, Solution& out) {
@@ -299,6 +301,15 @@ struct Analysis::State {
     return std::move(anew.state_);
   }
 
+  // To what was compiled before; numbers are to be bound.
+  static void go_back(std::unique_ptr<State>& state) {
+    if (!state->before) return;
+    std::unique_ptr<State> first = std::move(state->before);
+    first->mechanism = std::move(state->mechanism);
+    first->varied = std::move(state->varied);
+    state = std::move(first);
+  }
+
   void bind_numbers() {
     on_friction.reset();
     bind(system, *mechanism, parameters);
@@ -347,6 +358,7 @@ void Analysis::vary(std::span<const std::string> addresses) {
 }
 
 void Analysis::set(std::span<const double> values) {
+  State::go_back(state_); // so that no point depends on those before it
   State& s = *state_;
   State::Varied& varied = *s.varied;
   s.settled = false;
@@ -364,10 +376,14 @@ void Analysis::set(std::span<const double> values) {
 Solution Analysis::solve(const SolveOptions& options) {
   const Interruptible scope(options.cancel);
   try {
+    const bool as_drawn = !options.nearest && !options.newton_only;
+    if (state_->before && as_drawn && options.start.empty()) turn_otherwise(); // or as it was again
     Solution out = solve_through(options);
-    const bool cancelled = options.cancel && *options.cancel;
-    if (out.status == Status::converged || cancelled || options.nearest || options.newton_only) return out;
-    return turn_otherwise() ? solve_through(options) : out;
+    if (out.status == Status::converged || is_cancelled(options.cancel) || !as_drawn || !turn_otherwise())
+      return out;
+    SolveOptions anew = options;
+    anew.start.clear(); // of coordinates that may be others now
+    return solve_through(anew);
   } catch (const Interrupted&) {
     state_->settled = false;
     Solution cancelled;
@@ -381,8 +397,16 @@ bool Analysis::turn_otherwise() {
   if (!s.moved || s.system.drives.empty()) return false;
   bool otherwise = false;
   try {
-    otherwise = !same_choice(s.system, compile_for_drives(*s.mechanism));
-    if (otherwise) state_ = s.compiled_anew();
+    const System own = compile_for_drives(*s.mechanism);
+    otherwise = !same_choice(s.system, own);
+    if (otherwise && s.before && same_choice(s.before->system, own)) {
+      State::go_back(state_);
+      state_->bind_numbers();
+    } else if (otherwise) {
+      std::unique_ptr<State> anew = s.compiled_anew();
+      anew->before = std::move(s.before ? s.before : state_);
+      state_ = std::move(anew);
+    }
   } catch (const SceneError&) { // the loops are as they were, and why there is no state is told of them
   }
   state_->moved = false; // once for these numbers, unless it was interrupted

@@ -253,6 +253,54 @@ TEST_CASE("what is carried round while it weighs nothing hangs as soon as it wei
   }
 }
 
+TEST_CASE("numbers that make something turn for a while leave no trace in the answers after them") {
+  // Two shafts turn against each other and drag at a pendulum, which turns with them while it weighs nothing.
+  const double speed_of_shafts = 5, left = 0.1, right = 0.2, arm = 0.2;
+  const auto with_mass = [&](double mass) {
+    Mechanism m;
+    m.gravity = {0, -9.81, 0};
+    m.bodies = {body("left", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("right", 1, {0, 0, 1}, {0.1, 0.1, 0.1}),
+                body("bob", mass, {0, -arm, 0.5})};
+    m.joints = {driven(revolute("left", "ground", "left", {0, 0, 0}, {0, 0, 1}), speed_of_shafts),
+                driven(revolute("right", "ground", "right", {0, 0, 1}, {0, 0, 1}), -speed_of_shafts),
+                revolute("hang", "ground", "bob", {0, 0, 0.5}, {0, 0, 1}),
+                dampened(revolute("on left", "left", "bob", {0, 0, 0.2}, {0, 0, 1}), left),
+                dampened(revolute("on right", "right", "bob", {0, 0, 0.8}, {0, 0, 1}), right)};
+    validate(m);
+    return m;
+  };
+  const double moment = (left - right) * speed_of_shafts;
+  const auto check = [&](const Solution& s, double mass) {
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK_FALSE(s.turned);
+    if (mass > 0)
+      CHECK_THAT(coordinate(s, "hang").value, WithinAbs(std::asin(moment / (mass * 9.81 * arm)), 1e-11));
+    else
+      CHECK_THAT(speed(s, "hang"), WithinRel(moment / (left + right), 1e-11));
+  };
+  const std::vector<double> masses{1, 0, 0.5, 0, 0, 2, 1};
+  SECTION("as in the window") {
+    Analysis analysis(with_mass(1));
+    for (const double mass : masses) {
+      CAPTURE(mass);
+      analysis.update(with_mass(mass));
+      SolveOptions warm;
+      warm.warm = true;
+      check(analysis.solve(warm), mass);
+    }
+  }
+  SECTION("as in a sweep") {
+    Analysis analysis(with_mass(1));
+    analysis.vary(std::vector<std::string>{"bodies.bob.mass"});
+    for (const double mass : masses) {
+      CAPTURE(mass);
+      analysis.set(std::vector{mass});
+      check(analysis.solve(), mass);
+    }
+  }
+}
+
 TEST_CASE("two drives of a planetary set may begin alike, where the planet seems to stand", "[implied]") {
   const double apart = GENERATE(0., 1e-6, 1e-3, 5.);
   CAPTURE(apart);
