@@ -36,7 +36,7 @@ class Closing {
 } // namespace
 
 LocalMotion::LocalMotion(const MotionModel& model, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
-                         double rate)
+                         double rate, bool with_angles)
     : model_(model), equations_(model, watch_), origin_(q), speed_(u), rate_(rate) {
   equations_.analyse(0, origin_, speed_);
   if (equations_.has_massless())
@@ -64,6 +64,16 @@ LocalMotion::LocalMotion(const MotionModel& model, const Eigen::VectorXd& q, con
   positions_ = basis * standing;
   rates_.resize(system.nv, positions_.cols() + turning_.cols());
   rates_ << positions_, turning_;
+  standing_ = positions_.cols();
+  way_ = turning_.rowwise().sum() + kept_.rowwise().sum();
+  if (with_angles) {
+    const Eigen::VectorXd way = turning_.transpose() * speed_.cwiseQuotient(model.scaling.column);
+    const auto across = way.norm() > 0 ? orthonormal_completion(way.normalized()) : std::nullopt;
+    if (!across) throw SceneError("", "what turns at speeds that are found cannot be told from what stands");
+    positions_.conservativeResize(Eigen::NoChange, standing_ + way.size() - 1);
+    positions_.rightCols(way.size() - 1) = turning_ * across->rightCols(way.size() - 1);
+    way_ = turning_ * way.normalized();
+  }
 
   all_q_.resize(model.released.nq);
   all_u_.resize(model.released.nv);
@@ -92,7 +102,7 @@ bool LocalMotion::close_position(const Eigen::VectorXd& y, double t, double turn
     retract<double>(model_.system, turned_, q_);
   };
   theta_ = positions_ * y;
-  if (turn != 0) theta_ += turn * (turning_.rowwise().sum() + kept_.rowwise().sum());
+  if (turn != 0) theta_ += turn * way_;
   set();
   if (model_.system.rows == 0) return true;
   Closing closing;
@@ -156,8 +166,7 @@ bool LocalMotion::evaluate(const Eigen::VectorXd& x, double t, double turn, Eige
 }
 
 Eigen::VectorXcd LocalMotion::amplitudes(const Eigen::VectorXcd& x) const {
-  const Eigen::Index k = positions_.cols();
-  Eigen::VectorXcd scaled = positions_.cast<std::complex<double>>() * x.head(k);
+  Eigen::VectorXcd scaled = positions_.leftCols(standing_).cast<std::complex<double>>() * x.head(standing_);
   scaled += turning_.cast<std::complex<double>>() * x.tail(turning_.cols()) / std::complex<double>(0, 1);
   return scaled.cwiseProduct(model_.scaling.column.cast<std::complex<double>>());
 }

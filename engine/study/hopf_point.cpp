@@ -5,11 +5,13 @@
 #include "engine/dynamics/local_motion.hpp"
 #include "engine/dynamics/start.hpp"
 #include "engine/kkt/tied_angles.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/study/lyapunov.hpp"
 #include "engine/system/drive_rates.hpp"
+#include "engine/system/kept_momentum.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,8 +43,7 @@ void expect_one_motion(LocalMotion& motion, const Eigen::VectorXcd& swing,
       throw NoCoefficient{"the motion beside it turns with the drives"};
 }
 
-// Whether the angle of something that turns at a speed that is found matters, of which LocalMotion knows
-// nothing.
+// Whether the angle of something that turns at a speed that is found matters.
 bool angles_matter(const Mechanism& mechanism, const ResponsePoint& at) {
   const System system = compile_for_drives(mechanism);
   if (system.torques.empty()) return false;
@@ -58,6 +59,25 @@ bool angles_matter(const Mechanism& mechanism, const ResponsePoint& at) {
   Workspace w;
   evaluate_with_multipliers(problem, z, w);
   return loops_tie_angles(problem, w.kinematics) || !phase_stiffness(problem, z, w).entries.empty();
+}
+
+// Each of the angles between what turns at found speeds must matter: one that does not is a phase of its own.
+void expect_angles_tied(LocalMotion& motion) {
+  constexpr double step = 1e-3, least = 1e-6; // rad; of the largest of their singular values
+  Eigen::MatrixXd slopes(motion.size(), motion.angles());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(motion.size()), forth, back;
+  for (Eigen::Index i = 0; i < slopes.cols(); ++i) {
+    double& angle = x[motion.first_angle() + i];
+    angle = step;
+    const bool known = motion.evaluate(x, forth);
+    angle = -step;
+    if (!known || !motion.evaluate(x, back)) throw NoCoefficient{"the motion beside it cannot be evaluated"};
+    angle = 0;
+    slopes.col(i) = (forth - back) / (2 * step);
+  }
+  const auto singular = singular_values(slopes);
+  if (slopes.cols() == 0 || !singular || !(singular->minCoeff() > least * singular->maxCoeff()))
+    throw NoCoefficient{"it is looked for where all of what turns at speeds that are found is tied together"};
 }
 
 struct Amplitude {
@@ -110,10 +130,10 @@ void find_coefficient(const Mechanism& mechanism, const ResponsePoint& at, doubl
     throw NoCoefficient{"the motion beside it turns with the drives"};
   if (has_friction(mechanism)) throw NoCoefficient{"dry friction holds small motions"};
   if (!(frequency > 0)) throw NoCoefficient{"no pair of eigenvalues swings"};
-  if (angles_matter(mechanism, at))
-    throw NoCoefficient{
-        "it is looked for without the angles of what turns at speeds that are found, which matter"};
+  const bool with_angles = angles_matter(mechanism, at);
   MotionModel model = make_motion_model(mechanism, true);
+  if (with_angles && keeps_momentum(model.system))
+    throw NoCoefficient{"it is looked for without the angles of what keeps its momentum, which matter"};
   if (model.system.nv > most_coordinates)
     throw NoCoefficient{"it is looked for up to " + std::to_string(most_coordinates) + " coordinates"};
   SimulationOptions start;
@@ -122,7 +142,8 @@ void find_coefficient(const Mechanism& mechanism, const ResponsePoint& at, doubl
     if (!c.dependent) start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
   Eigen::VectorXd q, u;
   find_start(start, model, q, u);
-  LocalMotion motion(model, q, u, frequency);
+  LocalMotion motion(model, q, u, frequency, with_angles);
+  if (with_angles) expect_angles_tied(motion);
   const auto found = first_lyapunov_coefficient(
       [&](const Eigen::VectorXd& x, Eigen::VectorXd& rate) { return motion.evaluate(x, rate); },
       motion.size(), frequency);

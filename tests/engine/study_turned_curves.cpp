@@ -5,6 +5,7 @@
 #include "engine/report/analysis.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/hopf_curve.hpp"
+#include "engine/study/lyapunov.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/coupled_shafts.hpp"
 #include "tests/engine/torque_parts.hpp"
@@ -177,13 +178,34 @@ TEST_CASE("where a load that eggs itself on makes two coupled shafts hunt", "[ph
   CHECK(points.size() > 10);
   CHECK_THAT(points.front().y, WithinAbs(0.05, 1e-12));
   CHECK_THAT(points.back().y, WithinAbs(0.05, 1e-12));
+  bool soft = false, hard = false;
   for (const PlanePoint& p : points) {
     CAPTURE(p.x, p.y);
     const auto [left, frequency] = routh(p.x, p.y);
     CHECK(std::abs(left) < 1e-8);
     REQUIRE(p.hopf);
     CHECK_THAT(p.hopf->frequency, WithinRel(frequency, 1e-6));
-    CHECK(p.hopf->loss() == HopfLoss::undecided); // the motion beside it is told without its angles
-    CHECK_THAT(p.hopf->reason, ContainsSubstring("without the angles"));
+    // By hand, with the twist and the two speeds beside the state.
+    const double w = speed_at(p.x);
+    const auto motion = [&](const Eigen::VectorXd& at, Eigen::VectorXd& rate) {
+      const double a = w + at[1], b = w + at[2],
+                   twist = (p.x * w - 4 - 0.002 * w * w * w) / stiffness + at[0],
+                   tie = stiffness * twist + p.y * (b - a);
+      rate.resize(3);
+      rate << b - a, (5 - drag * a + tie) / first, (-4 + p.x * b - 0.002 * b * b * b - tie) / second;
+      return true;
+    };
+    const auto expected = first_lyapunov_coefficient(motion, 3, frequency);
+    REQUIRE(expected);
+    const HopfPoint::Coordinate& unit = p.hopf->coordinate;
+    const double swings = unit.joint == "c" ? std::abs(expected->q[0]) // rad
+                                            : std::abs(expected->q[unit.joint == "p" ? 1 : 2]) / frequency;
+    CAPTURE(unit.joint);
+    REQUIRE(p.hopf->lyapunov);
+    CHECK_THAT(*p.hopf->lyapunov, WithinRel(expected->value / (4 * swings * swings), 1e-5));
+    soft = soft || p.hopf->loss() == HopfLoss::soft;
+    hard = hard || p.hopf->loss() == HopfLoss::hard;
   }
+  CHECK(soft);
+  CHECK(hard);
 }
