@@ -24,7 +24,7 @@ fs::path list_file(const fs::path& state_folder) {
 std::vector<fs::path> read_recent_files(const fs::path& state_folder) {
   std::vector<fs::path> files;
   std::error_code ignored;
-  if (!fs::exists(list_file(state_folder), ignored)) return files;
+  if (!fs::is_regular_file(list_file(state_folder), ignored)) return files;
   try {
     const json list = json::parse(read_bytes(list_file(state_folder)), nullptr, false);
     if (!list.is_array()) return files;
@@ -53,7 +53,7 @@ std::vector<fs::path> add_recent_file(const fs::path& state_folder, const fs::pa
   try {
     fs::create_directories(state_folder, ignored);
     // A name that is not UTF-8 is kept as one that does not exist.
-    write_bytes(list_file(state_folder), list.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    replace_file(list_file(state_folder), list.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
   } catch (const SceneError&) { // the list is a convenience, no reason to disturb anybody
   }
   return files;

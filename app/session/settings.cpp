@@ -96,7 +96,7 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
   std::error_code ignored;
   fs::create_directories(state_folder, ignored);
   try {
-    write_bytes(file_in(state_folder), file.dump(1) + "\n");
+    replace_file(file_in(state_folder), file.dump(1) + "\n");
   } catch (const SceneError&) { // a convenience, no reason to disturb anybody
   }
 }

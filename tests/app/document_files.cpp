@@ -17,7 +17,10 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <fcntl.h>
 #include <fstream>
+#include <future>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -94,6 +97,22 @@ TEST_CASE("recent files are kept, the newest first, without those that are gone"
   std::ofstream(state / "recent.json") << "not a list";
   CHECK(read_recent_files(state).empty());
   CHECK(add_recent_file(state, files[3]).size() == 1);
+}
+
+TEST_CASE("a pipe in the place of the recent files is not waited for") {
+  const TemporaryFolder folder;
+  const fs::path state = folder / "state", file = folder / "scene.json";
+  std::ofstream(file) << "{}";
+  fs::create_directories(state);
+  REQUIRE(::mkfifo((state / "recent.json").c_str(), 0600) == 0);
+  auto added = std::async(std::launch::async, [&] {
+    const bool none = read_recent_files(state).empty();
+    return none ? add_recent_file(state, file) : std::vector<fs::path>();
+  });
+  CHECK(added.wait_for(std::chrono::seconds(5)) == std::future_status::ready);
+  while (added.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready) // lets it go
+    ::close(::open((state / "recent.json").c_str(), O_RDWR | O_NONBLOCK));
+  CHECK(added.get() == std::vector<fs::path>{file});
 }
 
 TEST_CASE("ways to one file are told to be the same") {
