@@ -464,3 +464,30 @@ TEST_CASE("a rotor without places has the same eigenvalues whatever its size", "
     }
   }
 }
+
+TEST_CASE("the size of the force of a stiff bearing moves with the load as its closed form does",
+          "[bearings][measures]") {
+  // F = sqrt(P^2 + (m g)^2), however stiff the film. A step by which differences are taken presses it by far
+  // more than the load does.
+  const double mass = 12, side = 30, weight = mass * standard_gravity, size = std::hypot(side, weight);
+  for (const double k : {1e4, 1e7, 1e9}) {
+    INFO(k);
+    Mechanism m = jeffcott(mass, {k, 0, 0, k}, {1e3, 0, 0, 1e3});
+    m.gravity = {0, -standard_gravity, 0};
+    Force push;
+    push.name = "push";
+    push.type = ForceType::force;
+    push.body = "disc";
+    push.at = {0, 0, 0};
+    push.vector = {side, 0, 0};
+    m.forces.push_back(push);
+    m.measures = {{"load", "", "force(bearing)", "N"}};
+    m.sliders = {{"forces.push.vector.0", 0, 100, SliderScale::linear, ""},
+                 {"bodies.disc.mass", 1, 20, SliderScale::linear, ""}};
+    const Solution s = solved(m);
+    CHECK_THAT(*s.measures[0].value, WithinRel(size, 1e-9));
+    REQUIRE(s.sensitivities.size() == 2);
+    CHECK_THAT(s.sensitivities[0].measures.at(0), WithinRel(side / size, 1e-6));
+    CHECK_THAT(s.sensitivities[1].measures.at(0), WithinRel(weight * standard_gravity / size, 1e-6));
+  }
+}
