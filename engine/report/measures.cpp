@@ -356,11 +356,17 @@ void MeasureSet::estimate_errors(const Problem& problem, const Unknowns& z, cons
 
 bool MeasureSet::has_pole(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& error,
                           std::size_t measure, double value, Workspace& elsewhere) {
+  // On and on, which the rounding of what vanishes does not do.
   for (const double side : {1., -1.}) {
-    Eigen::VectorXd beside = q;
-    retract<double>(problem.system, side * error, beside);
-    const double there = evaluate_at(problem, beside, elsewhere)[static_cast<Eigen::Index>(measure)];
-    if (!(std::abs(there) < 0.5 * std::abs(value))) return false;
+    double before = std::abs(value);
+    for (const double far : {1., 16., 256.}) {
+      Eigen::VectorXd beside = q;
+      retract<double>(problem.system, side * far * error, beside);
+      const double there =
+          std::abs(evaluate_at(problem, beside, elsewhere)[static_cast<Eigen::Index>(measure)]);
+      if (!(there < 0.5 * before)) return false;
+      before = there;
+    }
   }
   return true;
 }
