@@ -114,7 +114,13 @@ TEST_CASE("Session: the Campbell diagram follows what friction holds") {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double w = diagram.response.branches[0].points[i].parameter;
     CAPTURE(w);
-    REQUIRE(points[i].modes.size() == 1);
-    CHECK(points[i].modes[0].frequency == Approx(std::sqrt(400 - w * w)).epsilon(1e-9));
+    int named = 0; // the others do not swing
+    for (std::size_t l = 0; l < points[i].lines.size(); ++l) {
+      const VibrationMode* mode = points[i].on(l);
+      if (!mode || diagram.branches[0].names[l].empty()) continue;
+      ++named;
+      CHECK(mode->frequency == Approx(std::sqrt(400 - w * w)).epsilon(1e-9));
+    }
+    CHECK(named == 1);
   }
 }
