@@ -480,7 +480,6 @@ TEST_CASE("the comparison stops after the time that is typed, and keeps what it 
   CHECK_FALSE(c.complete);
   CHECK(c.message == "The time limit of 0.05 s was reached before all was measured.");
   CHECK(app.session.study.compare.measured.found->run_time < 5);
-  CHECK_FALSE(c.reference.empty());
   // None is no limit.
   robot.frames(60);
   robot.click("compare/time_limit");
@@ -499,7 +498,6 @@ TEST_CASE("the comparison tells how far it is, and is given up by a button") {
   robot.click("compare/run");
   auto& measured = app.session.study.compare.measured;
   const auto wait = [&](const auto& until) { REQUIRE(steps_until([&] { robot.frames(1); }, until)); };
-  CHECK(std::string(measured.progress().phase) == "direct solution");
   wait([&] { return measured.progress().part > 0; });
   CHECK(std::string(measured.progress().phase) == "measuring motions");
   CHECK(robot.app.ui.widgets.contains("compare/progress"));
