@@ -170,7 +170,7 @@ std::string largest_movement(const Session& session, const VibrationMode& mode) 
          (unit.text == "°" ? "" : " ") + unit.text;
 }
 
-std::string speed_words(const VibrationMode& mode) {
+std::string slowing_words(const VibrationMode& mode) {
   const std::optional<double> slower = shown_slower(mode);
   if (!slower) return "Shown swaying: no swing";
   if (*slower == 1) return "As fast as it is";
@@ -207,7 +207,7 @@ void transport(Session& session, Ui& ui, const CommandRunner& commands) {
   ImGui::BeginGroup();
   clipped_text(largest_movement(session, *mode), ImGui::GetContentRegionAvail().x);
   ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);
-  clipped_text(speed_words(*mode), ImGui::GetContentRegionAvail().x);
+  clipped_text(slowing_words(*mode), ImGui::GetContentRegionAvail().x);
   ImGui::PopStyleColor();
   ImGui::EndGroup();
   note_widget(ui.widgets, "modes/speed");
