@@ -131,7 +131,7 @@ struct Analysis::State {
   struct Varied {
     std::shared_ptr<Mechanism> mechanism;
     VariedNumbers numbers;
-    std::vector<bool> dampers, dampers_before;
+    std::vector<bool> dampers, dampers_now; // that the system is compiled with, and of the numbers set
   };
 
   std::shared_ptr<const Mechanism> mechanism;
@@ -365,12 +365,12 @@ void Analysis::set(std::span<const double> values) {
   s.moved = true;
   varied.numbers.set(values);
   validate_numbers(*varied.mechanism);
-  varied.dampers_before.swap(varied.dampers);
-  find_dampers(*varied.mechanism, varied.dampers);
-  if (varied.dampers == varied.dampers_before)
-    s.bind_numbers();
-  else
-    state_ = s.compiled_anew();
+  find_dampers(*varied.mechanism, varied.dampers_now);
+  if (varied.dampers_now == varied.dampers) return s.bind_numbers();
+  // Where this throws, the system and what is told of its dampers stay together.
+  std::unique_ptr<State> anew = s.compiled_anew();
+  anew->varied->dampers.swap(anew->varied->dampers_now);
+  state_ = std::move(anew);
 }
 
 Solution Analysis::solve(const SolveOptions& options) {
