@@ -111,10 +111,8 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
       out = {last, changed, wide};
       straight = (bend.array().abs() <= wide.array() / 2).all();
     } else {
-      // Over the longer steps there may be a kink, the edge of a stop near by: two that differ by far more
-      // than either tells are not of one curve, and the shorter ones are beside it.
       for (Eigen::Index i = 0; i < last.size(); ++i)
-        if (changed[i] < out.error[i] || std::abs(last[i] - out.value[i]) > 8 * (changed[i] + out.error[i])) {
+        if (changed[i] < out.error[i]) {
           out.value[i] = last[i];
           out.error[i] = changed[i];
         }
