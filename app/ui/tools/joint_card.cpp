@@ -250,17 +250,19 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
   const float top = rect.y + edge, foot = std::max(top, context.view.lines_top - size.y - edge);
   from.x = std::clamp(from.x, least, std::max(least, most));
   from.y = std::clamp(from.y, top, foot);
-  std::vector<PanelRect> covered = covered_by_bodies(context, input);
-  ImVec2 below = from; // the legend
+  const std::vector<PanelRect> covered = covered_by_bodies(context, input);
+  PanelRect shown{};   // the legend
+  ImVec2 below = from; // that
   if (const auto legend = widgets.find("legend frame"); legend != widgets.end()) {
     const auto& [upper, lower] = legend->second;
-    covered.push_back({upper.x, upper.y, lower.x - upper.x, lower.y - upper.y});
+    shown = {upper.x, upper.y, lower.x - upper.x, lower.y - upper.y};
     below.y = std::clamp(std::max(from.y, lower.y + edge), top, foot);
   }
+  const float rim = 3 * s; // of the card, which may touch a body
   const auto hidden = [&](ImVec2 place) {
-    float area = 0;
+    float area = common_area(shown, place, size);
     for (const PanelRect& each : covered)
-      area += common_area(each, place, size);
+      area += common_area(each, {place.x + rim, place.y + rim}, {size.x - 2 * rim, size.y - 2 * rim});
     return area;
   };
   const float other = std::clamp(to_left ? right : left, least, std::max(least, most));
