@@ -304,10 +304,11 @@ void find_best(Comparison& c) {
     }
   if (!c.best) return;
   if (c.best->error > comes_near) {
-    c.message += " No motion comes to this steady state: the nearest ends " + rounded_text(c.best->error, 2) +
-                 " from it (in radians, and slides as parts of the mechanism's size), after " +
-                 rounded_text(c.best->duration, 4) +
-                 " s simulated; it may need longer, or settle in another one.";
+    if (c.complete) // else a longer one was not reached
+      c.message +=
+          " No motion comes to this steady state: the nearest ends " + rounded_text(c.best->error, 2) +
+          " from it (in radians, and slides as parts of the mechanism's size), after " +
+          rounded_text(c.best->duration, 4) + " s simulated; it may need longer, or settle in another one.";
     c.best.reset();
     return;
   }

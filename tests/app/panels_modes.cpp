@@ -296,7 +296,7 @@ TEST_CASE("where there is little room the Campbell diagram has it, and critical 
 }
 
 TEST_CASE("the Campbell diagram has the width beside the list, below which critical speeds stand") {
-  Robot robot({1280, 720});
+  Robot robot({1280, 900});
   open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
   robot.frames(3);
   robot.key('O');
@@ -306,7 +306,7 @@ TEST_CASE("the Campbell diagram has the width beside the list, below which criti
   CHECK(plot.to.x - plot.from.x > 700);
   CHECK(speed.to.x <= plot.from.x);
   CHECK(speed.from.y >= mode.to.y);
-  CHECK(third.to.y <= 720);
+  CHECK(third.to.y <= 900);
   robot.click("campbell/critical/1");
   robot.frames(2);
   CHECK(get_parameter(robot.app.session.mechanism(), "parameters.n") ==

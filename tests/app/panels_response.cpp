@@ -599,7 +599,7 @@ TEST_CASE("Find asks for a speed that is found: under which load does the engine
   robot.frames(2);
   robot.click("response/design");
   robot.frames(2);
-  robot.click("response/design/spin.speed");
+  robot.click("response/design/speed of spin");
   robot.frames(2);
   REQUIRE(robot.state().design.coordinate == "spin.speed");
   CHECK(robot.state().design.value == Approx(11.0)); // three digits of the present one
