@@ -57,7 +57,7 @@ void coordinate_results(Session& session, Ui& ui, ResultSections& open) {
   const auto& all = session.answer.solution.coordinates;
   const auto free = std::ranges::count_if(all, is_found);
   if (free == 0) return;
-  heading(ui, "Where it settles");
+  heading(ui, session.answer.solution.stable == false ? "Where it balances" : "Where it settles");
   if (free <= spacious) {
     for (const CoordinateSolution& c : all)
       if (is_found(c)) free_coordinate(session, ui, c, false);
