@@ -59,8 +59,9 @@ void run(const SweepArguments& options, Ending& ending) {
                      "expected at most 1000000 combinations in a table to read; --csv and --npz take more");
 
   const bool times = !options.no_times && !options.all && options.shard.empty() && !started_together();
-  const SweepColumns columns{variations, value_columns(mechanism), options.all,
-                             times,      options.periodic,         has_friction(mechanism)};
+  const SweepColumns columns{variations,       value_columns(mechanism, variations),
+                             options.all,      times,
+                             options.periodic, has_friction(mechanism)};
   nlohmann::ordered_json request = {{"variations", std::move(asked)}};
   if (options.all) request["all equilibria"] = {{"search time", options.search_time}};
   if (options.periodic) request["periodic"] = true;

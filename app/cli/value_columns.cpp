@@ -1,18 +1,22 @@
 #include "app/cli/value_columns.hpp"
 
+#include "engine/mechanism/address.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_state.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flyball::cli {
 
-std::vector<ValueColumn> value_columns(const Mechanism& mechanism) {
+namespace {
+
+std::vector<ValueColumn> coordinate_columns(const Mechanism& mechanism,
+                                            const std::vector<std::string>& slipping) {
   std::vector<ValueColumn> values;
   const std::vector<CoordinateSolution> all = Analysis(mechanism).summary().coordinates;
-  std::vector<std::string> slipping;
-  if (has_friction(mechanism)) slipping = slipping_coordinates(mechanism);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto found = found_number(all[i]);
     if (!found) continue;
@@ -20,6 +24,30 @@ std::vector<ValueColumn> value_columns(const Mechanism& mechanism) {
     if (!all[i].speed && std::ranges::find(slipping, found->name) != slipping.end())
       values.push_back({found->name + ".speed", all[i].angle ? "rad/s" : "m/s", false, i, true});
   }
+  return values;
+}
+
+} // namespace
+
+std::vector<ValueColumn> value_columns(const Mechanism& mechanism, std::span<const Variation> variations) {
+  std::vector<std::string> slipping;
+  if (has_friction(mechanism)) slipping = slipping_coordinates(mechanism);
+  std::vector<ValueColumn> values = coordinate_columns(mechanism, slipping);
+  // Where one turns at a speed that is found, another may in its place at other numbers.
+  const bool turning = std::ranges::any_of(values, &ValueColumn::speed);
+  for (const Variation& variation : variations)
+    for (const double end : {variation.value(0), variation.value(variation.count - 1)}) {
+      if (!turning) break;
+      try {
+        Mechanism there = mechanism;
+        set_parameter(there, variation.address, end);
+        for (ValueColumn& column : coordinate_columns(there, slipping))
+          if (std::ranges::find(values, column.name, &ValueColumn::name) == values.end())
+            values.push_back(std::move(column));
+      } catch (const SceneError&) { // the points tell of it
+      }
+    }
+  std::ranges::stable_sort(values, {}, &ValueColumn::place);
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i)
     values.push_back({mechanism.measures[i].name, mechanism.measures[i].unit, true, i});
   return values;

@@ -5,6 +5,7 @@
 
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/solve/solution.hpp"
+#include "engine/study/sweep.hpp"
 
 #include <span>
 #include <string>
@@ -19,7 +20,9 @@ struct ValueColumn {
   std::size_t place = 0;  // there
   bool speed = false;     // of the coordinate
 };
-std::vector<ValueColumn> value_columns(const Mechanism& mechanism);
+// Of what turns at the mechanism's own numbers, or at the ends of the ranges.
+std::vector<ValueColumn> value_columns(const Mechanism& mechanism,
+                                       std::span<const Variation> variations = {});
 
 // Not finite where there is none, or a coordinate turns with the drives. The speed of what stands is zero.
 double value_at(std::span<const CoordinateSolution> coordinates, std::span<const MeasureSolution> measures,

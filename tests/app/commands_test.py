@@ -282,6 +282,26 @@ def modes_over_other_numbers(_):
         check(f"why there are no critical speeds over {address}", out["branches"] and (why in out["message"]) == told)
 
 
+def what_turns_in_a_sweep(_):
+    """A pendulum that weighs nothing is carried round by friction; heavier, it hangs, and has a column for where."""
+    pin = {"type": "revolute", "axis": [0, 0, 1], "at": [0, 0, 0]}
+    scene = {"flyball": 2, "gravity": [0, -10, 0],
+             "bodies": [{"name": "shaft", "mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.01]},
+                        {"name": "bob", "mass": 0, "position": [0, -0.1, 0], "inertia": [0, 0, 0]}],
+             "joints": [{**pin, "name": "drive", "bodies": ["ground", "shaft"], "drive": {"speed": 5}},
+                        {**pin, "name": "on_shaft", "bodies": ["shaft", "bob"], "damping": 0.01},
+                        {**pin, "name": "on_ground", "bodies": ["ground", "bob"]}]}
+    for mass in (0, 1):  # what is drawn decides nothing
+        scene["bodies"][1]["mass"] = mass
+        code, out, error = run("sweep", "-", "--vary", "bodies.bob.mass=0:0.5:2", "--csv", "-",
+                               stdin=json.dumps(scene).encode())
+        carried, hanging = csv.DictReader(io.StringIO(out.decode(), newline=""))
+        check(f"what turns is told: {carried}, {error}", code == 0 and float(carried["on_ground.speed"]) == 5
+              and carried["on_ground"] == "")
+        check(f"what hangs is told: {hanging}", float(hanging["on_ground.speed"]) == 0
+              and abs(math.sin(float(hanging["on_ground"])) - 0.01 * 5 / (0.5 * 10 * 0.1)) < 1e-9)
+
+
 def resonance(folder):
     """A sweep of periodic motions has at each point what `solve` tells there, and of steady states these."""
     rotor = pathlib.Path(SCENE).parent / "horizontal_rotor.json"
@@ -413,7 +433,7 @@ def parts(folder):
 
 with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
-                 units_of_ranges, modes_over_other_numbers, hunting, loads, parts):
+                 units_of_ranges, modes_over_other_numbers, what_turns_in_a_sweep, hunting, loads, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)
