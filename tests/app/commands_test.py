@@ -285,7 +285,7 @@ def modes_over_other_numbers(_):
 def what_turns_in_a_sweep(_):
     """A pendulum that weighs nothing is carried round by friction; heavier, it hangs, and has a column for where."""
     pin = {"type": "revolute", "axis": [0, 0, 1], "at": [0, 0, 0]}
-    scene = {"flyball": 2, "gravity": [0, -10, 0],
+    scene = {"flyball": 2, "name": "carried", "gravity": [0, -10, 0],
              "bodies": [{"name": "shaft", "mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.01]},
                         {"name": "bob", "mass": 0, "position": [0, -0.1, 0], "inertia": [0, 0, 0]}],
              "joints": [{**pin, "name": "drive", "bodies": ["ground", "shaft"], "drive": {"speed": 5}},
@@ -294,7 +294,7 @@ def what_turns_in_a_sweep(_):
     for mass in (0, 1):  # what is drawn decides nothing
         scene["bodies"][1]["mass"] = mass
         code, out, error = run("sweep", "-", "--vary", "bodies.bob.mass=0:0.5:2", "--csv", "-",
-                               stdin=json.dumps(scene).encode())
+                               input=json.dumps(scene).encode())
         carried, hanging = csv.DictReader(io.StringIO(out.decode(), newline=""))
         check(f"what turns is told: {carried}, {error}", code == 0 and float(carried["on_ground.speed"]) == 5
               and carried["on_ground"] == "")
