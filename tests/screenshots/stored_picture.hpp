@@ -11,8 +11,6 @@
 
 namespace flyball::test {
 
-// The shipped scenes, by name.
-
 // An app that shows the same on every computer: solves at once, keeps quiet about run times and does not
 // tell round-off.
 AppOptions steady_options(Theme theme = Theme::light);
