@@ -22,6 +22,7 @@ class Background {
   struct News {
     std::shared_ptr<Result> result; // null where there is a problem
     std::string problem;            // what the task threw
+    bool stopped = false;           // before it had a result
   };
   using Task = std::function<Result(const TaskContext<Result>&)>; // see BackgroundWorker
 
@@ -41,7 +42,8 @@ class Background {
   std::optional<News> take() {
     auto news = worker_.take();
     if (!news) return std::nullopt;
-    return News{std::static_pointer_cast<Result>(std::move(news->result)), std::move(news->problem)};
+    return News{std::static_pointer_cast<Result>(std::move(news->result)), std::move(news->problem),
+                news->stopped};
   }
   bool running() const { return worker_.running(); }
   Progress progress() const { return worker_.progress(); }

@@ -127,6 +127,9 @@ void BackgroundWorker::State::run(const Task& task, std::uint64_t ticket) {
                             [&](std::shared_ptr<void> so_far) {
                               deliver(ticket, {std::move(so_far), {}}, false);
                             }});
+  } catch (const Interrupted& stopped) {
+    last.problem = stopped.what();
+    last.stopped = true;
   } catch (const std::exception& error) {
     last.problem = error.what();
   }

@@ -30,6 +30,7 @@ class BackgroundWorker {
   struct News {
     std::shared_ptr<void> result; // null where there is a problem
     std::string problem;          // what the task threw
+    bool stopped = false;         // by cancel() or a newer task, before it had a result
   };
   struct Context {
     const std::atomic<bool>& cancel; // becomes true when the result is not wanted any more

@@ -52,7 +52,7 @@ struct Study {
     auto news = task_ ? task_->take() : std::nullopt;
     if (!news) return false;
     problem = std::move(news->problem);
-    if (news->result && news->result->stopped && stopped)
+    if (stopped && (news->result ? news->result->stopped : news->stopped))
       problem = stopped;
     else if (news->result)
       found = std::move(news->result);

@@ -159,20 +159,16 @@ void add_statistics(std::span<const Tolerance> tolerances, std::uint64_t seed, S
 SpreadAnswer spread(const Mechanism& mechanism, std::span<const Tolerance> tolerances,
                     const SpreadOptions& options, WorkSharing& sharing) {
   const auto begin = std::chrono::steady_clock::now();
-  SpreadAnswer out;
-  try {
-    out = spread_by_rates(mechanism, tolerances, options);
-    if (out.status != Status::converged) return out;
-    out.values.assign(out.outputs.size(), std::vector<double>(options.samples));
-    out.fate.resize(options.samples);
-    make_samples(mechanism, tolerances, options, 0, options.samples, sharing,
-                 [&](std::size_t i, SampleFate fate, std::span<const double> values) {
-                   out.fate[i] = fate;
-                   for (std::size_t k = 0; k < values.size(); ++k)
-                     out.values[k][i] = values[k];
-                 });
-  } catch (const Interrupted&) { // before samples are made, as while a sampler is compiled
-  }
+  SpreadAnswer out = spread_by_rates(mechanism, tolerances, options);
+  if (out.status != Status::converged) return out;
+  out.values.assign(out.outputs.size(), std::vector<double>(options.samples));
+  out.fate.resize(options.samples);
+  make_samples(mechanism, tolerances, options, 0, options.samples, sharing,
+               [&](std::size_t i, SampleFate fate, std::span<const double> values) {
+                 out.fate[i] = fate;
+                 for (std::size_t k = 0; k < values.size(); ++k)
+                   out.values[k][i] = values[k];
+               });
   if (options.cancel && *options.cancel) {
     out.status = Status::not_converged;
     out.message = "Cancelled.";

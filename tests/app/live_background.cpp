@@ -1,4 +1,5 @@
 #include "app/live/background.hpp"
+#include "engine/linear/interruption.hpp"
 #include "tests/catch.hpp"
 
 #include <chrono>
@@ -48,6 +49,19 @@ TEST_CASE("a task's result, problem and progress come back") {
     CHECK_FALSE(failed.result);
     CHECK(failed.problem == "no such thing");
   }
+}
+
+TEST_CASE("a task that is interrupted before it has a result is told as stopped") {
+  Numbers background(BackgroundWorker::Mode::background);
+  background.start([](const TaskContext<int>& context) {
+    const int result = endless(context);
+    interruption_point();
+    return result;
+  });
+  background.cancel();
+  const Numbers::News news = wait_for(background);
+  CHECK_FALSE(news.result);
+  CHECK(news.stopped);
 }
 
 TEST_CASE("a newer task cancels the one that runs, whose result is dropped") {

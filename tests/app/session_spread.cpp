@@ -1,6 +1,7 @@
 // The study of the spread and the band around the response curve, without a window.
 #include "app/document/rename.hpp"
 #include "app/session/session.hpp"
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "session_wait.hpp"
 #include "tests/catch.hpp"
@@ -8,7 +9,9 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -183,6 +186,23 @@ TEST_CASE("Session: many samples are made in the background, and can be cancelle
   CHECK_FALSE(session.study.spread.samples.running());
   CHECK_FALSE(session.study.spread.samples.found);
   CHECK_THAT(session.study.spread.samples.problem, ContainsSubstring("stopped"));
+}
+
+TEST_CASE("Session: a study that is stopped before it has a result is told as stopped") {
+  using Doubled = Study<int, int>;
+  Doubled study;
+  study.ask(SessionOptions{.mode = BackgroundWorker::Mode::background}, 2,
+            [](const int&, const TaskContext<int>& context) -> int {
+              while (!context.cancel)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+              interruption_point();
+              return -1;
+            });
+  study.stop();
+  while (!study.take("It was stopped."))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  CHECK(study.problem == "It was stopped.");
+  CHECK_FALSE(study.found);
 }
 
 TEST_CASE("Session: the band around the response has at each place the spread there") {
