@@ -1,5 +1,6 @@
 #include "app/session/map.hpp"
 
+#include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
 #include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
@@ -197,9 +198,9 @@ std::vector<MapQuantity> map_quantities(const Session& session) {
   for (const CoordinateSolution& c :
        solved ? session.answer.solution.coordinates : session.answer.summary.coordinates)
     if (const auto found = found_number(c))
-      all.push_back({found->name, std::string(found->unit), found->value, !c.dependent});
+      all.push_back({found->name, found_words(c), std::string(found->unit), found->value, !c.dependent});
   for (const NamedMeasure& measure : session.mechanism().measures) {
-    MapQuantity& quantity = all.emplace_back(MapQuantity{measure.name, measure.unit, {}, true});
+    MapQuantity& quantity = all.emplace_back(MapQuantity{measure.name, measure.name, measure.unit, {}, true});
     if (!solved) continue;
     for (const MeasureSolution& m : session.answer.solution.measures)
       if (m.name == measure.name) quantity.value = m.value;

@@ -80,6 +80,7 @@ MapAxis map_axis(const Session& session, const std::string& address);
 // What can be shown: free coordinates, speeds that are found, measures.
 struct MapQuantity {
   std::string name;            // as `design` wants it
+  std::string title;           // in words
   std::string unit;            // SI
   std::optional<double> value; // now
   bool followed = false;       // there is a curve on which it keeps a value

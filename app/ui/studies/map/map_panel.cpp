@@ -84,12 +84,15 @@ void point_counts(Session& session, Ui& ui) {
 
 void quantity_choice(Session& session, Ui& ui) {
   MapChoice& choice = session.study.map.choice;
-  std::vector<std::string> names;
-  for (const MapQuantity& quantity : map_quantities(session))
-    names.push_back(quantity.name);
-  if (const auto chosen = name_choice_row(ui, "map/shown", "Colour", names, choice.shown,
-                                          "The coordinate or measure that the colours tell.")) {
-    choice.shown = *chosen;
+  const std::vector<MapQuantity> all = map_quantities(session);
+  std::vector<std::string> titles;
+  for (const MapQuantity& quantity : all)
+    titles.push_back(quantity.title);
+  const std::optional<MapQuantity> shown = map_quantity(session);
+  if (const auto chosen =
+          name_choice_row(ui, "map/shown", "Colour", titles, shown ? shown->title : choice.shown,
+                          "The coordinate or measure that the colours tell.")) {
+    choice.shown = std::ranges::find(all, *chosen, &MapQuantity::title)->name;
     choice.level.reset();
   }
 }

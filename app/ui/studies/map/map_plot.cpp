@@ -154,12 +154,10 @@ void draw_map(const Session& session, MapView& drawn) {
   };
   plot.x = axis_for(axes[0]);
   plot.y = axis_for(axes[1]);
-  const std::vector<MapQuantity> quantities = map_quantities(session);
-  const auto shown = std::ranges::find(quantities, choice.shown, &MapQuantity::name);
-  const std::string si = shown == quantities.end() ? "" : shown->unit;
+  const std::optional<MapQuantity> shown = map_quantity(session);
+  const std::string si = shown ? shown->unit : "", title = shown ? shown->title : choice.shown;
   const ShownUnit unit = shown_unit(si, session.units);
-  PlotHeat heat{
-      .x = values_of(axes[0]), .y = values_of(axes[1]), .values = {}, .label = choice.shown, .unit = si};
+  PlotHeat heat{.x = values_of(axes[0]), .y = values_of(axes[1]), .values = {}, .label = title, .unit = si};
   heat.values.reserve(cells.size());
   heat.notes_label = "stability";
   for (const MapCell& cell : cells) {
@@ -175,7 +173,7 @@ void draw_map(const Session& session, MapView& drawn) {
   if (curves && curves->result.hunting) add_hunting_curves(plot, *curves->result.hunting);
   if (curves && curves->result.level && map.choice.level)
     add_curves(plot, *curves->result.level,
-               choice.shown + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
+               title + " = " + short_text(unit.shown(*map.choice.level), 5) + " " + unit.text);
   show_axis(plot, 0, axis_unit(map, axes[0]), session.units);
   show_axis(plot, 1, axis_unit(map, axes[1]), session.units);
   plot.marker = drawn.plot.marker;

@@ -1,6 +1,7 @@
 // How the steady state scatters: which numbers have tolerances, what comes of them, and the histogram.
 #include "app/plot/spread_plot.hpp"
 #include "app/render/icons.hpp"
+#include "app/session/coordinate_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/plots/shown_plot.hpp"
@@ -98,12 +99,15 @@ void another_tolerance(Session& session, Ui& ui) {
 void output_choice(Session& session, Ui& ui) {
   const auto& found = session.study.spread.samples.found;
   if (!found) return;
-  std::vector<std::string> names;
-  for (const SpreadOutput& output : found->result.outputs)
-    names.push_back(output.name);
-  if (const auto other = name_choice_row(ui, "spread/output", "Show", names, session.study.spread.output,
+  const std::vector<SpreadOutput>& outputs = found->result.outputs;
+  std::vector<std::string> titles;
+  for (const SpreadOutput& output : outputs)
+    titles.push_back(label_words(session.mechanism(), output.name));
+  if (const auto other = name_choice_row(ui, "spread/output", "Show", titles,
+                                         label_words(session.mechanism(), session.study.spread.output),
                                          "The coordinate or measure whose samples are shown."))
-    session.study.spread.output = *other;
+    session.study.spread.output =
+        outputs[static_cast<std::size_t>(std::ranges::find(titles, *other) - titles.begin())].name;
 }
 
 void samples_field(Session& session, Ui& ui) {
@@ -190,7 +194,7 @@ void statistics_rows(const Session& session, Ui& ui, const SpreadOutput& output)
   const auto plain = [&](const char* label, double value, double error, const char* help) {
     row(ui, label, value_text(value * unit.factor, error * unit.factor, numbers), unit.text.c_str(), help);
   };
-  heading(ui, output.name.c_str());
+  heading(ui, label_words(session.mechanism(), output.name).c_str());
   plain("Nominal", output.nominal, s.mean_error > 0 ? s.mean_error / 10 : 0, "The state that is shown.");
   if (s.count > 1) {
     estimated_row(session, ui, "Mean", s.mean, s.mean_error, unit,
@@ -292,6 +296,7 @@ void draw_histogram(Session& session, Ui& ui, SpreadView& drawn) {
   if (drawn.of != of) {
     const auto& all = state.samples.found->result.outputs;
     Plot plot = histogram_plot(state.samples.found->result, static_cast<std::size_t>(output - all.data()));
+    plot.x.label = label_words(session.mechanism(), output->name);
     show_axis(plot, 0, output->unit, session.units);
     if (drawn.of.output != of.output) fit_plot(drawn.view);
     replace_plot(drawn.plot, std::move(plot));
