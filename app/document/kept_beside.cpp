@@ -1,7 +1,6 @@
 #include "app/document/kept_beside.hpp"
 
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/file.hpp"
+#include "app/document/state_file.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -23,14 +22,8 @@ fs::path store_in(const fs::path& state_folder) {
 
 // Of all files, the one that was kept last first.
 json read_store(const fs::path& state_folder) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(store_in(state_folder), ignored)) return json::array();
-  try {
-    json store = json::parse(read_bytes(store_in(state_folder)), nullptr, false);
-    if (store.is_array()) return store;
-  } catch (const SceneError&) { // unreadable
-  }
-  return json::array();
+  json store = read_state(store_in(state_folder));
+  return store.is_array() ? store : json::array();
 }
 
 Explored read_numbers(const json& entry, const char* key) {
@@ -108,13 +101,7 @@ void keep_beside(const fs::path& state_folder, const fs::path& file, const KeptB
   }
   for (const json& entry : store)
     if (left.size() < most_kept_beside && !is_of(entry, file)) left.push_back(entry);
-  if (left == store) return;
-  std::error_code ignored;
-  fs::create_directories(state_folder, ignored);
-  try {
-    replace_file(store_in(state_folder), left.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
-  } catch (const SceneError&) { // a convenience
-  }
+  if (left != store) write_state(store_in(state_folder), left);
 }
 
 } // namespace flyball

@@ -1,7 +1,6 @@
 #include "app/session/settings.hpp"
 
-#include "engine/mechanism/error.hpp"
-#include "engine/mechanism/file.hpp"
+#include "app/document/state_file.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -60,24 +59,20 @@ std::string word_for(const Table& words, Value value) {
 
 Settings read_settings(const fs::path& state_folder) {
   Settings settings;
-  std::error_code ignored;
-  if (state_folder.empty() || !fs::is_regular_file(file_in(state_folder), ignored)) return settings;
-  try {
-    const json file = json::parse(read_bytes(file_in(state_folder)), nullptr, false);
-    if (!file.is_object()) return settings;
-    read(file, "angle", angles, settings.units.angle);
-    read(file, "length", lengths, settings.units.length);
-    read(file, "speed", speeds, settings.units.speed);
-    read(file, "navigation", navigations, settings.navigation);
-    read(file, "theme", themes, settings.theme);
-    read(file, "legend", settings.legend);
-    read(file, "ghost", settings.ghost);
-    read(file, "grid", settings.grid);
-    read(file, "shadow", settings.shadow);
-    if (const auto zoom = file.find("zoom"); zoom != file.end() && zoom->is_number())
-      settings.zoom = std::clamp(zoom->get<double>(), least_zoom, most_zoom);
-  } catch (const SceneError&) { // unreadable
-  }
+  if (state_folder.empty()) return settings;
+  const json file = read_state(file_in(state_folder));
+  if (!file.is_object()) return settings;
+  read(file, "angle", angles, settings.units.angle);
+  read(file, "length", lengths, settings.units.length);
+  read(file, "speed", speeds, settings.units.speed);
+  read(file, "navigation", navigations, settings.navigation);
+  read(file, "theme", themes, settings.theme);
+  read(file, "legend", settings.legend);
+  read(file, "ghost", settings.ghost);
+  read(file, "grid", settings.grid);
+  read(file, "shadow", settings.shadow);
+  if (const auto zoom = file.find("zoom"); zoom != file.end() && zoom->is_number())
+    settings.zoom = std::clamp(zoom->get<double>(), least_zoom, most_zoom);
   return settings;
 }
 
@@ -93,12 +88,7 @@ void keep_settings(const fs::path& state_folder, const Settings& settings) {
                      {"shadow", settings.shadow},
                      {"theme", word_for(themes, settings.theme)},
                      {"zoom", settings.zoom}};
-  std::error_code ignored;
-  fs::create_directories(state_folder, ignored);
-  try {
-    replace_file(file_in(state_folder), file.dump(1) + "\n");
-  } catch (const SceneError&) { // a convenience, no reason to disturb anybody
-  }
+  write_state(file_in(state_folder), file);
 }
 
 std::optional<ThemeChoice> theme_choice_of(std::string_view word) {

@@ -1,0 +1,33 @@
+#include "app/document/state_file.hpp"
+
+#include "engine/mechanism/error.hpp"
+#include "engine/mechanism/file.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace flyball {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+json read_state(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return nullptr;
+  try {
+    json state = json::parse(read_bytes(file), nullptr, false);
+    if (!state.is_discarded()) return state;
+  } catch (const SceneError&) { // unreadable
+  }
+  return nullptr;
+}
+
+void write_state(const fs::path& file, const json& state) {
+  std::error_code ignored;
+  fs::create_directories(file.parent_path(), ignored);
+  try {
+    replace_file(file, state.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  } catch (const SceneError&) { // it stays as it was
+  }
+}
+
+} // namespace flyball
