@@ -1,13 +1,10 @@
 #include "engine/study/linear_model.hpp"
 
-#include "engine/dynamics/friction_modes.hpp"
 #include "engine/dynamics/start.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/frictions.hpp"
-#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/messages.hpp"
@@ -15,6 +12,7 @@
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/input_effect.hpp"
+#include "engine/study/linear_friction.hpp"
 #include "engine/study/model_coordinates.hpp"
 #include "engine/study/motion_outputs.hpp"
 #include "engine/system/balance_rate.hpp"
@@ -112,72 +110,19 @@ class Builder {
     if (!solve.friction && !solve.nearest && out.steady.status != Status::converged &&
         has_friction(signals_.mechanism))
       if (std::optional<StateOnFriction> state = find_friction_state(signals_.mechanism, solve)) {
-        let_slip(*state);
+        mechanism_ = with_momenta_free(driven_by_slipping(signals_, *state));
+        const VariedNumbers known(mechanism_, addresses_); // as above
         out.steady = std::move(state->solution);
       }
   }
 
-  void let_slip(const StateOnFriction& state) {
-    const std::vector<CoordinateReference> frictions = find_frictions(signals_.mechanism);
-    FrictionParts slips = state.parts;
-    for (std::size_t i = 0; i < slips.size(); ++i)
-      if (is_slipping(slips[i]))
-        refuse_limit_as_input(frictions[i], i < state.implied.size() && state.implied[i]);
-      else
-        slips[i] = FrictionPart::none;
-    if (std::ranges::none_of(slips, is_slipping)) return;
-    const std::size_t measures = mechanism_.measures.size();
-    mechanism_ = with_momenta_free(driven_by_parts(signals_.mechanism, frictions, slips, state.implied));
-    const VariedNumbers known(mechanism_, addresses_);
-    if (mechanism_.measures.size() != measures)
-      throw Refusal{"A measure is not told of joints on which friction slips."};
-  }
-
-  // What friction gives is a number once it slips, and so is what a load by an expression, or a damper where
-  // the drives give the rate, gives beside it.
-  void refuse_limit_as_input(CoordinateReference at, bool implied) {
-    const VariedNumbers numbers(mechanism_, addresses_);
-    const Friction& friction = friction_at(mechanism_, at);
-    const Joint& joint = joint_of(mechanism_, at);
-    const Coordinate& c = joint.coordinates[static_cast<std::size_t>(at.coordinate)];
-    const bool load = c.drive && !drive_law(mechanism_, joint, at.coordinate, "load");
-    for (const LinearInput& input : signals_.inputs) {
-      const auto i = static_cast<std::size_t>(&input - signals_.inputs.data());
-      if (numbers_[i] < 0) continue;
-      NumberRates rates;
-      numbers.rates(static_cast<std::size_t>(numbers_[i]), rates);
-      for (const std::optional<double>* number :
-           {&friction.limit, &friction.mu, &friction.preload, &friction.radius})
-        if (rates.find(place_of(*number)).value_or(0) != 0)
-          throw Refusal{"The input " + input.name +
-                        " has no place in a linear model: it is in the limit of " + joint.name +
-                        ", which slips."};
-      if ((implied && rates.find(place_of(c.damping)).value_or(0) != 0) ||
-          (load && rates.find(place_of(c.drive->load)).value_or(0) != 0))
-        throw Refusal{"The input " + input.name +
-                      " has no place in a linear model: it is in the load or the damping of " + joint.name +
-                      ", where friction slips."};
-    }
-  }
-
-  // Which entries of q_R dry friction holds.
   void hold(LinearModel& out) {
     for (const FrictionForce& force : out.steady.frictions)
       if (force.slips) out.slipping.push_back(coordinate_label(force));
-    for (const FrictionElement& element : list_frictions(model_)) {
-      if (options_.slipping) break;
-      const Link& link = model_.system.links[static_cast<std::size_t>(element.link)];
-      out.held.push_back(coordinate_label(model_.system, link));
-      const CoordinateReference at = find_coordinate(mechanism_, out.held.back());
-      double part = std::abs(friction_at(mechanism_, at).share);
-      for (const FrictionForce& force : out.steady.frictions)
-        if (force.value && coordinate_label(force) == out.held.back())
-          part = std::abs(*force.value) / element.limit;
-      if (part >= 1 / slipping_by)
-        throw Refusal{"Dry friction in " + out.held.back() +
-                      " is at its limit: it holds small motions to one side and lets those to the other go, "
-                      "of which nothing linear tells."};
-      held_.push_back(link.v);
+    if (options_.slipping) return;
+    for (HeldCoordinate& held : held_by_friction(mechanism_, model_, out.steady)) {
+      out.held.push_back(std::move(held.name));
+      held_.push_back(held.v);
     }
   }
 
