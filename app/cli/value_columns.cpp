@@ -35,9 +35,8 @@ std::vector<ValueColumn> value_columns(const Mechanism& mechanism, std::span<con
   std::vector<ValueColumn> values = coordinate_columns(mechanism, slipping);
   // Where one turns at a speed that is found, another may in its place at other numbers.
   const bool turning = std::ranges::any_of(values, &ValueColumn::speed);
-  for (const Variation& variation : variations)
-    for (const double end : {variation.value(0), variation.value(variation.count - 1)}) {
-      if (!turning) break;
+  for (const Variation& variation : turning ? variations : std::span<const Variation>())
+    for (const double end : {variation.value(0), variation.value(variation.count - 1)})
       try {
         Mechanism there = mechanism;
         set_parameter(there, variation.address, end);
@@ -46,7 +45,6 @@ std::vector<ValueColumn> value_columns(const Mechanism& mechanism, std::span<con
             values.push_back(std::move(column));
       } catch (const SceneError&) { // the points tell of it
       }
-    }
   std::ranges::stable_sort(values, {}, &ValueColumn::place);
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i)
     values.push_back({mechanism.measures[i].name, mechanism.measures[i].unit, true, i});

@@ -103,10 +103,12 @@ std::string softer_springs(const Unbounded& found, bool unstable) {
     if (!one && std::ranges::count(all, all.front()) == std::ssize(all)) return all.front() + " each";
     return word_list(std::vector<std::string_view>(all.begin(), all.end()), "and");
   };
-  const bool softer = std::ranges::all_of(
+  const auto softer = std::ranges::count_if(
       found.softened, [](const Softening& along) { return along.held < (1 - noticeable) * along.driven; });
   return "What holds " + names_of(found) + ", " + list(&Softening::held) + ", is " +
-         (softer ? "softer" : "hardly stiffer") +
+         (softer == std::ssize(found.softened) ? "softer"
+          : softer == 0                        ? "hardly stiffer"
+                                               : "softer or hardly stiffer") +
          " than the centrifugal force, which at this speed grows by " + list(&Softening::driven) + ": " +
          (one ? "it goes" : "they go") + " on without end" +
          (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +

@@ -26,11 +26,11 @@ namespace {
 constexpr PixelSize wide{1280, 900};
 
 struct ModesRobot : Robot {
-  explicit ModesRobot(const std::string& scene) : Robot(wide) {
+  explicit ModesRobot(const std::string& scene, PixelSize window = wide) : Robot(window) {
     open_scene(app.session, shipped_file(scene));
     frames(3);
     key('O');
-    frames(3);
+    frames(5);
   }
   const std::vector<VibrationMode>& modes() { return app.session.study.modes.list.found->result.modes; }
   // The first that swings.
@@ -281,11 +281,7 @@ TEST_CASE(
 
 TEST_CASE("where there is little room the Campbell diagram has it, and critical speeds stand below") {
   const PixelSize window = GENERATE(PixelSize{900, 600}, PixelSize{1100, 900});
-  Robot robot(window);
-  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
-  robot.frames(3);
-  robot.key('O');
-  robot.frames(5);
+  ModesRobot robot("rotor_oil_whip", window);
   const WidgetRect plot = robot.widget("plot/campbell/area");
   CHECK(plot.to.y - plot.from.y > 60); // its axes stand around it
   const auto& widgets = robot.app.ui.widgets;
@@ -296,11 +292,7 @@ TEST_CASE("where there is little room the Campbell diagram has it, and critical 
 }
 
 TEST_CASE("the Campbell diagram has the width beside the list, below which critical speeds stand") {
-  Robot robot({1280, 900});
-  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
-  robot.frames(3);
-  robot.key('O');
-  robot.frames(5);
+  ModesRobot robot("rotor_oil_whip", {1280, 900});
   const WidgetRect plot = robot.widget("plot/campbell/area"), mode = robot.widget("modes/row/4"),
                    speed = robot.widget("campbell/critical/1"), third = robot.widget("campbell/critical/3");
   CHECK(plot.to.x - plot.from.x > 700);
@@ -361,11 +353,7 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
 }
 
 TEST_CASE("in a small window the list of modes and the diagram's choices are whole") {
-  Robot robot({800, 600});
-  open_scene(robot.app.session, shipped_file("rotor_oil_whip"));
-  robot.frames(3);
-  robot.key('O');
-  robot.frames(5);
+  ModesRobot robot("rotor_oil_whip", {800, 600});
   const WidgetRect list = robot.widget("modes/row/1"), drive = robot.widget("campbell/drive"),
                    last = robot.widget("campbell/radians"), area = robot.widget("plot/campbell/area");
   CHECK(list.to.x <= drive.from.x);

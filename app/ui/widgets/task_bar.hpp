@@ -13,8 +13,7 @@ struct Ui;
 void bar_with_words(const Ui& ui, float part, float width, const std::string& words);
 
 // As wide as `width` (pixels), or where that is 0 as the room there is. Where nobody knows how much is left
-// the bar stays empty and the words tell that it goes on; else
-// how long it may still take.
+// the bar stays empty and the words tell that it goes on; else how long it may still take.
 void task_bar(Ui& ui, const std::string& name, const Progress& progress, double seconds, float width = 0);
 
 } // namespace flyball
