@@ -127,8 +127,8 @@ void BackgroundWorker::State::run(const Task& task, std::uint64_t ticket) {
                             [&](std::shared_ptr<void> so_far) {
                               deliver(ticket, {std::move(so_far), {}}, false);
                             }});
-  } catch (const Interrupted& stopped) {
-    last.problem = stopped.what();
+  } catch (const Interrupted& interrupted) {
+    last.problem = interrupted.what();
     last.stopped = true;
   } catch (const std::exception& error) {
     last.problem = error.what();
