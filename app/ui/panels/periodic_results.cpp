@@ -18,7 +18,7 @@ namespace flyball {
 
 namespace {
 
-constexpr int digits = 6; // of ends, which are looked at rather than copied
+constexpr int shown_digits = 6; // of ends, which are looked at rather than copied
 
 struct RangeWords {
   std::string prefix; // of the widgets' names
@@ -30,7 +30,7 @@ struct RangeWords {
 
 // What is nothing but rounding is told as zero.
 std::string end_text(double value, const PeriodicRange& of, const ShownUnit& unit) {
-  return short_text(std::abs(value) <= of.error ? 0 : unit.shown(value), digits);
+  return short_text(std::abs(value) <= of.error ? 0 : unit.shown(value), shown_digits);
 }
 
 void range_row(Session& session, Ui& ui, const RangeWords& words, const PeriodicRange& range,
@@ -60,7 +60,7 @@ void range_row(Session& session, Ui& ui, const RangeWords& words, const Periodic
   const std::string within =
       std::isfinite(range.error) ? " ± " + magnitude_text(range.error * unit.factor, numbers) : "";
   right_digits(ui,
-               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, digits) + within +
+               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, shown_digits) + within +
                    " " + unit.text,
                colors_of(ui).dim);
   ImGui::Dummy({0, 0});
@@ -78,14 +78,14 @@ bool by_torque(const Mechanism& m, const PeriodicTorque& t) {
 std::string advance_words(const PeriodicCoordinate& c, const ShownUnit& unit) {
   if (!c.goes_on()) return "";
   return "beside its even " +
-         (c.angle ? short_text(c.advance / (2 * std::numbers::pi), digits) + " turns"
-                  : short_text(unit.shown(c.advance), digits) + " " + unit.text) +
+         (c.angle ? short_text(c.advance / (2 * std::numbers::pi), shown_digits) + " turns"
+                  : short_text(unit.shown(c.advance), shown_digits) + " " + unit.text) +
          " a period";
 }
 
 std::string advance_help(const PeriodicCoordinate& c, const ShownUnit& unit) {
   if (!c.goes_on()) return "";
-  return "It goes on by " + short_text(unit.factor * c.advance, digits) + " " + unit.text +
+  return "It goes on by " + short_text(unit.factor * c.advance, shown_digits) + " " + unit.text +
          " a period, and counts less its even share of that.";
 }
 
