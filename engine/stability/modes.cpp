@@ -259,8 +259,8 @@ StabilityEvidence stability_evidence(const FactoredState& at) {
                          std::abs(s) < tolerance::null_eigenvalue * largest;
     if (of_null || std::abs(s.real()) <= real_part_rounding(s, largest))
       ++out.standing;
-    else
-      ++(s.real() > 0 ? out.growing : out.decaying);
+    else if (s.real() > 0)
+      ++out.growing;
   }
 
   const auto directions = [](int count) {

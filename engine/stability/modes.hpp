@@ -78,12 +78,12 @@ Eigen::VectorXd along_mode(const Problem& problem, const Eigen::VectorXd& q, con
 
 // What the two criteria say about one steady state, side by side.
 struct StabilityEvidence {
-  bool potential = false; // the amended potential exists, so that its Hessian may be asked
-  int downhill = 0;       // directions on the constraints in which it falls
-  int null = 0;           // in which it stays the same to second order
-  int growing = 0, standing = 0, decaying = 0; // eigenvalues right of, on and left of the imaginary axis
-  bool agree = true;                           // both say stable, or both unstable, or there is one only
-  std::string reason;                          // a sentence: why they agree or not
+  bool potential = false;        // the amended potential exists, so that its Hessian may be asked
+  int downhill = 0;              // directions on the constraints in which it falls
+  int null = 0;                  // in which it stays the same to second order
+  int growing = 0, standing = 0; // eigenvalues right of and on the imaginary axis
+  bool agree = true;             // both say stable, or both unstable, or there is one only
+  std::string reason;            // a sentence: why they agree or not
 };
 StabilityEvidence stability_evidence(const FactoredState& at); // of a dense problem
 
