@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/topology.hpp"
 #include "engine/mechanism/validate.hpp"
@@ -24,6 +25,7 @@
 #include "engine/stability/lowest_modes.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
+#include "engine/system/classify.hpp"
 #include "engine/system/point_motion.hpp"
 
 #include <algorithm>
@@ -153,6 +155,22 @@ struct Analysis::State {
   // Where the numbers as they are now make something else turn: as it was compiled for those before them.
   std::unique_ptr<State> before;
 
+  // Whether a number makes a damper, which is none now, of a joint in which what turns moves against other
+  // parts and which closes a loop: the system does not have it, and cannot tell what it does.
+  bool makes_damper(const std::string& address) const {
+    std::optional<Mechanism> beside;
+    for (const CutJoint& cut : system.cuts) {
+      if (cut.type == JointType::gear || moving_frame(system, cut.ends.a) == moving_frame(system, cut.ends.b))
+        continue;
+      if (!beside) beside = with_dampers_beside(*mechanism, {&address, 1});
+      const auto j = static_cast<std::size_t>(cut.joint);
+      if (!std::ranges::equal(mechanism->joints[j].coordinates, beside->joints[j].coordinates, {},
+                              &Coordinate::damping, &Coordinate::damping))
+        return true;
+    }
+    return false;
+  }
+
   // How the steady state moves with the sliders' numbers.
   void add_rates(const Problem& problem, Solution& out) {
     if (mechanism->sliders.empty() || system.nv == 0) return;
@@ -167,7 +185,7 @@ struct Analysis::State {
       along =
           measures.rates_along(problem, *mechanism, addresses, steady.found.z.q, rates, steady.elsewhere());
     for (std::size_t i = 0; i < rates.size(); ++i) {
-      if (rates[i].size() == 0) continue; // none that is finite
+      if (rates[i].size() == 0 || makes_damper(addresses[i])) continue; // none that is finite, or is known
       out.sensitivities.push_back(name_rates(system, addresses[i], rates[i]));
       if (measures.empty()) continue;
       const auto rate = along.col(static_cast<Eigen::Index>(i));
@@ -178,6 +196,7 @@ struct Analysis::State {
   // The same where it stands turned.
   void add_turned_rates(const Problem& problem, Solution& out) {
     for (const Slider& slider : mechanism->sliders) {
+      if (makes_damper(slider.parameter)) continue;
       Mechanism changed = *mechanism;
       VariedNumbers number(changed, {&slider.parameter, 1});
       const std::vector<TurnedRate> rates =

@@ -5,6 +5,7 @@
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/messages.hpp"
@@ -63,8 +64,11 @@ class Builder {
     const auto begin = std::chrono::steady_clock::now();
     const Interruptible scope(options_.cancel);
     check(out.steady);
-    model_ = make_motion_model(mechanism_, true);
-    steady_system_ = compile_for_drives(mechanism_);
+    const Mechanism damped = with_dampers_beside(mechanism_, addresses_);
+    model_ = make_motion_model(damped, true);
+    model_.mechanism = mechanism_;
+    bind_motion(model_.system, mechanism_, model_.parameters);
+    steady_system_ = compile_for_drives(damped);
     bind(steady_system_, mechanism_, steady_parameters_);
     place(out.steady);
     hold(out);
@@ -146,8 +150,8 @@ class Builder {
   void place(const Solution& steady) {
     SimulationOptions start;
     start.start = Start::state;
-    for (const CoordinateSolution& c : steady.coordinates)
-      if (!c.dependent) start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
+    for (const CoordinateSolution& c : steady.coordinates) // with a damper more other joints may close loops
+      start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
     find_start(start, model_, q_, u_);
     // What the balance takes: speeds in the place of angles.
     balance_q_ = q_;

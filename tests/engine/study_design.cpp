@@ -200,3 +200,48 @@ TEST_CASE("a damper that is none at the beginning of a range is part of what is 
   for (const PlanePoint& p : plane.curves[0].points)
     CHECK((0.1 + p.x) * 40 == Approx(10 - p.y).epsilon(1e-12));
 }
+
+TEST_CASE("a damper that sets in along a range is part of what is solved", "[design][branches]") {
+  // As above, with c = max(0, n - 6) N m s, of a number that is less where the range is looked into.
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "A damper that sets in",
+    "parameters": {"n": {"value": 0}},
+    "bodies": [{"name": "A", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]}],
+    "joints": [{"name": "p", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=10 N m - 0.1 N m s*rate(p)", "load": 0, "speed": 50}},
+      {"name": "b", "type": "revolute", "bodies": ["ground", "A"], "at": [0, 1, 0], "axis": [0, 1, 0],
+        "damping": "=max(0, n - 6)*1 N m s"}]})json");
+  const auto speed_at = [](double n) { return 10 / (0.1 + std::max(0., n - 6)); };
+  const ResponseDiagram diagram = follow_branches(m, "parameters.n", 0, 8);
+  REQUIRE(diagram.branches.size() == 1);
+  CHECK(diagram.branches[0].points.back().parameter == 8);
+  for (const ResponsePoint& point : diagram.branches[0].points)
+    CHECK(point.coordinates[0].speed.value() == Approx(speed_at(point.parameter)).epsilon(1e-10));
+
+  const DesignAnswer answer = design(m, "parameters.n", 0, 8, "p.speed", 20);
+  REQUIRE(answer.solutions.size() == 1);
+  CHECK(answer.solutions[0].parameter == Approx(6.4).epsilon(1e-12));
+
+  const PlaneCurves plane =
+      value_curves(m, {"parameters.n", 0, 8}, {"joints.p.drive.load", 0, 5}, "p.speed", 20);
+  REQUIRE(plane.curves.size() == 1);
+  for (const PlanePoint& p : plane.curves[0].points)
+    CHECK((0.1 + p.x - 6) * 20 == Approx(10 - p.y).epsilon(1e-10));
+}
+
+TEST_CASE("a weight that sets in along a range hangs where it would be carried round", "[branches]") {
+  // On two bearings of one axis, of which the shaft carries the first.
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "A weight that sets in",
+    "parameters": {"n": {"value": 0}}, "gravity": [0, -9.80665, 0],
+    "bodies": [{"name": "shaft", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]},
+      {"name": "bob", "mass": "=max(0, n - 6)*1 kg", "position": [0.3, -0.4, 0.1]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0],
+        "axis": [0, 0, 1], "drive": {"speed": 5}},
+      {"name": "on_shaft", "type": "revolute", "bodies": ["shaft", "bob"], "at": [0, 0, 0.1], "axis": [0, 0, 1]},
+      {"name": "on_ground", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0, 0.2],
+        "axis": [0, 0, 1]}]})json");
+  const ResponseDiagram diagram = follow_branches(m, "parameters.n", 8, 0);
+  INFO(diagram.message);
+  REQUIRE(diagram.status == Status::converged);
+  CHECK(value(diagram.branches[0].points[0].coordinates, "on_ground") ==
+        Approx(-std::atan2(0.3, 0.4)).epsilon(1e-12));
+}

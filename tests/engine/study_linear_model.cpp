@@ -4,6 +4,7 @@
 #include "tests/catch.hpp"
 #include "tests/engine/coupled_shafts.hpp"
 #include "tests/engine/linear_models.hpp"
+#include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
@@ -459,4 +460,24 @@ TEST_CASE("rounding in reactions of a long chain is no kink", "[linear-model]") 
     return std::ranges::find(steady.coordinates, "j0", &CoordinateSolution::joint)->value;
   };
   CHECK(gain(3) == Approx(-(angle(-9.7) - angle(-9.9)) / 0.2).margin(1e-4));
+}
+
+TEST_CASE("dampers that are none as drawn are inputs like others, or nothing is told of them",
+          "[linear-model][sensitivity]") {
+  // A shaft in two bearings of which b closes a loop: J w' = 3 N m - (0.1 N m s + c) w, at c = 0.
+  Mechanism m;
+  m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 2, 1})};
+  m.joints = {torque_driven(revolute("a", "ground", "rotor", {0, 0, 0}, {0, 1, 0}), 10,
+                            "3 N m - 0.1 N m s * rate(a)"),
+              revolute("b", "ground", "rotor", {0, 0.5, 0}, {0, 1, 0})};
+  for (const char* address : {"joints.b.damping", "joints.a.damping"})
+    m.sliders.emplace_back().parameter = address;
+  const LinearModel model = linear_model(m, {"joints.b.damping"}, {"rate(a)"});
+  const Complex s(0.1, 4);
+  check_transfer(model, 0, 0, s, -30. / (2. * s + 0.1));
+  // The system that solving compiles has no damper in b; of a it tells dw/dc = -w^2 / 3 N m.
+  const Solution solution = Analysis(m).solve();
+  REQUIRE(solution.sensitivities.size() == 1);
+  CHECK(solution.sensitivities[0].address == "joints.a.damping");
+  CHECK(solution.sensitivities[0].rates.at(0).value == Approx(-300).epsilon(1e-12));
 }
