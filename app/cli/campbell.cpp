@@ -39,12 +39,12 @@ Json line_json(const VibrationMode& mode, const std::string& name, const std::op
   return out;
 }
 
-// Of numbers that are no speed of a drive that turns.
+// Of numbers that set the speed of no drive that turns.
 constexpr const char* no_critical_speeds =
-    "Critical speeds and whirl are not looked for: the number is not the speed of a drive that turns.";
+    "Critical speeds and whirl are not looked for: the number sets the speed of no drive that turns.";
 
-// `turns`: the number is such a speed.
-Json diagram_json(const CampbellDiagram& d, const std::string& unit, bool turns) {
+Json diagram_json(const CampbellDiagram& d, const std::string& unit, DriveSpeed& drive) {
+  const bool turns = !drive.joint().empty();
   std::string message = d.response.message;
   if (!turns) message += fmt::format("{}{}", message.empty() ? "" : " ", no_critical_speeds);
   Json out = {{"status", word(d.response.status)}, {"message", message}, {"unit", unit}};
@@ -60,7 +60,8 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit, bool turns)
           modes.push_back(
               line_json(*mode, branch.names[l],
                         branch.points[i].whirls[static_cast<std::size_t>(branch.points[i].lines[l])]));
-      points.push_back({{"speed", at.parameter},
+      points.push_back({{"value", at.parameter},
+                        {"speed_rad_s", turns ? Json(drive.at(at.parameter)) : Json(nullptr)},
                         {"stable", at.stable ? Json(*at.stable) : Json(nullptr)},
                         {"modes", std::move(modes)}});
     }
@@ -73,6 +74,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit, bool turns)
         {{"branch", c.branch},
          {"line", d.branches[static_cast<std::size_t>(c.branch)].names[static_cast<std::size_t>(c.line)]},
          {"order", c.order},
+         {"value", c.value},
          {"speed_rad_s", c.speed},
          {"until_rad_s", c.until ? Json(*c.until) : Json(nullptr)},
          {"error_estimate", c.error},
@@ -107,21 +109,22 @@ std::string diagram_csv(const CampbellDiagram& d, const std::string& address) {
   return out;
 }
 
-std::string critical_text(const CriticalSpeed& c, const CampbellBranch& branch) {
+// `number`: that along the axis with its value, where it is not the drive's speed itself; else empty.
+std::string critical_text(const CriticalSpeed& c, const CampbellBranch& branch, const std::string& number) {
   const std::string who = fmt::format("{} of branch {}, damping ratio {:.3g}{}",
                                       printable(branch.names[static_cast<std::size_t>(c.line)]), c.branch,
                                       c.damping_ratio, whirl_text(c.whirl));
   const char* unstable = c.stable ? "" : ", unstable";
   if (c.until)
-    return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}), all along the line: {}{}\n",
-                       order_text(c.order), c.speed, *c.until, c.error, who, unstable);
-  return fmt::format("  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {}{}{}\n", order_text(c.order),
-                     c.speed, c.error, c.speed * 30 / std::numbers::pi, hertz(c.frequency), who,
-                     c.touches ? ", only touches the line" : "", unstable);
+    return fmt::format("  {} from {:.9g} to {:.9g} rad/s (± {:.1g}), all along the line: {}{}{}\n",
+                       order_text(c.order), c.speed, *c.until, c.error, who, number, unstable);
+  return fmt::format("  {} at {:.12g} rad/s (± {:.1g}, {:.9g} rpm), {:.9g} Hz: {}{}{}{}\n",
+                     order_text(c.order), c.speed, c.error, c.speed * 30 / std::numbers::pi,
+                     hertz(c.frequency), who, c.touches ? ", only touches the line" : "", number, unstable);
 }
 
-std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& unit,
-                         bool turns) {
+std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, const std::string& address,
+                         const std::string& unit, const DriveSpeed& drive) {
   std::string out = fmt::format("{}: {}\n", printable(mechanism.name), printable(d.response.message));
   for (std::size_t b = 0; b < d.branches.size(); ++b) {
     const CampbellBranch& branch = d.branches[b];
@@ -150,8 +153,9 @@ std::string diagram_text(const Mechanism& mechanism, const CampbellDiagram& d, c
       out += "    " + printable(without) + "\n";
   }
   for (const CriticalSpeed& c : d.critical)
-    out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)]);
-  if (!turns) out += fmt::format("  {}\n", no_critical_speeds);
+    out += critical_text(c, d.branches[static_cast<std::size_t>(c.branch)],
+                         drive.is_number() ? "" : fmt::format(", {} = {:.12g} {}", address, c.value, unit));
+  if (drive.joint().empty()) out += fmt::format("  {}\n", no_critical_speeds);
   return out + fmt::format("  {:.1f} ms\n", d.run_time_s * 1e3);
 }
 
@@ -162,7 +166,8 @@ void add_campbell(CLI::App& app, Ending& ending) {
   CLI::App* command =
       app.add_subcommand("campbell", "Follow modes over a drive's speed; list the critical speeds");
   options->scene.add_to(*command);
-  command->add_option("--vary", options->vary, "The speed: address=from:to")->required();
+  command->add_option("--vary", options->vary, "The speed, or a number that sets it: address=from:to")
+      ->required();
   command
       ->add_option("--order", options->orders,
                    "Oscillations a turn that something excites; given again, several (default: 1 and 2)")
@@ -184,10 +189,10 @@ void add_campbell(CLI::App& app, Ending& ending) {
     std::string unit;
     try {
       unit = parameter_unit(mechanism, range.address);
-      if (driven_joint(mechanism, range.address).empty()) {
+      if (DriveSpeed(mechanism, range.address).joint().empty()) {
         if (!orders.empty())
           throw SceneError("--order",
-                           "orders count turns: " + range.address + " is no speed of a drive that turns");
+                           "orders count turns: " + range.address + " sets the speed of no drive that turns");
       } else if (orders.empty()) {
         orders = {1, 2};
       }
@@ -200,7 +205,7 @@ void add_campbell(CLI::App& app, Ending& ending) {
       throw options->scene.in_file(error);
     }
     progress.reset();
-    const bool turns = !driven_joint(mechanism, range.address).empty();
+    DriveSpeed drive(mechanism, range.address);
     const bool any = diagram.response.status == Status::converged && !diagram.branches.empty();
     if (any && !options->svg.empty())
       write_bytes(options->svg,
@@ -209,9 +214,9 @@ void add_campbell(CLI::App& app, Ending& ending) {
                                        orders, true)));
     if (any && !options->csv.empty()) write_bytes(options->csv, diagram_csv(diagram, range.address));
     if (options->json)
-      print_json(with_warnings(diagram_json(diagram, unit, turns), mechanism));
+      print_json(with_warnings(diagram_json(diagram, unit, drive), mechanism));
     else if (options->csv.empty() && options->svg != "-")
-      print_text(diagram_text(mechanism, diagram, unit, turns));
+      print_text(diagram_text(mechanism, diagram, range.address, unit, drive));
     ending = end_with(any, options->scene.file, diagram.response.message);
   });
 }

@@ -89,7 +89,8 @@ void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch&
 }
 
 // Lines of so many oscillations a turn, where unbalance and the like would excite.
-void add_orders(Plot& plot, PlotRange speeds, std::span<const double> orders, double factor, double highest) {
+void add_orders(Plot& plot, DriveSpeed& drive, PlotRange values, std::span<const double> orders,
+                double factor, double highest) {
   double width = 1.2; // points; each next one wider, to tell them apart
   for (const double order : orders) {
     PlotCurve line{.name = order_text(order) + " speed",
@@ -98,9 +99,9 @@ void add_orders(Plot& plot, PlotRange speeds, std::span<const double> orders, do
                    .color = plot_color::neutral,
                    .width = std::exchange(width, std::min(width + 1, 4.))};
     for (int i = 0; i <= 200; ++i) {
-      const double speed = speeds[0] + (speeds[1] - speeds[0]) * i / 200,
-                   y = order * std::abs(speed) * factor;
-      line.points.push_back({speed, y <= highest ? y : no_value});
+      const double value = values[0] + (values[1] - values[0]) * i / 200,
+                   y = order * std::abs(drive.at(value)) * factor;
+      line.points.push_back({value, y <= highest ? y : no_value});
     }
     // Told at its end, too: the legend's samples are short.
     const auto last =
@@ -116,7 +117,7 @@ void add_orders(Plot& plot, PlotRange speeds, std::span<const double> orders, do
 void add_critical(Plot& plot, const CampbellDiagram& diagram, std::size_t branch, double factor) {
   for (const CriticalSpeed& at : diagram.critical)
     if (at.branch == static_cast<int>(branch) && !at.until)
-      plot.marks.push_back({.at = {at.speed, at.frequency * factor},
+      plot.marks.push_back({.at = {at.value, at.frequency * factor},
                             .label = {},
                             .shape = PlotShape::circle,
                             .color = plot_color::neutral});
@@ -169,17 +170,17 @@ std::string order_text(double order) {
 }
 
 Plot campbell_plot(const Mechanism& mechanism, const std::string& address, const CampbellDiagram& diagram,
-                   std::size_t branch, std::span<const std::string> names, PlotRange speeds,
+                   std::size_t branch, std::span<const std::string> names, PlotRange values,
                    std::span<const double> orders, bool hertz) {
   Plot plot;
   const double factor = hertz ? 1 / (2 * std::numbers::pi) : 1;
-  plot.x = {.label = address, .unit = parameter_unit(mechanism, address), .range = speeds, .room = 0};
+  plot.x = {.label = address, .unit = parameter_unit(mechanism, address), .range = values, .room = 0};
   plot.y = {.label = "frequency", .unit = hertz ? "Hz" : "rad/s"};
   add_lines(plot, diagram.response.branches[branch], diagram.branches[branch], names, factor);
   const double highest = highest_of(plot);
   plot.y.range = PlotRange{0, highest > 0 ? 1.1 * highest : 1};
-  if (highest > 0 && !driven_joint(mechanism, address).empty())
-    add_orders(plot, speeds, orders, factor, 1.1 * highest);
+  DriveSpeed drive(mechanism, address);
+  if (highest > 0 && !drive.joint().empty()) add_orders(plot, drive, values, orders, factor, 1.1 * highest);
   add_critical(plot, diagram, branch, factor);
   add_special(plot, diagram.response, branch, factor);
   return plot;

@@ -4,6 +4,7 @@
 #include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/solve/solution_difference.hpp"
 #include "engine/study/friction_branches.hpp"
@@ -80,10 +81,16 @@ CampbellRequest wanted_now(Session& session) {
 
 std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   std::vector<std::string> speeds;
-  for (const PrescribedSpeed& speed : prescribed_speeds(mechanism))
-    if (std::string address = number_alone(mechanism, speed.address);
-        !address.empty() && std::ranges::find(speeds, address) == speeds.end())
-      speeds.push_back(std::move(address));
+  for (const PrescribedSpeed& speed : prescribed_speeds(mechanism)) {
+    std::vector<std::string> set_by{number_alone(mechanism, speed.address)};
+    if (set_by.front().empty()) {
+      set_by = sources_of(mechanism, *formula_at(mechanism, speed.address));
+      std::ranges::stable_partition(
+          set_by, [&](const std::string& address) { return parameter_unit(mechanism, address) == "rad/s"; });
+    }
+    for (std::string& address : set_by)
+      if (std::ranges::find(speeds, address) == speeds.end()) speeds.push_back(std::move(address));
+  }
   return speeds;
 }
 

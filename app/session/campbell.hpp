@@ -17,10 +17,10 @@ namespace flyball {
 struct Session;
 
 struct CampbellRequest {
-  std::string drive;       // address of the speed along the axis
+  std::string drive;       // address of the number along the axis, the speed of a drive or what sets it
   double from = 0, to = 0; // its range
   std::vector<double> orders;
-  SharedMechanism mechanism; // with that speed 0
+  SharedMechanism mechanism; // with that number 0
   bool operator==(const CampbellRequest&) const = default;
 };
 
@@ -39,7 +39,8 @@ struct CampbellState {
   std::uint64_t judged_ticket = 0;
 };
 
-// Addresses of the numbers that are the speed of a drive, each once.
+// Addresses of the numbers that set the speed of a drive, alone or in an expression, each once; of an
+// expression's speeds first.
 std::vector<std::string> drive_speeds(const Mechanism& mechanism);
 // Drive and range as they were chosen, or as they are at first; no drive: "".
 std::string campbell_drive(const Session& session);

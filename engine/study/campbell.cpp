@@ -6,6 +6,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_state.hpp"
@@ -57,12 +58,13 @@ std::vector<std::pair<std::string, double>> between(const ResponsePoint& a, cons
 class Describer {
  public:
   Describer(const Mechanism& mechanism, const std::string& address, const std::atomic<bool>* cancel)
-      : mechanism_(mechanism), address_(address), joint_(driven_joint(mechanism, address)),
-        analysis_(mechanism), cancel_(cancel) {
+      : mechanism_(mechanism), address_(address), drive_(mechanism, address), analysis_(mechanism),
+        cancel_(cancel) {
     analysis_.vary(std::vector{address});
   }
 
-  bool turns() const { return !joint_.empty(); }
+  bool turns() const { return !drive_.joint().empty(); }
+  DriveSpeed& drive() { return drive_; }
 
   CampbellPoint describe(const ResponsePoint& point) {
     CampbellPoint out;
@@ -82,7 +84,7 @@ class Describer {
     return solved().modes();
   }
   std::optional<Whirl> whirl(const VibrationMode& mode) {
-    return turns() ? solved().whirl(mode, joint_) : std::nullopt;
+    return turns() ? solved().whirl(mode, drive_.joint()) : std::nullopt;
   }
 
  private:
@@ -120,7 +122,7 @@ class Describer {
 
   const Mechanism& mechanism_;
   const std::string& address_;
-  std::string joint_;
+  DriveSpeed drive_;
   Analysis analysis_;
   std::optional<StateOnFriction> on_friction_; // of the last solve
   const std::atomic<bool>* cancel_;
@@ -151,6 +153,7 @@ std::vector<std::string> names_of(const CampbellBranch& branch, std::size_t line
 }
 
 // Where one line of a branch meets the line of one order: crossings, and double roots where it only touches.
+// They are sought over the number along the axis, and told as speeds of the drive.
 class CrossingFinder {
  public:
   CrossingFinder(Describer& describer, const ResponseBranch& followed, const CampbellBranch& branch,
@@ -171,7 +174,7 @@ class CrossingFinder {
       if (is_told(i) || is_told(i + 1)) continue;
       const Way way{samples_[i], samples_[i + 1]};
       if ((way.a.off < 0) != (way.b.off < 0))
-        add_crossing(way, {way.a.speed(), way.a.off}, {way.b.speed(), way.b.off});
+        add_crossing(way, {way.a.value(), way.a.off}, {way.b.value(), way.b.off});
       else if (may_touch(i))
         look_between(way);
     }
@@ -184,19 +187,22 @@ class CrossingFinder {
     const VibrationMode* mode = nullptr; // null: not known
     double off = 0;                      // rad/s, above the order's line
     bool runs = false;                   // along it, from here or to here
-    double speed() const { return at->parameter; }
+    double value() const { return at->parameter; }
   };
   // From one point of the branch to the next.
   struct Way {
     const Sample &a, &b;
-    double slope() const { return (b.off - a.off) / (b.speed() - a.speed()); }
+    double slope() const { return (b.off - a.off) / (b.value() - a.value()); }
   };
   struct Place {
-    double speed = 0, off = 0;
+    double value = 0, off = 0;
   };
 
-  double off(const VibrationMode& mode, double speed) const {
-    return mode.frequency - order_ * std::abs(speed);
+  // rad/s, the drive's at a value.
+  double speed(double value) { return describer_.drive().at(value); }
+  double speed(const Sample& sample) { return speed(sample.value()); }
+  double off(const VibrationMode& mode, double value) {
+    return mode.frequency - order_ * std::abs(speed(value));
   }
   // Of off(), rad/s.
   static double rounding(const VibrationMode& mode) {
@@ -209,15 +215,15 @@ class CrossingFinder {
 
   bool is_told(std::size_t i) const { return samples_[i].runs || stands_on(i); }
 
-  bool runs_along(const VibrationMode& mode, double speed) const {
-    return mode.oscillates() && std::abs(off(mode, speed)) <= along * mode.natural_frequency;
+  bool runs_along(const VibrationMode& mode, double value) {
+    return mode.oscillates() && std::abs(off(mode, value)) <= along * mode.natural_frequency;
   }
-  bool runs_along(std::size_t i) const {
+  bool runs_along(std::size_t i) {
     const Sample& s = samples_[i];
-    return s.mode && runs_along(*s.mode, s.speed());
+    return s.mode && runs_along(*s.mode, s.value());
   }
   bool runs_along(const Sample& a, const Sample& b) {
-    const double middle = (a.speed() + b.speed()) / 2;
+    const double middle = (a.value() + b.value()) / 2;
     const std::optional<VibrationMode> mode = nearest({a, b}, middle);
     return mode && runs_along(*mode, middle);
   }
@@ -240,12 +246,13 @@ class CrossingFinder {
   void add_run(std::size_t first, std::size_t last) {
     // It leaves the line before the next point of the branch, if it does.
     double error = 0;
-    if (first > 0) error = std::abs(samples_[first].speed() - samples_[first - 1].speed());
+    if (first > 0) error = std::abs(speed(samples_[first]) - speed(samples_[first - 1]));
     if (last + 1 < samples_.size())
-      error = std::max(error, std::abs(samples_[last + 1].speed() - samples_[last].speed()));
-    const auto [low, high] = std::minmax({samples_[first].speed(), samples_[last].speed()});
-    const VibrationMode& mode = *samples_[samples_[first].speed() == low ? first : last].mode;
-    add(mode, low, error, false);
+      error = std::max(error, std::abs(speed(samples_[last + 1]) - speed(samples_[last])));
+    const auto [low, high] = std::minmax({speed(samples_[first]), speed(samples_[last])});
+    const Sample& slowest = samples_[speed(samples_[first]) == low ? first : last];
+    add(*slowest.mode, slowest.value(), 0, false);
+    found_.back().error = error;
     found_.back().until = high;
   }
 
@@ -266,12 +273,14 @@ class CrossingFinder {
     return low != high && least <= high - low;
   }
 
-  void add(const VibrationMode& mode, double speed, double error, bool touches) {
+  // `error`: of the value.
+  void add(const VibrationMode& mode, double value, double error, bool touches) {
     found_.push_back({.order = order_,
-                      .speed = speed,
+                      .value = value,
+                      .speed = speed(value),
                       .frequency = mode.frequency,
                       .until = {},
-                      .error = error,
+                      .error = error == 0 ? 0 : error * std::abs(describer_.drive().rate(value)),
                       .damping_ratio = mode.damping_ratio,
                       .touches = touches,
                       .whirl = describer_.whirl(mode)});
@@ -285,41 +294,41 @@ class CrossingFinder {
     const double uncertain = std::abs(here.off) + rounding(*here.mode);
     double steepest = 0;
     for (const Sample* other : {before, after})
-      if (other && other->speed() != here.speed())
+      if (other && other->value() != here.value())
         steepest = std::max(steepest, std::abs(Way{here, *other}.slope()));
     const bool touches = before && after && (before->off < 0) == (after->off < 0);
-    if (steepest == 0) return add(*here.mode, here.speed(), 0, false);
+    if (steepest == 0) return add(*here.mode, here.value(), 0, false);
     const double width =
-        touches ? std::max(std::abs(before->speed() - here.speed()), std::abs(after->speed() - here.speed()))
+        touches ? std::max(std::abs(before->value() - here.value()), std::abs(after->value() - here.value()))
                 : 0;
-    // Of a double root off = curvature / 2 (speed - here)^2.
-    add(*here.mode, here.speed(), touches ? std::sqrt(uncertain * width / steepest) : uncertain / steepest,
+    // Of a double root off = curvature / 2 (value - here)^2.
+    add(*here.mode, here.value(), touches ? std::sqrt(uncertain * width / steepest) : uncertain / steepest,
         touches);
   }
 
   // Between two places of unlike signs.
   void add_crossing(const Way& way, const Place& from, const Place& to) {
-    if (from.speed == to.speed || (!way.a.mode->oscillates() && !way.b.mode->oscillates())) return;
-    RootBracket bracket(from.speed, from.off, to.speed, to.off);
-    const double narrow = 1e-14 * (bracket.width() + std::abs(from.speed) + std::abs(to.speed));
+    if (from.value == to.value || (!way.a.mode->oscillates() && !way.b.mode->oscillates())) return;
+    RootBracket bracket(from.value, from.off, to.value, to.off);
+    const double narrow = 1e-14 * (bracket.width() + std::abs(from.value) + std::abs(to.value));
     std::optional<VibrationMode> last;
-    double speed = from.speed;
+    double value = from.value;
     for (int i = 0; i < 60 && bracket.width() > narrow; ++i) {
-      speed = bracket.next();
-      last = nearest(way, speed);
+      value = bracket.next();
+      last = nearest(way, value);
       if (!last) return;
-      const double f = off(*last, speed);
-      if (std::abs(f) <= 1e-15 * std::max(last->natural_frequency, std::abs(order_ * speed))) break;
-      bracket.take(speed, f);
+      const double f = off(*last, value);
+      if (std::abs(f) <= 1e-15 * std::max(last->natural_frequency, order_ * std::abs(speed(value)))) break;
+      bracket.take(value, f);
     }
     if (!last || !last->oscillates()) return;
     // Beside a double root the chord from there is the flatter one, half as steep as the line at the
     // crossing.
     double slope = std::numeric_limits<double>::infinity();
     for (const Place& end : {from, to})
-      if (end.speed != speed) slope = std::min(slope, std::abs(end.off / (end.speed - speed)));
-    add(*last, speed,
-        (std::abs(off(*last, speed)) + (last->residual + 1e-15) * last->natural_frequency) /
+      if (end.value != value) slope = std::min(slope, std::abs(end.off / (end.value - value)));
+    add(*last, value,
+        (std::abs(off(*last, value)) + (last->residual + 1e-15) * last->natural_frequency) /
             std::max(slope, 1e-300),
         false);
   }
@@ -329,33 +338,33 @@ class CrossingFinder {
   void look_between(const Way& way) {
     constexpr double golden = 0.3819660112501051;
     const double side = way.a.off < 0 ? -1 : 1;
-    Place low{way.a.speed(), way.a.off}, high{way.b.speed(), way.b.off};
-    const double width = std::abs(high.speed - low.speed);
+    Place low{way.a.value(), way.a.off}, high{way.b.value(), way.b.off};
+    const double width = std::abs(high.value - low.value);
     std::optional<VibrationMode> mode;
-    const auto look = [&](double speed) {
-      mode = nearest(way, speed);
-      return Place{speed, mode ? off(*mode, speed) : 0};
+    const auto look = [&](double value) {
+      mode = nearest(way, value);
+      return Place{value, mode ? off(*mode, value) : 0};
     };
-    Place middle = look(low.speed + golden * (high.speed - low.speed));
+    Place middle = look(low.value + golden * (high.value - low.value));
     while (mode && mode->oscillates()) {
       const double distance = side * middle.off;
       if (distance < -rounding(*mode)) {
-        add_crossing(way, {way.a.speed(), way.a.off}, middle);
-        add_crossing(way, middle, {way.b.speed(), way.b.off});
+        add_crossing(way, {way.a.value(), way.a.off}, middle);
+        add_crossing(way, middle, {way.b.value(), way.b.off});
         return;
       }
       const double ends = std::max(side * low.off, side * high.off);
       // Bent one way only it lies above the line from an end through the middle, and the parts are as 1 to
       // 1.62.
       if (distance > rounding(*mode) && distance > 1.7 * (ends - distance)) return;
-      if (std::abs(high.speed - low.speed) <= 1e-8 * width) {
+      if (std::abs(high.value - low.value) <= 1e-8 * width) {
         if (distance <= rounding(*mode)) add_touch(way, *mode, middle);
         return;
       }
-      const bool left = std::abs(middle.speed - low.speed) > std::abs(high.speed - middle.speed);
+      const bool left = std::abs(middle.value - low.value) > std::abs(high.value - middle.value);
       const std::optional<VibrationMode> kept = mode;
-      const Place other = look(left ? middle.speed + golden * (low.speed - middle.speed)
-                                    : middle.speed + golden * (high.speed - middle.speed));
+      const Place other = look(left ? middle.value + golden * (low.value - middle.value)
+                                    : middle.value + golden * (high.value - middle.value));
       if (!mode) return;
       if (side * other.off < side * middle.off) {
         (left ? high : low) = middle;
@@ -368,18 +377,18 @@ class CrossingFinder {
   }
 
   void add_touch(const Way& way, const VibrationMode& mode, const Place& at) {
-    // off = curvature / 2 (speed - at)^2, as the farther end tells.
+    // off = curvature / 2 (value - at)^2, as the farther end tells.
     const Sample& far =
-        std::abs(way.a.speed() - at.speed) > std::abs(way.b.speed() - at.speed) ? way.a : way.b;
+        std::abs(way.a.value() - at.value) > std::abs(way.b.value() - at.value) ? way.a : way.b;
     const double uncertain = std::abs(at.off) + rounding(mode);
-    add(mode, at.speed, std::abs(far.speed() - at.speed) * std::sqrt(uncertain / std::abs(far.off)), true);
+    add(mode, at.value, std::abs(far.value() - at.value) * std::sqrt(uncertain / std::abs(far.off)), true);
   }
 
-  std::optional<VibrationMode> nearest(const Way& way, double speed) {
-    const double part = (speed - way.a.speed()) / (way.b.speed() - way.a.speed());
+  std::optional<VibrationMode> nearest(const Way& way, double value) {
+    const double part = (value - way.a.value()) / (way.b.value() - way.a.value());
     std::optional<VibrationMode> best;
     double least = 0;
-    for (VibrationMode& mode : describer_.modes_between(*way.a.at, *way.b.at, speed)) {
+    for (VibrationMode& mode : describer_.modes_between(*way.a.at, *way.b.at, value)) {
       const double cost = unlikeness(mode, *way.a.mode, *way.b.mode, part);
       if (best && cost >= least) continue;
       least = cost;
@@ -414,11 +423,13 @@ CampbellBranch describe_branch(Describer& describer, const ResponseBranch& follo
 }
 
 // Not known to be unstable at a point of the branch beside the critical speed.
-bool stable_at(const ResponseBranch& followed, const CriticalSpeed& critical) {
+bool stable_at(DriveSpeed& drive, const ResponseBranch& followed, const CriticalSpeed& critical) {
   for (std::size_t i = 1; i < followed.points.size(); ++i) {
     const ResponsePoint &a = followed.points[i - 1], &b = followed.points[i];
-    const bool beside = critical.until.value_or(critical.speed) >= std::min(a.parameter, b.parameter) &&
-                        critical.speed <= std::max(a.parameter, b.parameter);
+    const auto [low, high] = std::minmax({a.parameter, b.parameter});
+    const auto [slow, fast] = std::minmax({drive.at(a.parameter), drive.at(b.parameter)});
+    const bool beside = critical.until ? *critical.until >= slow && critical.speed <= fast
+                                       : critical.value >= low && critical.value <= high;
     if (beside && (a.stable == false || b.stable == false)) return false;
   }
   return true;
@@ -432,7 +443,7 @@ void add_critical(Describer& describer, const ResponseBranch& followed, const Ca
       for (CriticalSpeed& found : CrossingFinder(describer, followed, branch, l, order).find()) {
         found.branch = number;
         found.line = static_cast<int>(l);
-        found.stable = stable_at(followed, found);
+        found.stable = stable_at(describer.drive(), followed, found);
         critical.push_back(std::move(found));
       }
   std::ranges::stable_sort(critical, {}, &CriticalSpeed::speed);
@@ -441,11 +452,44 @@ void add_critical(Describer& describer, const ResponseBranch& followed, const Ca
 
 } // namespace
 
-std::string driven_joint(const Mechanism& mechanism, const std::string& address) {
-  for (const PrescribedSpeed& speed : prescribed_speeds(mechanism))
-    if (speed.angle && (speed.address == address || number_alone(mechanism, speed.address) == address))
-      return speed.joint;
-  return {};
+DriveSpeed::DriveSpeed(const Mechanism& mechanism, std::string address) : address_(std::move(address)) {
+  const std::vector<PrescribedSpeed> speeds = prescribed_speeds(mechanism);
+  for (const PrescribedSpeed& speed : speeds)
+    if (speed.angle && (speed.address == address_ || number_alone(mechanism, speed.address) == address_)) {
+      joint_ = speed.joint;
+      return;
+    }
+  for (const PrescribedSpeed& speed : speeds) {
+    const std::optional<std::string> formula = formula_at(mechanism, speed.address);
+    if (!speed.angle || !formula) continue;
+    const std::vector<std::string> sources = sources_of(mechanism, *formula);
+    if (std::ranges::find(sources, address_) == sources.end()) continue;
+    joint_ = speed.joint;
+    speed_ = speed.address;
+    formula_ = *formula;
+    varied_ = mechanism;
+    return;
+  }
+}
+
+bool DriveSpeed::set(double value) {
+  try {
+    set_parameter(*varied_, address_, value);
+  } catch (const SceneError&) {
+    return false;
+  }
+  return true;
+}
+
+double DriveSpeed::at(double value) {
+  if (!varied_) return value;
+  return set(value) ? get_parameter(*varied_, speed_) : std::numeric_limits<double>::quiet_NaN();
+}
+
+double DriveSpeed::rate(double value) {
+  if (!varied_) return 1;
+  return set(value) ? expression_gradient(*varied_, formula_, {address_}).front()
+                    : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBranch& branch,

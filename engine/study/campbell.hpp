@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/continuation/branches.hpp"
+#include "engine/mechanism/mechanism.hpp"
 #include "engine/stability/mode_motion.hpp"
 
 #include <functional>
@@ -15,7 +16,7 @@ namespace flyball {
 
 struct CampbellPoint {
   std::vector<VibrationMode> modes; // shapes left out where the linearised motion turns with the drives
-  std::vector<std::optional<Whirl>> whirls; // by mode, about the drive whose speed it is
+  std::vector<std::optional<Whirl>> whirls; // by mode, about the axis of the drive
   std::vector<int> lines;                   // by line of the branch: which of the modes, or -1
   const VibrationMode* on(std::size_t line) const {
     return lines[line] < 0 ? nullptr : &modes[static_cast<std::size_t>(lines[line])];
@@ -29,11 +30,12 @@ struct CampbellBranch {
   std::vector<std::string> names;
 };
 
-// A speed at which a mode swings `order` times a turn: its line crosses the order's, only touches it, or runs
-// along it, as that of a tuned centrifugal pendulum does.
+// A speed of the drive at which a mode swings `order` times a turn: its line crosses the order's, only
+// touches it, or runs along it, as that of a tuned centrifugal pendulum does.
 struct CriticalSpeed {
   int branch = 0, line = 0;
   double order = 1;
+  double value = 0; // of the number along the axis, at `speed`: the same, where that is the drive's itself
   double speed = 0, frequency = 0; // rad/s
   // rad/s: the highest of the speeds, from `speed` on, at which the mode's line runs along the order's.
   std::optional<double> until;
@@ -62,8 +64,24 @@ std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBr
 // unbalance stands.
 bool unbalance_excites(const CriticalSpeed& critical);
 
-// The joint whose drive has this address as its speed, or one that a named parameter is; empty: none.
-std::string driven_joint(const Mechanism& mechanism, const std::string& address);
+// The drive whose turns orders count along the number at `address`: one that turns with this as its speed,
+// else one whose speed an expression makes of it, and perhaps of others.
+class DriveSpeed {
+ public:
+  DriveSpeed(const Mechanism& mechanism, std::string address);
+
+  const std::string& joint() const { return joint_; } // empty: there is no such drive
+  bool is_number() const { return !varied_; }         // the number itself is the speed
+  // rad/s, where the number has that value. NaN where expressions make nothing of it.
+  double at(double value);
+  double rate(double value); // d at / d value; likewise
+
+ private:
+  bool set(double value);
+
+  std::string address_, joint_, speed_, formula_; // the last two, the drive's, where it is not the number
+  std::optional<Mechanism> varied_;               // where there is a formula
+};
 
 // A sentence or two on the points of a branch that have no modes because its loops are singular there; empty
 // where there are none. `speed_text` writes a speed as a number of `unit`.
@@ -71,8 +89,8 @@ std::string left_out(const ResponseBranch& branch, const std::function<std::stri
                      const std::string& unit);
 
 // The modes along the branches of `response`, which were followed over `address`. `orders` (any positive
-// numbers) are of the speed of driven_joint(), and need one. Where `cancel` is set
-// there are branches as far as it came.
+// numbers) count turns of the drive of DriveSpeed, and need one. Where `cancel` is set there are branches as
+// far as it came.
 CampbellDiagram campbell_diagram(const Mechanism& mechanism, const std::string& address,
                                  ResponseDiagram response, std::span<const double> orders,
                                  const std::atomic<bool>* cancel = nullptr);

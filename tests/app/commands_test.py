@@ -282,6 +282,25 @@ def modes_over_other_numbers(_):
         check(f"why there are no critical speeds over {address}", out["branches"] and (why in out["message"]) == told)
 
 
+def critical_speeds_over_an_expression(_):
+    """Where a drive turns twice as fast as a number, orders count its turns, and both are told."""
+    with open(SCENE, encoding="utf-8") as file:
+        scene = json.load(file)
+    plain = json.loads(run("campbell", SCENE, "--vary", f"{SPEED}=1:20", "--order", "1", "--json")[1])
+    scene.update(flyball=2, parameters={"n": {"value": 5.5, "unit": "rad/s"}}, sliders=[])
+    next(joint for joint in scene["joints"] if "drive" in joint)["drive"]["speed"] = "=2*n"
+    args = ("campbell", "-", "--vary", "parameters.n=0.5:10", "--order", "1")
+    twice = json.loads(run(*args, "--json", input=json.dumps(scene).encode())[1])
+    told = [(c["speed_rad_s"], c["value"]) for c in twice["critical_speeds"]]
+    alone = [(c["speed_rad_s"], c["value"]) for c in plain["critical_speeds"]]
+    check(f"critical speeds over half the speed: {told}, {alone}", len(told) == len(alone) > 0 and all(
+        abs(a - b) < 1e-9 and abs(2 * n - a) < 1e-9 and b == w for (a, n), (b, w) in zip(told, alone)))
+    point = twice["branches"][0]["points"][0]
+    check(f"points tell both: {point['value']}, {point['speed_rad_s']}", point["speed_rad_s"] == 2 * point["value"])
+    text = run(*args, input=json.dumps(scene).encode())[1].decode()
+    check(f"the text tells both: {text}", f"parameters.n = {told[0][1]:.12g} rad/s" in text)
+
+
 def what_turns_in_a_sweep(_):
     """A pendulum that weighs nothing is carried round by friction; heavier, it hangs, and has a column for where."""
     pin = {"type": "revolute", "axis": [0, 0, 1], "at": [0, 0, 0]}
@@ -433,7 +452,8 @@ def parts(folder):
 
 with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
-                 units_of_ranges, modes_over_other_numbers, what_turns_in_a_sweep, hunting, loads, parts):
+                 units_of_ranges, modes_over_other_numbers, critical_speeds_over_an_expression, what_turns_in_a_sweep,
+                 hunting, loads, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)

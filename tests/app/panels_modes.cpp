@@ -10,6 +10,7 @@
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/view_frame.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -277,6 +278,34 @@ TEST_CASE(
   robot.click("campbell/critical/1");
   robot.frames(2);
   CHECK(get_parameter(app.session.mechanism(), "parameters.n") == Approx(68.2320470519));
+}
+
+TEST_CASE("over half a drive's speed lines of excitation and critical speeds are of the drive") {
+  Mechanism m = shipped("rotor_oil_whip");
+  std::ranges::find(m.joints, "spin", &Joint::name)->formulas = {{"drive.speed", "2 * n"}};
+  evaluate_formulas(m);
+  Robot robot(wide);
+  Session& session = robot.app.session;
+  open_document(session, Document(m));
+  robot.frames(3);
+  robot.key('O');
+  robot.frames(5);
+  CHECK(campbell_drive(session) == "parameters.n");
+  const CampbellView& drawn = robot.app.panels->studies.shown().campbell;
+  const auto line = std::ranges::find(drawn.plot.curves, "1× speed", &PlotCurve::name);
+  REQUIRE(line != drawn.plot.curves.end());
+  for (const auto& p : line->points)
+    if (std::isfinite(p[1])) CHECK(p[1] == Approx(hertz(2 * p[0])));
+  REQUIRE(drawn.critical);
+  REQUIRE_FALSE(drawn.critical->empty());
+  const CriticalRow row = drawn.critical->front();
+  CHECK(std::stod(row.speed) == Approx(2 * row.at).epsilon(1e-5));
+  CHECK(std::ranges::any_of(drawn.plot.marks, [&](const PlotMark& mark) {
+    return mark.shape == PlotShape::circle && mark.at[0] == Approx(row.at);
+  }));
+  robot.click("campbell/critical/1");
+  robot.frames(2);
+  CHECK(get_parameter(session.mechanism(), "joints.spin.drive.speed") == Approx(2 * row.at));
 }
 
 TEST_CASE("where there is little room the Campbell diagram has it, and critical speeds stand below") {

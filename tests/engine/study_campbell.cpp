@@ -216,12 +216,56 @@ TEST_CASE("a governor's critical speed is where its eigenvalue says", "[campbell
 }
 
 TEST_CASE("orders are of speeds that are given", "[campbell]") {
+  const auto drive_of = [](const Mechanism& m, const std::string& address) {
+    return DriveSpeed(m, address).joint();
+  };
   Mechanism m = turning_springs();
-  CHECK(driven_joint(m, spin_speed) == "spin");
-  CHECK(driven_joint(m, "joints.x.spring.stiffness").empty());
+  CHECK(drive_of(m, spin_speed) == "spin");
+  CHECK(drive_of(m, "joints.x.spring.stiffness").empty());
   // One that is kept by its momentum only turns as fast as that in the drawn pose.
   m.joints[0].coordinates[0].drive->keeps = DriveKeeps::momentum;
-  CHECK(driven_joint(m, spin_speed).empty());
+  CHECK(drive_of(m, spin_speed).empty());
+}
+
+TEST_CASE("over a number of which a drive's speed is an expression orders count the drive's turns",
+          "[campbell]") {
+  // As over the speed itself, and where the number makes it.
+  struct Case {
+    const char* speed;
+    double from, to;
+    double (*value)(double speed);
+    double rate;
+  };
+  const std::string n = "parameters.n";
+  for (const Case& c : {Case{"2 * n", 0.25, 4.5, [](double w) { return w / 2; }, 2},
+                        Case{"-n", -9, -0.5, [](double w) { return -w; }, -1},
+                        Case{"n - 5 rad/s", 5.5, 14, [](double w) { return w + 5; }, 1},
+                        Case{"n^2 / (1 rad/s)", 0.7, 3, [](double w) { return std::sqrt(w); }, 0}}) {
+    CAPTURE(c.speed);
+    Mechanism m = turning_springs();
+    m.parameters = {{"n", "", c.from, "rad/s", {}, {}}};
+    m.joints[0].formulas = {{"drive.speed", c.speed}};
+    evaluate_formulas(m);
+    DriveSpeed drive(m, n);
+    CHECK(drive.joint() == "spin");
+    CHECK(drive.at(c.value(3)) == Approx(3).epsilon(1e-14));
+    if (c.rate != 0) CHECK(drive.rate(2) == c.rate);
+    const CampbellDiagram d = campbell_diagram(m, n, follow_branches(m, n, c.from, c.to), std::array{1., 2.});
+    REQUIRE(d.critical.size() == 3);
+    const std::array speeds{natural / 3, natural / 2, along / 2};
+    const std::array orders{2., 1., 2.};
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(d.critical[i].order == orders[i]);
+      CHECK(std::abs(d.critical[i].speed - speeds[i]) < 1e-12 * speeds[i]);
+      CHECK(std::abs(d.critical[i].speed - speeds[i]) <= 10 * d.critical[i].error);
+      CHECK(d.critical[i].error < 1e-9);
+      CHECK(std::abs(d.critical[i].value - c.value(speeds[i])) < 1e-12 * std::abs(c.value(speeds[i])));
+      CHECK(d.critical[i].stable);
+    }
+    // About the drive's axis, as it turns.
+    REQUIRE(d.critical[0].whirl);
+    CHECK(d.critical[0].whirl->value > 0.99);
+  }
 }
 
 TEST_CASE("modal assurance of shapes", "[campbell]") {

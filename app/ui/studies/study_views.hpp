@@ -83,7 +83,7 @@ struct TransferView {
 struct CriticalRow {
   std::string order, mode, whirl, speed;
   bool unbalance = false; // it excites it
-  double at = 0;          // rad/s
+  double at = 0;          // of the number along the axis
   std::string help;
 };
 
@@ -91,8 +91,8 @@ struct CampbellView {
   bool hertz = true; // or rad/s
   PlotView view;
   Plot plot;
-  std::optional<std::vector<CriticalRow>> critical; // none: the axis is no speed of turning
-  ShownUnit unit;                                   // of the axis
+  std::optional<std::vector<CriticalRow>> critical; // none: the axis sets no speed of turning
+  ShownUnit unit;                                   // of the drive's speed
   std::string without_modes;                        // where the branch that is shown has none; empty: nowhere
   struct Of {
     std::shared_ptr<const void> diagram, modes; // what was found

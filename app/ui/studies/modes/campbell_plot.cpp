@@ -25,32 +25,33 @@ void draw_campbell(const Session& session, CampbellView& drawn) {
   drawn.of = shown;
   const CampbellRequest& of = campbell.diagram.found->of;
   const std::string unit = parameter_unit(*of.mechanism, of.drive);
-  const PlotRange speeds{std::min(of.from, of.to), std::max(of.from, of.to)};
-  drawn.unit = shown_unit(unit, session.units);
+  const PlotRange range{std::min(of.from, of.to), std::max(of.from, of.to)};
+  const ShownUnit shown_as = shown_unit(unit, session.units);
+  drawn.unit = shown_unit("rad/s", session.units);
   drawn.critical.reset();
   Plot plot;
   if (const std::optional<CampbellPlace> place = campbell_place(session)) {
     const CampbellDiagram& diagram = campbell.diagram.found->result;
     const std::vector<std::string> names = campbell_names(session, *place);
-    plot = campbell_plot(session.mechanism(), of.drive, diagram, place->branch, names, speeds, of.orders,
+    plot = campbell_plot(session.mechanism(), of.drive, diagram, place->branch, names, range, of.orders,
                          drawn.hertz);
-    if (!driven_joint(session.mechanism(), of.drive).empty())
+    if (!DriveSpeed(session.mechanism(), of.drive).joint().empty())
       drawn.critical = critical_rows(diagram, place->branch, names, drawn.unit);
     drawn.without_modes = left_out(
         diagram.response.branches[place->branch],
-        [&](double speed) { return short_text(drawn.unit.shown(speed), 6); }, drawn.unit.text);
+        [&](double value) { return short_text(shown_as.shown(value), 6); }, shown_as.text);
   } else {
-    plot.x = {.label = {}, .unit = unit, .range = speeds, .room = 0};
+    plot.x = {.label = {}, .unit = unit, .range = range, .room = 0};
     plot.y = {.label = "frequency", .unit = drawn.hertz ? "Hz" : "rad/s"};
     drawn.without_modes.clear();
   }
   plot.x.label = parameter_phrase(of.drive);
   if (converged(session)) {
-    const double speed = get_parameter(session.mechanism(), of.drive);
-    plot.references.push_back({.axis = 0, .at = speed, .label = "now", .color = plot_color::blue});
+    const double value = get_parameter(session.mechanism(), of.drive);
+    plot.references.push_back({.axis = 0, .at = value, .label = "now", .color = plot_color::blue});
     if (const VibrationMode* mode = moving_mode(session);
         mode && modes_are_current(session) && mode->oscillates())
-      plot.marker = PlotMarker{speed * drawn.unit.factor,
+      plot.marker = PlotMarker{value * shown_as.factor,
                                mode->frequency * (drawn.hertz ? 1 / (2 * std::numbers::pi) : 1), ""};
   }
   show_axis(plot, 0, unit, session.units);

@@ -28,7 +28,7 @@ constexpr std::array columns{
     CriticalColumn{"Unbalance", 66,
                    "Whether an unbalance can excite it: that turns with the drive, once a turn, and does not "
                    "excite what goes round against it in circles."},
-    CriticalColumn{"Speed", 84, "A click on a row sets the drive to it."}};
+    CriticalColumn{"Speed", 84, "Of the drive. A click on a row sets it to that."}};
 
 std::string help_of(const CriticalSpeed& at, const std::string& name, const std::string& speed,
                     const ShownUnit& unit) {
@@ -71,7 +71,7 @@ std::vector<CriticalRow> critical_rows(const CampbellDiagram& diagram, std::size
                     .whirl = at.whirl ? std::string(word(at.whirl->direction())) : "–",
                     .speed = speed,
                     .unbalance = unbalance_excites(at),
-                    .at = at.speed,
+                    .at = at.value,
                     .help = help_of(at, name, speed, unit)});
   }
   return rows;
@@ -110,7 +110,7 @@ void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& ro
       ImGui::TableNextColumn();
       ImGui::PushID(static_cast<int>(i));
       if (ImGui::Selectable("##speed", false, ImGuiSelectableFlags_SpanAllColumns))
-        later(ui, [&session, address, speed = row.at] { change_parameter(session, address, speed); });
+        later(ui, [&session, address, value = row.at] { change_parameter(session, address, value); });
       note_widget(ui.widgets, "campbell/critical/" + std::to_string(i + 1), KeyUse::row);
       help_on_hover(row.help.c_str());
       ImGui::PopID();

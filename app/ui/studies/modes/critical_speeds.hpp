@@ -11,12 +11,13 @@
 
 namespace flyball {
 
-// Of a branch whose lines have these names: by order, then by speed.
+// Of a branch whose lines have these names: by order, then by speed, which has this unit.
 std::vector<CriticalRow> critical_rows(const CampbellDiagram& diagram, std::size_t branch,
                                        std::span<const std::string> names, const ShownUnit& unit);
 // Pixels, of all columns.
 float critical_table_width(const Ui& ui);
-// From here on, `height` (pixels) of it. A click on a row sets the number at `address` to its speed.
+// From here on, `height` (pixels) of it. A click on a row sets the number at `address` so that the drive has
+// its speed.
 void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& rows, const ShownUnit& unit,
                     const std::string& address, float height);
 

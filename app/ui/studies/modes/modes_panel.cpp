@@ -314,7 +314,7 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
     note_widget(ui.widgets, "campbell/drive");
   }
   ImGui::PopStyleColor();
-  help_on_hover("The drive whose speed is along the axis.");
+  help_on_hover("The number along the axis: the speed of a drive, or what an expression makes it of.");
   const PlotRange range = campbell_range(session);
   const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
@@ -435,8 +435,8 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
                                       {std::max(places.plot.x, 40.f), std::max(places.plot.y, 40.f)});
   if (places.below > 0)
     critical_table(session, ui, *drawn.critical, drawn.unit, diagram.found->of.drive, places.below);
-  const auto set = [&](double speed) {
-    later(ui, [&session, drive, speed] { change_parameter(session, drive, speed); });
+  const auto set = [&](double value) {
+    later(ui, [&session, drive, value] { change_parameter(session, drive, value); });
   };
   if (diagram.found->of.drive != drive) return;
   if (events.clicked_at) set((*events.clicked_at)[0]);
