@@ -308,6 +308,18 @@ void fill_loads(const Run& run, PeriodicState& out) {
       out.springs.push_back(std::move(spring));
 }
 
+// What a measure is compared with is not known, so its own size is: one that stays where it is may drift by
+// what steps leave.
+PeriodicRange range_of_measure(std::span<const double> values) {
+  double size = 0;
+  for (const double value : values)
+    size = std::max(size, std::abs(value));
+  if (!comes_back(values, 1e-6 * size)) return {unknown, unknown, unknown, unknown};
+  PeriodicRange out = range_over_period(values);
+  out.error += std::abs(values.back() - values.front());
+  return out;
+}
+
 bool jumps(const CoordinateTrack& track) { // a rotation vector that turns over
   for (std::size_t i = 1; track.rotation && i < track.value.size(); ++i)
     if (std::abs(track.value[i] - track.value[i - 1]) > 3) return true;
@@ -351,9 +363,7 @@ void fill_ranges(const Run& run, PeriodicState& out) {
   }
   fill_loads(run, out);
   for (const MeasureTrack& track : run.measures)
-    out.measures.push_back({track.name, track.unit,
-                            comes_back(track.value) ? range_over_period(track.value)
-                                                    : PeriodicRange{unknown, unknown, unknown, unknown}});
+    out.measures.push_back({track.name, track.unit, range_of_measure(track.value)});
 }
 
 void fill_unique_sizes(const Run& run, const PeriodicState& open, PeriodicState& out) {

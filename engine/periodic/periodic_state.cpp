@@ -128,9 +128,11 @@ class Search {
     const auto [state, periods] = settle(first ? pushed_off(*first) : *start);
     if (!state) return first;
     auto second = attempt({*state}, 1);
-    if ((!second || second->stable == false) && periods > 1) {
-      if (auto longer = attempt({*state}, periods)) second = std::move(longer);
-    }
+    // It may come back sooner than it was seen to: the least number of periods is tried first.
+    for (int count = 2; count <= periods && (!second || second->stable == false); ++count)
+      if (periods % count == 0)
+        if (auto longer = attempt({*state}, count); longer && (longer->stable != false || count == periods))
+          second = std::move(longer);
     if (first && (!second || second->stable == false) && stands(*first) &&
         goes_alike_at_phases(flow_, first->orbit.nodes.front().base(), drives_.period))
       if (auto cycle = find_cycle(CycleStart::steady)) {

@@ -20,10 +20,11 @@ bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& noise) {
   return potential.positive_definite();
 }
 
-// Whether the symmetric part of a matrix is positive semidefinite but for rounding.
-bool is_semidefinite(const Eigen::MatrixXd& a) {
+// Whether the symmetric part of a matrix is positive semidefinite but for rounding: its own, or that of
+// terms of this norm whose difference it is.
+bool is_semidefinite(const Eigen::MatrixXd& a, double terms) {
   Eigen::MatrixXd symmetric = (a + a.transpose()) / 2;
-  symmetric.diagonal().array() += 1e-12 * a.norm();
+  symmetric.diagonal().array() += 1e-12 * std::max(a.norm(), terms);
   Cholesky factors;
   return symmetric.isZero(0) || factors.compute(symmetric);
 }
@@ -46,7 +47,9 @@ bool energy_keeps(const System& system, const SteadyMotion& motion) {
   const bool falls = system.conservative_at_speeds && system.single_drives && torques_are_of_speeds(system);
   if (system.torques.empty() || (!system.conserves && !falls)) return false;
   const Eigen::MatrixXd &k = motion.stiffness, &phases = motion.phases;
-  if (!is_semidefinite(motion.velocity) || !is_semidefinite(motion.mass)) return false;
+  if (!is_semidefinite(motion.velocity, motion.velocity_terms) ||
+      !is_semidefinite(motion.mass, motion.mass_terms))
+    return false;
   if (phases.cols() == 0) return is_minimum(k, motion.noise);
   if (!((k * phases).norm() + (k.transpose() * phases).norm() <= tolerance::symmetric * k.norm()))
     return false;
@@ -137,7 +140,7 @@ int count_null_eigenvalues(const FactoredState& at, const SteadyMotion& motion, 
 Verdict by_spectrum(const FactoredState& at, const SteadyMotion& motion, std::vector<Complex> eigenvalues,
                     int null_eigenvalues, const BalanceShape& balance) {
   const Problem& problem = at.problem;
-  const auto& [mass, velocity, stiffness, directions] = static_cast<const LinearPencil&>(motion);
+  const Eigen::MatrixXd &mass = motion.mass, &velocity = motion.velocity, &stiffness = motion.stiffness;
   std::ranges::sort(eigenvalues, {}, [](Complex s) { return std::abs(s); });
   const double largest = eigenvalues.empty() ? 0 : std::abs(eigenvalues.back());
   // What belongs to null directions is zero but for rounding.

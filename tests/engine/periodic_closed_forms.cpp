@@ -232,6 +232,20 @@ TEST_CASE("A pendulum that the drive pumps up swings with twice its period") {
   CHECK_THAT(coordinate(s, "swing").range.most, WithinRel(-coordinate(s, "swing").range.least, 1e-6));
 }
 
+TEST_CASE("A swing that is seen to come back after four periods is told the two that it takes") {
+  Mechanism m = shaken_pendulum(0.1, 10, 0.4, 0.15, 0);
+  m.bodies.back().mass = 1.3;
+  m.bodies.back().inertia = {0.02, 0.02, 0.02};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.drive_periods == 2);
+  CHECK_THAT(s.period, WithinRel(4 * pi / 10, 1e-12));
+  CHECK(s.stable == true);
+  // Worked out by shooting with an integrator of eighth order.
+  CHECK_THAT(coordinate(s, "swing").range.most, WithinRel(1.42775904004, 1e-8));
+}
+
 TEST_CASE(
     "A resonance without damping has no periodic motion, and beside it one that neither grows nor dies") {
   const double natural = std::sqrt(1e4 / 4);
@@ -551,6 +565,24 @@ TEST_CASE("The highest of many peaks is told, whichever the samples hit best") {
   };
   check(10, 10.1);
   check(1, 20);
+}
+
+TEST_CASE("A measure that stays where it is has a range") {
+  // The radius of a whirl, by the closed form.
+  const double k = 1e4, mass = 4, damping = 40, e = 1e-3;
+  for (double speed = 10; speed < 150; speed += 20) {
+    CAPTURE(speed);
+    Mechanism m = jeffcott(speed);
+    m.measures = {{"radius", "", "sqrt(coordinate(x)^2 + (coordinate(y) + 4 * 9.81 / 1e4)^2)", "m"}};
+    const PeriodicState s = find_periodic_state(m);
+    CAPTURE(s.message);
+    REQUIRE(s.status == PeriodicStatus::found);
+    const double radius = mass * e * speed * speed / std::hypot(k - mass * speed * speed, damping * speed);
+    const PeriodicRange& range = s.measures.at(0).range;
+    CHECK(range.error < 1e-8 * radius);
+    for (const double value : {range.mean, range.least, range.most})
+      CHECK_THAT(value, WithinAbs(radius, range.error));
+  }
 }
 
 TEST_CASE("A balanced rotor at another speed has no part in the period") {

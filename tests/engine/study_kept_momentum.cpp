@@ -242,6 +242,30 @@ TEST_CASE("a heavy top left to itself: steady precession with both momenta kept"
   CHECK_THAT(std::abs(s.eigenvalues->back().imag()), WithinRel(std::sqrt(curvature / across), 1e-5));
 }
 
+TEST_CASE("a top left to itself is as stable however it lies in space", "[momentum]") {
+  Mechanism m;
+  m.bodies = {body("yoke", 0), body("ring", 0), body("top", 1, {0.5, 0, 0}, {0.01, 0.01, 0.02})};
+  m.joints = {left_to_itself(revolute("precession", "ground", "yoke", {0, 0, 0}), 3),
+              revolute("nutation", "yoke", "ring", {0, 0, 0}),
+              left_to_itself(revolute("spin", "ring", "top", {0, 0, 0}), 120)};
+  std::mt19937 dice(5);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 12; ++i) {
+    const Mat3 turn = Quat(normal(dice), normal(dice), normal(dice), normal(dice)).normalized().matrix();
+    const Vec3 along = Eigen::AngleAxisd(0.7, Vec3::UnitX()) * Vec3::UnitZ();
+    m.gravity = turn * Vec3(0, 0, -standard_gravity);
+    m.bodies[2].position = turn * (0.5 * along);
+    m.bodies[2].rotation = Quat(turn) * Quat(Eigen::AngleAxisd(0.7, Vec3::UnitX()));
+    m.joints[0].axis = turn * Vec3::UnitZ();
+    m.joints[1].axis = turn * Vec3::UnitX();
+    m.joints[2].axis = turn * along;
+    const Solution s = Analysis(m).solve();
+    CAPTURE(i, s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stability_reason == StabilityReason::minimum);
+  }
+}
+
 TEST_CASE("random mechanisms left to themselves have the state of their speed found, prescribed",
           "[momentum][random]") {
   int found = 0;
