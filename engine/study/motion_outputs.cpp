@@ -19,7 +19,7 @@ MotionOutputs::MotionOutputs(const MotionModel& model, std::span<const std::stri
   measures_.bind(varied_, model.system, model.parameters);
 }
 
-Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters& p) {
+Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters& p, bool here) {
   const System& system = model_.system;
   move(model_.released, p, {at.q, at.u, nullptr, &at.a}, kinematics_, carried_);
   for (std::size_t i = 0; i < system.reported.size(); ++i) {
@@ -57,12 +57,13 @@ Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters&
     torques_.push_back(drive_torque(model_.released, p, i, at.q, kinematics_));
   const MeasuredState state{system,       p,      at.q,    kinematics_, &forces, accelerated_,
                             coordinates_, rates_, torques_};
+  if (here) measures_.straighten_sizes(state);
   return measures_.evaluate(state).tail(static_cast<Eigen::Index>(count_));
 }
 
 Eigen::VectorXd MotionOutputs::values(const MotionOfAll& at) {
   near_.clear();
-  Eigen::VectorXd out = evaluate(at, model_.parameters);
+  Eigen::VectorXd out = evaluate(at, model_.parameters, true);
   near_ = coordinates_;
   return out;
 }
@@ -106,7 +107,12 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
     const Eigen::VectorXd d1 = difference(h), wide = bend.cwiseAbs(), d2 = difference(h / 2),
                           d3 = difference(h / 4);
     const Eigen::VectorXd once = (4 * d2 - d1) / 3, twice = (4 * d3 - d2) / 3,
-                          last = twice + (twice - once) / 15, changed = (last - twice).cwiseAbs();
+                          last = twice + (twice - once) / 15;
+    // Each half of a step shall change a quarter of what the one before did. Where it is more, as beside a
+    // kink and by rounding, there is nothing to extrapolate.
+    const Eigen::ArrayXd first = (d2 - d1).array().abs(), second = (d3 - d2).array().abs();
+    const Eigen::VectorXd changed =
+        (last - twice).array().abs().max((3 * second > first).select(second / 2, 0.));
     if (out.value.size() == 0) {
       out = {last, changed, wide};
       straight = (bend.array().abs() <= wide.array() / 2).all();

@@ -33,14 +33,16 @@ class MotionOutputs {
   // Their rates along the direction, which is to be as large as what the state is measured by (a radian, the
   // mechanism's reach, ...): central differences over 4e-3 of it, or less where that tells more, extrapolated
   // twice (Richardson; Ridders, Accurate computation of F'(x) and F'(x)F''(x), 1982), and what the last
-  // extrapolation changed. On a kink there is none: half of how much the slope jumps, else 0.
+  // extrapolation changed, or half a step where it had nothing to go by. On a kink there is none: half of how
+  // much the slope jumps, else 0.
   struct Rates {
     Eigen::VectorXd value, error, kink;
   };
   Rates along(const MotionOfAll& at, const MotionDirection& direction);
 
  private:
-  Eigen::VectorXd evaluate(const MotionOfAll& at, const Parameters& parameters);
+  // `here`: of the state beside which the others are (MeasureSet::straighten_sizes()).
+  Eigen::VectorXd evaluate(const MotionOfAll& at, const Parameters& parameters, bool here = false);
 
   const MotionModel& model_;
   std::size_t count_;

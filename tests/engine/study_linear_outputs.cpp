@@ -376,3 +376,29 @@ TEST_CASE("what a drive by torque gives is an output, and a measure of the motio
     CHECK(run.measures[1].value[i] == Approx((5 - spin.rate[i]) * spin.rate[i]).margin(1e-12));
   }
 }
+
+TEST_CASE("forces that are far larger beside the balance have exact slopes at it", "[linear-model]") {
+  // A slide at r on a turntable rests 3e-5 m within a hard stop: k (q - upper) = m w^2 r, and bears m w^2 r
+  // along and m g across. A thousandth of a radius further it would bear ten times as much.
+  constexpr double mass = 1, w = 3, drawn = 0.3, upper = 0.01, k = 1e5;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {spindle(), body("puck", mass, {drawn, 0, 0})};
+  m.joints = {spin(w), prismatic("slide", "spindle", "puck", {drawn, 0, 0}, {1, 0, 0})};
+  m.joints[1].coordinates[0].stop = Stop{{}, upper, k};
+  m.joints[1].coordinates[0].damping = 10;
+  const LinearModel model = linear_model(m, {"joints.slide.stop.upper", "joints.spin.drive.speed"},
+                                         {"reaction(slide)", "acceleration(puck)"});
+  REQUIRE(model.gain);
+  const double q = (k * upper + mass * w * w * drawn) / (k - mass * w * w), r = drawn + q;
+  CHECK(q - upper == Approx(2.8e-5).epsilon(0.02));
+  const double along = mass * w * w * r, size = std::hypot(along, mass * standard_gravity);
+  // dq / d upper and d(w^2 r) / dw.
+  const double moved = k / (k - mass * w * w),
+               rate = 2 * w * r + w * w * 2 * mass * w * r / (k - mass * w * w);
+  CHECK((*model.gain)(0, 0) == Approx(along / size * mass * w * w * moved).epsilon(1e-9));
+  CHECK((*model.gain)(0, 1) == Approx(along / size * mass * rate).epsilon(1e-9));
+  CHECK((*model.gain)(1, 0) == Approx(w * w * moved).epsilon(1e-9));
+  CHECK((*model.gain)(1, 1) == Approx(rate).epsilon(1e-9));
+  CHECK(model.output_error.maxCoeff() < 1e-12);
+}
