@@ -83,6 +83,8 @@ NeutralDirections neutral_directions(const FactoredState& at, const Eigen::Matri
     direction /= size;
     if (!all && !stays_along(direction)) continue;
     ++out.count;
+    out.directions.conservativeResize(problem.system.nv, out.count);
+    out.directions.rightCols<1>() = direction;
     for (int i = 0; i < problem.system.nv; ++i)
       if (std::abs(direction[i]) > tolerance::takes_part &&
           std::ranges::find(out.coordinates, i) == out.coordinates.end())

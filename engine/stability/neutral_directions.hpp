@@ -15,6 +15,7 @@ Eigen::MatrixXd without_drift(const FactoredState& at, const PhaseStiffness& ang
 struct NeutralDirections {
   int count = 0;
   std::vector<int> coordinates; // of q_R that take part
+  Eigen::MatrixXd directions;   // (nv, count), scaled
 };
 // Those of the null directions (scaled, by column) along which it stays balanced, of a dense problem.
 NeutralDirections neutral_directions(const FactoredState& at, const Eigen::MatrixXd& null_space);

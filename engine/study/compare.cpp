@@ -14,6 +14,7 @@
 #include "engine/search/turned_balance.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/refine.hpp"
+#include "engine/stability/neutral_directions.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/system/rotation_vector.hpp"
 
@@ -78,6 +79,7 @@ class Direct {
   }
 
   const System& system() const { return system_; }
+  const Scaling& scaling() const { return scaling_; }
 
   // From the drawn pose to an answer that is known to exist and be stable, as Analysis::solve does.
   bool answer(Unknowns& z) {
@@ -97,6 +99,7 @@ class Direct {
   void settle_reference(const Unknowns& answer, Comparison& out) {
     if (turned_) return settle_turned_reference(out);
     Unknowns z = answer;
+    take_neutral(z);
     factor_with_multipliers(problem(), z, w_);
     reference_ = z.q.cast<Extended>();
     ExtendedVector step, multipliers = z.lambda.cast<Extended>();
@@ -152,21 +155,41 @@ class Direct {
     return largest_size(away);
   }
 
-  // The largest difference from q*, in radians or relative to the reach.
-  double error_of(const Eigen::VectorXd& q, const std::vector<std::string>& neutral) const {
+  // Whether q* leaves anything that errors are of: not where it may be turned or moved in every coordinate.
+  bool determines_anything() const {
+    for (std::size_t l = 0; l < system_.links.size(); ++l)
+      if (system_.links[l].v >= 0 && arbitrary_[l].cols() < arbitrary_[l].rows()) return true;
+    return false;
+  }
+
+  // The largest part of a change (nv, scaled) that is no turn or move along what is arbitrary.
+  double size_of(const Eigen::VectorXd& change) const {
+    double largest = 0;
+    for (std::size_t l = 0; l < system_.links.size(); ++l) {
+      const Eigen::MatrixXd& arbitrary = arbitrary_[l];
+      if (system_.links[l].v < 0) continue;
+      const auto of = change.segment(system_.links[l].v, arbitrary.rows());
+      largest = std::max(largest, (of - arbitrary * (arbitrary.transpose() * of)).norm());
+    }
+    return largest;
+  }
+
+  // The largest difference from q*, in radians or relative to the reach, of what is not arbitrary.
+  double error_of(const Eigen::VectorXd& q) const {
     double worst = 0;
     for (std::size_t l = 0; l < system_.links.size(); ++l) {
       const Link& link = system_.links[l];
-      if (link.v < 0) continue;
-      const std::string& joint = system_.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
-      if (std::ranges::find(neutral, joint) != neutral.end()) continue;
+      const Eigen::MatrixXd& arbitrary = arbitrary_[l];
+      if (link.v < 0 || arbitrary.cols() == arbitrary.rows()) continue;
       if (link.type == LinkType::spherical) {
         const auto rotation = [&](const auto& x) {
           return Eigen::Quaternion<Extended>(x[link.q], x[link.q + 1], x[link.q + 2], x[link.q + 3])
               .normalized();
         };
         const auto turn = rotation(q) * rotation(reference_).conjugate();
-        worst = std::max(worst, static_cast<double>(log_rotation<Extended>(turn).norm()));
+        Eigen::VectorXd away = log_rotation<Extended>(turn).template cast<double>();
+        away -= arbitrary * (arbitrary.transpose() * away);
+        worst = std::max(worst, away.norm());
         continue;
       }
       Extended away = Extended(q[link.q]) - reference_[link.q];
@@ -212,9 +235,35 @@ class Direct {
     return true;
   }
 
+  // What nothing resists at z is no error: of a link's rotation the turns about these axes, of others all.
+  void take_neutral(const Unknowns& z) {
+    arbitrary_.clear();
+    for (const Link& link : system_.links)
+      arbitrary_.emplace_back(link.type == LinkType::spherical ? 3 : 1, 0);
+    if (stability_.neutral.empty()) return;
+    NeutralDirections neutral;
+    if (const Problem p = classified(); p.form == KktForm::dense) {
+      const FactoredState at = factor_at(p, z, w_);
+      neutral = neutral_directions(at, w_.dense.constraints().basis() * w_.dense.hessian().null_basis());
+    }
+    const bool directed = neutral.coordinates == stability_.neutral;
+    for (std::size_t l = 0; l < system_.links.size(); ++l) {
+      const int v = system_.links[l].v;
+      Eigen::MatrixXd& arbitrary = arbitrary_[l];
+      const auto count = static_cast<int>(arbitrary.rows());
+      if (v < 0 || std::ranges::none_of(stability_.neutral, [&](int i) { return i >= v && i < v + count; }))
+        continue;
+      arbitrary = Eigen::MatrixXd::Identity(count, count);
+      if (!directed) continue;
+      if (const auto turns = singular_vectors(neutral.directions.middleRows(v, count).transpose()))
+        arbitrary = turns->right.leftCols((turns->values.array() > tolerance::takes_part).count());
+    }
+  }
+
   // By steps of the balance with the angles among its unknowns.
   void settle_turned_reference(Comparison& out) {
     Unknowns z = turned_->z;
+    take_neutral(z);
     reference_ = z.q.cast<Extended>();
     ExtendedVector step;
     Eigen::VectorXd correction = Eigen::VectorXd::Zero(system_.nv);
@@ -264,6 +313,7 @@ class Direct {
   Workspace w_;
   SteadyState steady_;
   Stability stability_;
+  std::vector<Eigen::MatrixXd> arbitrary_; // by link: orthonormal directions of its coordinates, by column
   ExtendedVector reference_;
   MeasureSet measures_;
   Eigen::VectorXd measured_;
@@ -297,19 +347,23 @@ constexpr double comes_near = 1e-2;
 
 // Leaves the message with what there is to say where no motion is one to compare with.
 void find_best(Comparison& c) {
+  const auto distance = [](const MotionMark& p) { return std::max(p.error, p.goes_on); };
+  std::optional<std::pair<double, double>> nearest; // how far it is, or goes on, and after how long
   for (const MotionCurve& curve : c.motion)
     for (const MotionMark& p : curve.points) {
-      if (p.status != RunStatus::completed || (c.best && p.error >= c.best->error)) continue;
+      if (p.status != RunStatus::completed) continue;
+      if (!nearest || distance(p) < nearest->first) nearest = {distance(p), curve.duration};
+      if (distance(p) > comes_near || (c.best && p.error >= c.best->error)) continue;
       c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
     }
-  if (!c.best) return;
-  if (c.best->error > comes_near) {
+  if (!nearest) return;
+  if (!c.best) {
     if (c.complete) // else a longer one was not reached
-      c.message +=
-          " No motion comes to this steady state: the nearest ends " + rounded_text(c.best->error, 2) +
-          " from it (in radians, and slides as parts of the mechanism's size), after " +
-          rounded_text(c.best->duration, 4) + " s simulated; it may need longer, or settle in another one.";
-    c.best.reset();
+      c.message += " No motion comes to stand at this steady state: the nearest ends, or swings on, " +
+                   rounded_text(nearest->first, 2) +
+                   " from it (in radians, and slides as parts of the mechanism's size), after " +
+                   rounded_text(nearest->second, 4) +
+                   " s simulated; it may need longer, or settle in another one.";
     return;
   }
   // The first iteration that comes as near; where a fallback was needed, the answer.
@@ -326,9 +380,19 @@ Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
   return simulate(mechanism, options);
 }
 
+// 1/s: of the slowest motion about the steady state; 0 where it is not known.
+double slowest_rate(const Solution& steady) {
+  double fastest = 0, slowest = std::numeric_limits<double>::infinity();
+  for (const std::complex<double>& s : steady.eigenvalues.value_or(std::vector<std::complex<double>>{}))
+    fastest = std::max(fastest, std::abs(s));
+  for (const std::complex<double>& s : steady.eigenvalues.value_or(std::vector<std::complex<double>>{}))
+    if (std::abs(s) > 1e-9 * fastest) slowest = std::min(slowest, std::abs(s));
+  return std::isfinite(slowest) ? slowest : 0;
+}
+
 struct RunEnd {
-  Eigen::VectorXd q;
-  Eigen::VectorXd angles; // by link, of what torques drive
+  Eigen::VectorXd q, rates; // of what nothing drives, scaled; 0 of what torques drive
+  Eigen::VectorXd angles;   // by link, of what torques drive
 };
 
 // Where a run ended.
@@ -337,20 +401,23 @@ RunEnd end_of(const Run& run, const Direct& direct) {
   const auto sample =
       static_cast<std::ptrdiff_t>(run.states.size()) - (nq + static_cast<std::ptrdiff_t>(direct.system().nv));
   Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample, nq);
+  Eigen::VectorXd rates = Eigen::Map<const Eigen::VectorXd>(run.states.data() + sample + nq,
+                                                            static_cast<Eigen::Index>(direct.system().nv))
+                              .cwiseQuotient(direct.scaling().column);
   // What torques drive is compared by its speed; the motion's coordinates are in the same order.
   Eigen::VectorXd angles = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(direct.system().links.size()));
   for (std::size_t l = 0; l < direct.system().links.size(); ++l)
     if (const Link& link = direct.system().links[l]; finds_speed(link)) {
       angles[static_cast<Eigen::Index>(l)] = q[link.q];
       q[link.q] = run.states[static_cast<std::size_t>(sample + nq + link.v)];
+      rates[link.v] = 0;
     }
-  return {std::move(q), std::move(angles)};
+  return {std::move(q), std::move(rates), std::move(angles)};
 }
 
 // One run and its repeats. Nothing where nobody waits for it any more.
 std::optional<MotionMark> measure(const Mechanism& mechanism, const SimulationOptions& simulation,
-                                  int repeats, const Time& time, Direct& direct,
-                                  const std::vector<std::string>& neutral) {
+                                  int repeats, const Time& time, Direct& direct, double slowest) {
   MotionMark point;
   point.tolerance = simulation.tolerance;
   std::vector<double> times;
@@ -361,8 +428,9 @@ std::optional<MotionMark> measure(const Mechanism& mechanism, const SimulationOp
     if (i == 0) {
       point.error = std::numeric_limits<double>::quiet_NaN();
       if (run.status == RunStatus::completed) {
-        const auto [q, angles] = end_of(run, direct);
-        point.error = std::max(direct.error_of(q, neutral), direct.take_angles(angles, simulation.duration));
+        const auto [q, rates, angles] = end_of(run, direct);
+        point.error = std::max(direct.error_of(q), direct.take_angles(angles, simulation.duration));
+        if (slowest > 0) point.goes_on = direct.size_of(rates) / slowest;
         point.measure_errors = direct.measure_errors(q);
       }
       point.steps = run.statistics.steps;
@@ -378,8 +446,8 @@ std::optional<MotionMark> measure(const Mechanism& mechanism, const SimulationOp
 
 // One curve a method and duration, into out.motion. False where it was broken off.
 bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
-                     const std::vector<double>& durations, const Time& time, Direct& direct,
-                     const std::vector<std::string>& neutral, Comparison& out) {
+                     const std::vector<double>& durations, const Time& time, Direct& direct, double slowest,
+                     Comparison& out) {
   const std::size_t all = options.integrators.size() * durations.size() * options.tolerances.size();
   std::size_t done = 0;
   for (Integrator method : options.integrators)
@@ -397,7 +465,7 @@ bool measure_motions(const Mechanism& mechanism, const CompareOptions& options,
           simulation.cancel = options.cancel;
           simulation.time_limit = longest_run * time.limit;
           const std::optional<MotionMark> point =
-              measure(mechanism, simulation, options.repeats, time, direct, neutral);
+              measure(mechanism, simulation, options.repeats, time, direct, slowest);
           if (!point) return false;
           curve.points.push_back(*point);
           too_long = point->status == RunStatus::time_limit;
@@ -431,7 +499,12 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
     return;
   }
   direct.settle_reference(answer, out);
-  out.answer = {direct.iterations(), direct.error_of(answer.q, steady.neutral),
+  if (!direct.determines_anything()) {
+    out.complete = false;
+    out.message = "Nothing resists any coordinate of its steady state, so there is no error to compare.";
+    return;
+  }
+  out.answer = {direct.iterations(), direct.error_of(answer.q),
                 time_of(options.repeats, time, [&] { direct.answer(answer); }),
                 direct.measure_errors(answer.q)};
   for (std::size_t i = 0; i < mechanism.measures.size(); ++i) {
@@ -445,7 +518,7 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
   for (int i = 0; i <= 30 && !direct.turned() && !time.watch.over(); ++i) {
     Unknowns z;
     const bool converged = direct.iterate(i, z);
-    const double error = direct.error_of(z.q, steady.neutral);
+    const double error = direct.error_of(z.q);
     std::vector<double> measure_errors = direct.measure_errors(z.q);
     out.direct.push_back(
         {i, error, time_of(options.repeats, time, [&] { direct.iterate(i, z); }), std::move(measure_errors)});
@@ -455,7 +528,7 @@ void compare_through(const Mechanism& mechanism, const CompareOptions& options, 
 
   const std::vector<double> durations =
       options.durations.empty() ? natural_durations(steady, mechanism) : options.durations;
-  if (!measure_motions(mechanism, options, durations, time, direct, steady.neutral, out)) broken_off();
+  if (!measure_motions(mechanism, options, durations, time, direct, slowest_rate(steady), out)) broken_off();
   find_best(out);
   const bool any_end = std::ranges::any_of(out.motion, [](const MotionCurve& curve) {
     return std::ranges::any_of(curve.points,

@@ -36,6 +36,9 @@ struct DirectMark {
 struct MotionMark {
   double tolerance = 0;
   double error = 0; // NaN where the run did not come to its end
+  // The largest rate at the end by that of the slowest motion about the steady state: about how far it goes
+  // on from there, as errors are. 0 where no eigenvalues are known.
+  double goes_on = 0;
   double run_time_s = 0;
   long steps = 0, evaluations = 0;
   RunStatus status = RunStatus::completed;
@@ -69,7 +72,7 @@ struct Comparison {
   std::vector<DirectMark> direct; // by iteration; none where a fallback was needed, or it stands turned
   DirectMark answer;              // with refinement, existence and the sign of stability
   std::vector<MotionCurve> motion;
-  std::optional<SpeedRatio> best; // where a motion comes within 0.01 of it; else the message says so
+  std::optional<SpeedRatio> best; // where a motion comes to stand within 0.01 of it; else the message says so
 };
 
 // Throws SceneError for a mechanism that cannot be compiled or has no equations of motion.

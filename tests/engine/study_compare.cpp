@@ -138,7 +138,41 @@ TEST_CASE("a motion that does not come to the steady state is no measure of it")
   REQUIRE(c.motion.size() == 1);
   CHECK(c.motion[0].points[0].error > 0.1);
   CHECK_FALSE(c.best);
-  CHECK_THAT(c.message, ContainsSubstring("No motion comes to this steady state: the nearest ends 0."));
+  CHECK_THAT(c.message, ContainsSubstring("No motion comes to stand at this steady state: the nearest ends"));
+}
+
+TEST_CASE("a motion that swings through the steady state has not come there") {
+  Mechanism m = shipped("conical_pendulum");
+  for (Joint& j : m.joints)
+    for (Coordinate& c : j.coordinates)
+      c.damping = {};
+  CompareOptions o = quick();
+  o.tolerances = {1e-8};
+  o.integrators = {Integrator::runge_kutta};
+  for (int i = 0; i < 60; ++i)
+    o.durations.push_back(3 + 0.1 * i);
+  const Comparison c = compare(m, o);
+  CAPTURE(c.message);
+  REQUIRE(c.complete);
+  // Some end near it, and go on.
+  CHECK(std::ranges::any_of(c.motion, [](const MotionCurve& curve) { return curve.points[0].error < 0.01; }));
+  CHECK_FALSE(c.best);
+  CHECK_THAT(c.message, ContainsSubstring("swings on"));
+}
+
+TEST_CASE("what nothing resists is no error, and what else there is of that joint is one") {
+  // The ball may turn about its string: its place and tilt are determined.
+  CompareOptions o = quick();
+  o.tolerances = {1e-6};
+  o.integrators = {Integrator::runge_kutta};
+  o.durations = {1};
+  const Comparison c = compare(shipped("ball_on_string"), o);
+  CAPTURE(c.message);
+  REQUIRE(c.status == Status::converged);
+  CHECK(c.answer.error < 1e-9);
+  REQUIRE_FALSE(c.direct.empty());
+  CHECK(c.direct.front().error > 0.1);
+  CHECK(c.motion.at(0).points.at(0).error > 1e-3);
 }
 
 TEST_CASE("what is asked for is what is measured") {
