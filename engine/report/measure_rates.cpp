@@ -38,6 +38,60 @@ void add_coordinate_rates(const MeasuredState& s, int reported, double factor, E
         factor * joint.rate.row(r.index).dot(relative_velocity(cut, numbers, s.kinematics, column));
 }
 
+// The force or moment whose size a quantity is, `wrench` being that of its joint; zero of other quantities.
+Vec3 vector_of(ResultQuantity quantity, const JointWrench* wrench, const QuantityNumbers& numbers,
+               const ElasticPlace& elastic, const Problem& problem, const Kinematics<double>& kinematics) {
+  switch (quantity.result) {
+  case Result::reaction: return wrench->force;
+  case Result::moment: return wrench->torque;
+  case Result::force:
+  case Result::couple: {
+    const Result first = quantity.result == Result::force ? Result::force_x : Result::couple_x;
+    Vec3 out;
+    for (int k = 0; k < 3; ++k) {
+      quantity.result = static_cast<Result>(static_cast<int>(first) + k);
+      out[k] = quantity_value(quantity, numbers, elastic, problem.system, problem.parameters, kinematics);
+    }
+    return out;
+  }
+  default: return Vec3::Zero();
+  }
+}
+
+// Evaluates all at q, which is off the balance; its multipliers.
+Eigen::VectorXd evaluate_beside(MeasureSet& measures, const Problem& problem, const Eigen::VectorXd& q,
+                                Workspace& w) {
+  Unknowns z{q, {}};
+  if (measures.needs_forces())
+    z = with_reported_multipliers(problem, q, 0, w);
+  else
+    forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
+  measures.evaluate(problem, z, w);
+  return z.lambda;
+}
+
+// Those of all quantities, at a state that `w` holds. `Places` are MeasureSet's.
+template <class Places>
+void take_vectors(const Problem& problem, const Eigen::VectorXd& lambda, const Workspace& w,
+                  const MeasurePlan& plan, const Places& places, const std::vector<QuantityNumbers>& numbers,
+                  std::vector<Vec3>& out) {
+  const auto of_joint = [](const ResultQuantity& quantity) {
+    return quantity.result == Result::reaction || quantity.result == Result::moment;
+  };
+  TransmittedForces forces;
+  if (std::ranges::any_of(plan.quantities(), of_joint))
+    forces = transmitted_forces(problem.system, problem.parameters, lambda, w.kinematics, w.residual);
+  out.resize(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const ResultQuantity& quantity = plan.quantities()[i];
+    const JointWrench* wrench = nullptr;
+    if (of_joint(quantity))
+      wrench = places[i].tree >= 0 ? &forces.tree[static_cast<std::size_t>(places[i].tree)]
+                                   : &forces.cuts[static_cast<std::size_t>(places[i].cut)];
+    out[i] = vector_of(quantity, wrench, numbers[i], places[i].elastic, problem, w.kinematics);
+  }
+}
+
 // In the place of sizes their vectors' parts along `directions`. Off the balance a force may be far larger
 // than at it, and how its size bends there is not to count.
 void take_parts(const std::vector<Vec3>& vectors, const std::vector<Vec3>& directions,
@@ -111,30 +165,16 @@ void MeasureSet::rates(const MeasuredState& s, std::size_t i, Eigen::VectorXd& o
   }
 }
 
-void MeasureSet::look_beside(const Problem& problem, const Eigen::VectorXd& q, Workspace& w,
-                             std::vector<Vec3>& out) {
-  TransmittedForces forces;
-  if (needs_forces_) {
-    const Unknowns z = with_reported_multipliers(problem, q, 0, w);
-    forces = transmitted_forces(problem.system, problem.parameters, z.lambda, w.kinematics, w.residual);
-  } else {
-    forward<double>(problem.system, problem.parameters, q, 0, w.kinematics);
-  }
-  const MeasuredState state{problem.system, problem.parameters, q, w.kinematics, &forces};
-  if (needs_forces_) take_largest_force(state);
-  evaluate(state);
-  out.resize(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    out[i] = force_of(state, i);
-}
-
 // Of the quantities that have no other rates.
 void MeasureSet::difference(const Problem& problem, const Eigen::VectorXd& q, Workspace& w) {
   constexpr double h = 1e-5; // of a radian, or of the reach
   const std::vector<double> here = found_;
   std::vector<double> forth;
   std::vector<Vec3> directions, vectors;
-  look_beside(problem, q, w, directions);
+  const auto look = [&](const Eigen::VectorXd& at, std::vector<Vec3>& out) {
+    take_vectors(problem, evaluate_beside(*this, problem, at, w), w, plan_, places_, numbers_, out);
+  };
+  look(q, directions);
   for (Vec3& each : directions)
     each = direction(each);
   Eigen::VectorXd moved, step = Eigen::VectorXd::Zero(problem.system.nv);
@@ -144,7 +184,7 @@ void MeasureSet::difference(const Problem& problem, const Eigen::VectorXd& q, Wo
       step[v] = sign * length;
       moved = q;
       retract<double>(problem.system, step, moved);
-      look_beside(problem, moved, w, vectors);
+      look(moved, vectors);
       take_parts(vectors, directions, found_);
       if (sign > 0) forth = found_;
     }
@@ -253,7 +293,10 @@ std::vector<double> MeasureSet::differences_by(const Problem& problem, const Mec
   std::vector<double> sides[2], moved = values;
   std::vector<Vec3> directions, vectors;
   Parameters parameters;
-  look_beside(problem, q, w, directions);
+  const auto look = [&](const Problem& at, std::vector<Vec3>& out) {
+    take_vectors(at, evaluate_beside(*this, at, q, w), w, plan_, places_, numbers_, out);
+  };
+  look(problem, directions);
   for (Vec3& each : directions)
     each = direction(each);
   try {
@@ -262,7 +305,7 @@ std::vector<double> MeasureSet::differences_by(const Problem& problem, const Mec
       numbers.set(moved);
       flyball::bind(problem.system, mechanism, parameters);
       bind(mechanism, problem.system, parameters);
-      look_beside({problem.system, parameters, problem.scaling}, q, w, vectors);
+      look({problem.system, parameters, problem.scaling}, vectors);
       take_parts(vectors, directions, found_);
       sides[side] = found_;
     }

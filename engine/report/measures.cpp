@@ -83,7 +83,6 @@ void MeasureSet::find_places(const Mechanism& m, const System& system) {
   numbers_.assign(count, {});
   number_rates_.assign(count, {});
   found_.resize(count);
-  straight_.clear();
   duals_.resize(count);
   combined_.resize(plan_.size());
   values_.resize(static_cast<Eigen::Index>(plan_.size()));
@@ -171,7 +170,9 @@ double MeasureSet::value(const MeasuredState& s, std::size_t i) const {
   const ResultQuantity& quantity = plan_.quantities()[i];
   const Place& place = places_[i];
   const QuantityNumbers& numbers = numbers_[i];
-  const auto joint = [&]() -> const JointWrench& { return wrench_of(s, place); };
+  const auto joint = [&]() -> const JointWrench& {
+    return place.tree >= 0 ? s.forces->tree[slot(place.tree)] : s.forces->cuts[slot(place.cut)];
+  };
   const double none = std::numeric_limits<double>::quiet_NaN();
   switch (quantity.result) {
   case Result::coordinate: return s.coordinate(place.reported);
@@ -196,38 +197,6 @@ double MeasureSet::value(const MeasuredState& s, std::size_t i) const {
   }
 }
 
-const JointWrench& MeasureSet::wrench_of(const MeasuredState& s, const Place& place) {
-  return place.tree >= 0 ? s.forces->tree[slot(place.tree)] : s.forces->cuts[slot(place.cut)];
-}
-
-Vec3 MeasureSet::force_of(const MeasuredState& s, std::size_t i) const {
-  ResultQuantity quantity = plan_.quantities()[i];
-  switch (quantity.result) {
-  case Result::reaction: return wrench_of(s, places_[i]).force;
-  case Result::moment: return wrench_of(s, places_[i]).torque;
-  case Result::force:
-  case Result::couple: {
-    const Result first = quantity.result == Result::force ? Result::force_x : Result::couple_x;
-    Vec3 out;
-    for (int k = 0; k < 3; ++k) {
-      quantity.result = static_cast<Result>(static_cast<int>(first) + k);
-      out[k] =
-          quantity_value(quantity, numbers_[i], places_[i].elastic, s.system, s.parameters, s.kinematics);
-    }
-    return out;
-  }
-  default: return Vec3::Zero();
-  }
-}
-
-Vec3 MeasureSet::vector_of(const MeasuredState& s, std::size_t i) const {
-  const Result result = plan_.quantities()[i].result;
-  if (result != Result::speed && result != Result::acceleration) return force_of(s, i);
-  if (!s.accelerated && result == Result::acceleration) return Vec3::Zero();
-  const auto motion = motion_of(s.parameters, s.kinematics, numbers_[i].points[0]);
-  return result == Result::speed ? motion.velocity : motion.acceleration;
-}
-
 double MeasureSet::torque(const MeasuredState& s, const Place& place) {
   if (place.drive >= 0) return s.forces->drives[slot(place.drive)];
   if (place.torque >= 0 && !s.torques.empty()) return s.torques[slot(place.torque)];
@@ -236,30 +205,7 @@ double MeasureSet::torque(const MeasuredState& s, const Place& place) {
 
 void MeasureSet::evaluate_quantities(const MeasuredState& state) {
   for (std::size_t i = 0; i < places_.size(); ++i)
-    found_[i] =
-        straight_.empty() || straight_[i].isZero(0) ? value(state, i) : straight_[i].dot(vector_of(state, i));
-}
-
-void MeasureSet::straighten_sizes(const MeasuredState& state) {
-  constexpr double least = 1e-8; // of what its rounding is measured by
-  straight_.clear();
-  evaluate_quantities(state);
-  take_largest_force(state);
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Vec3 vector = vector_of(state, i);
-    const double size = vector.norm();
-    straight_.push_back(size > 0 && size > least * rounding_size(state, i) ? Vec3(vector / size)
-                                                                           : Vec3(Vec3::Zero()));
-  }
-}
-
-void MeasureSet::take_largest_force(const MeasuredState& state) {
-  largest_force_ = 0;
-  if (!state.forces) return;
-  for (const auto* list : {&state.forces->tree, &state.forces->cuts})
-    for (const JointWrench& each : *list)
-      largest_force_ =
-          std::max({largest_force_, each.force.norm(), each.torque.norm() / state.parameters.length});
+    found_[i] = value(state, i);
 }
 
 const Eigen::VectorXd& MeasureSet::combine() {
@@ -278,11 +224,15 @@ const Eigen::VectorXd& MeasureSet::evaluate(const MeasuredState& state) {
 
 const Eigen::VectorXd& MeasureSet::evaluate(const Problem& problem, const Unknowns& z, const Workspace& w) {
   TransmittedForces forces;
-  if (needs_forces_)
+  if (needs_forces_) {
     forces = transmitted_forces(problem.system, problem.parameters, z.lambda, w.kinematics, w.residual);
-  const MeasuredState state{problem.system, problem.parameters, z.q, w.kinematics, &forces};
-  if (needs_forces_) take_largest_force(state);
-  return evaluate(state);
+    largest_force_ = 0;
+    for (const auto* list : {&forces.tree, &forces.cuts})
+      for (const JointWrench& each : *list)
+        largest_force_ =
+            std::max({largest_force_, each.force.norm(), each.torque.norm() / problem.parameters.length});
+  }
+  return evaluate({problem.system, problem.parameters, z.q, w.kinematics, &forces});
 }
 
 const Eigen::VectorXd& MeasureSet::evaluate_at(const Problem& problem, const Eigen::VectorXd& q,

@@ -41,11 +41,6 @@ class MeasureSet {
   bool needs_forces() const { return needs_forces_; }
   bool needs_accelerations() const { return needs_accelerations_; }
 
-  // From now on the size of a force, moment, velocity or acceleration is taken as the part of that vector
-  // along what it is at this state: it has the same slopes there, and does not bend with where the vector
-  // goes, which off the balance may be many times as large. Where it all but vanishes it stays the size.
-  void straighten_sizes(const MeasuredState& state);
-
   // The values of all measures in the scene's order, in SI units; not finite where one is undefined.
   const Eigen::VectorXd& evaluate(const MeasuredState& state);
   // The same of a steady state that is evaluated in the workspace with these multipliers.
@@ -96,15 +91,8 @@ class MeasureSet {
   };
   void find_places(const Mechanism& mechanism, const System& system);
   double value(const MeasuredState& state, std::size_t quantity) const;
-  static const JointWrench& wrench_of(const MeasuredState& state, const Place& place);
-  // The force or moment that a quantity is the size of; that, or a velocity or acceleration; zero of others.
-  Vec3 force_of(const MeasuredState& state, std::size_t quantity) const;
-  Vec3 vector_of(const MeasuredState& state, std::size_t quantity) const;
-  // Forces and moments of all quantities, beside the balance; multipliers follow.
-  void look_beside(const Problem& problem, const Eigen::VectorXd& q, Workspace& w, std::vector<Vec3>& forces);
   // What the drive at a place gives (N m or N); not a number where nothing drives.
   static double torque(const MeasuredState& state, const Place& place);
-  void take_largest_force(const MeasuredState& state);
   void evaluate_quantities(const MeasuredState& state);
   Clearance clearance_of(const Kinematics<double>& kinematics, std::size_t quantity) const;
   // Adds the rates of a quantity to a row of quantity_rates_.
@@ -145,7 +133,6 @@ class MeasureSet {
   std::vector<QuantityNumbers> numbers_;
   std::vector<BasicQuantityNumbers<Dual>> number_rates_; // workspace
   std::vector<std::string> names_, units_;
-  std::vector<Vec3> straight_; // after straighten_sizes(): by quantity its direction, or zero; else empty
   bool needs_forces_ = false, needs_accelerations_ = false, differenced_ = false;
   // Of the last state.
   double largest_force_ = 0;  // N, moments by the mechanism's reach

@@ -19,7 +19,7 @@ MotionOutputs::MotionOutputs(const MotionModel& model, std::span<const std::stri
   measures_.bind(varied_, model.system, model.parameters);
 }
 
-Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters& p, bool here) {
+Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters& p) {
   const System& system = model_.system;
   move(model_.released, p, {at.q, at.u, nullptr, &at.a}, kinematics_, carried_);
   for (std::size_t i = 0; i < system.reported.size(); ++i) {
@@ -57,13 +57,12 @@ Eigen::VectorXd MotionOutputs::evaluate(const MotionOfAll& at, const Parameters&
     torques_.push_back(drive_torque(model_.released, p, i, at.q, kinematics_));
   const MeasuredState state{system,       p,      at.q,    kinematics_, &forces, accelerated_,
                             coordinates_, rates_, torques_};
-  if (here) measures_.straighten_sizes(state);
   return measures_.evaluate(state).tail(static_cast<Eigen::Index>(count_));
 }
 
 Eigen::VectorXd MotionOutputs::values(const MotionOfAll& at) {
   near_.clear();
-  Eigen::VectorXd out = evaluate(at, model_.parameters, true);
+  Eigen::VectorXd out = evaluate(at, model_.parameters);
   near_ = coordinates_;
   return out;
 }
@@ -98,9 +97,10 @@ MotionOutputs::Rates MotionOutputs::along(const MotionOfAll& at, const MotionDir
     bend = (forth + back - 2 * here) / (2 * step);
     return Eigen::VectorXd((forth - back) / (2 * step));
   };
-  // Smaller ones where a curve is sharp, as the size of a vector that nearly vanishes.
+  // Smaller ones where a curve is sharp, as the size of a vector that nearly vanishes, or of a force that is
+  // far larger off the balance.
   constexpr double good = 1e-10;
-  constexpr double steps[] = {4e-3, 4e-4, 4e-5};
+  constexpr double steps[] = {4e-3, 4e-4, 4e-5, 4e-6};
   Rates out;
   bool straight = true; // the slope changes less and less
   for (const double h : steps) {

@@ -41,8 +41,7 @@ class MotionOutputs {
   Rates along(const MotionOfAll& at, const MotionDirection& direction);
 
  private:
-  // `here`: of the state beside which the others are (MeasureSet::straighten_sizes()).
-  Eigen::VectorXd evaluate(const MotionOfAll& at, const Parameters& parameters, bool here = false);
+  Eigen::VectorXd evaluate(const MotionOfAll& at, const Parameters& parameters);
 
   const MotionModel& model_;
   std::size_t count_;

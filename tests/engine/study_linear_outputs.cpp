@@ -377,7 +377,7 @@ TEST_CASE("what a drive by torque gives is an output, and a measure of the motio
   }
 }
 
-TEST_CASE("forces that are far larger beside the balance have exact slopes at it", "[linear-model]") {
+TEST_CASE("forces that are far larger beside the balance have their slopes at it", "[linear-model]") {
   // A slide at r on a turntable rests 3e-5 m within a hard stop: k (q - upper) = m w^2 r, and bears m w^2 r
   // along and m g across. A thousandth of a radius further it would bear ten times as much.
   constexpr double mass = 1, w = 3, drawn = 0.3, upper = 0.01, k = 1e5;
