@@ -166,11 +166,16 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
       x.value = measured.at.value[static_cast<std::size_t>(r.index)];
       x.error = measured.error[r.index];
       x.dependent = true;
-      // A loop joint that turns or slides with the drives is driven, too.
+      // A loop joint that turns or slides with the drives is driven, too, also where it stands for a moment.
       x.driven = std::abs(measured.rate[r.index]) > 1e-9 * measured.fastest * (r.angle ? 1 : p.length) ||
                  turns_on(system, r);
+      const bool may_go_on = !x.driven && !p.phase_free && measured.fastest > 0 &&
+                             !is_rotation_vector(system.cuts[static_cast<std::size_t>(r.cut)].type, r.index);
+      const auto rate =
+          x.driven || may_go_on ? constant_rate(system, p, q, error, r) : std::optional<RateWithError>{};
+      if (may_go_on && !rate) x.driven = true;
       if (x.driven) x.error = 0;
-      if (const auto rate = x.driven ? constant_rate(system, p, q, error, r) : std::nullopt) {
+      if (x.driven && rate) {
         x.speed = rate->value;
         x.speed_error = rate->error;
       }

@@ -359,3 +359,22 @@ TEST_CASE("a joint that is there twice holds nothing more", "[loops]") {
     CHECK(std::abs(value(two, "s") - value(one, "s")) < 1e-15 + two.coordinates[1].error);
   }
 }
+
+TEST_CASE("a slide that stands at the drawn phase alone is driven") {
+  // Crank and rod of one length: the slide is at 2 r cos(angle), which turns back where it is drawn.
+  for (const double angle : {0., 0.3}) {
+    CAPTURE(angle);
+    const Vec3 pin(0.1 * std::cos(angle), 0.1 * std::sin(angle), 0), end(2 * pin.x(), 0, 0);
+    Mechanism m;
+    m.gravity = Vec3::Zero();
+    m.bodies = {body("crank", 1, pin / 2), body("rod", 1, (pin + end) / 2), body("block", 1, end)};
+    m.joints = {driven(revolute("turn", "ground", "crank", {0, 0, 0}), 1),
+                revolute("pin", "crank", "rod", pin), revolute("end", "rod", "block", end),
+                prismatic("slide", "ground", "block", end, Vec3::UnitX())};
+    const Solution s = Analysis(m).solve();
+    CAPTURE(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(coordinate(s, "slide").driven);
+    CHECK_FALSE(coordinate(s, "slide").speed);
+  }
+}
