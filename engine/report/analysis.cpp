@@ -158,17 +158,24 @@ struct Analysis::State {
   // Whether a number makes a damper, which is none now, of a joint in which what turns moves against other
   // parts and which closes a loop: the system does not have it, and cannot tell what it does.
   bool makes_damper(const std::string& address) const {
-    std::optional<Mechanism> beside;
-    for (const CutJoint& cut : system.cuts) {
+    return std::ranges::any_of(system.cuts, [&](const CutJoint& cut) {
       if (cut.type == JointType::gear || moving_frame(system, cut.ends.a) == moving_frame(system, cut.ends.b))
-        continue;
-      if (!beside) beside = with_dampers_beside(*mechanism, {&address, 1});
+        return false;
       const auto j = static_cast<std::size_t>(cut.joint);
-      if (!std::ranges::equal(mechanism->joints[j].coordinates, beside->joints[j].coordinates, {},
-                              &Coordinate::damping, &Coordinate::damping))
-        return true;
-    }
-    return false;
+      const Joint& joint = mechanism->joints[j];
+      if (std::ranges::find(joint.coordinates, 0, &Coordinate::damping) == joint.coordinates.end())
+        return false;
+      // What most numbers cannot be is asked first: this is a part of every solve.
+      const bool given = std::ranges::any_of(
+          joint.formulas, [](const Formula& each) { return each.key.starts_with("damping"); });
+      const std::string_view name = address;
+      const bool own = name.starts_with("joints.") && name.substr(7).starts_with(joint.name) &&
+                       name.substr(7 + joint.name.size()).starts_with(".damping");
+      return (given || own) &&
+             !std::ranges::equal(joint.coordinates,
+                                 with_dampers_beside(*mechanism, {&address, 1}).joints[j].coordinates, {},
+                                 &Coordinate::damping, &Coordinate::damping);
+    });
   }
 
   // How the steady state moves with the sliders' numbers.
