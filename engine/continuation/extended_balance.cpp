@@ -66,7 +66,8 @@ Condition measure_is(std::size_t measure, double value, double scale) {
 
 Condition balance_is_singular() {
   return {[](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
-            return balance.singularity().value(balance.problem(), state.z, w);
+            return balance.ties() ? balance.turned_singularity(state, w)
+                                  : balance.singularity().value(balance.problem(), state.z, w);
           },
           [](const ExtendedBalance& balance, const ExtendedState& state, Workspace& w) {
             return balance.singularity().gradient(balance.problem(), state.z, w);
@@ -422,7 +423,28 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
     factor_with_multipliers(problem(), z, w_);
   else
     evaluate_with_multipliers(problem(), z, w_);
-  singularity_.set_borders(problem(), z, w_);
+  if (!ties_) return singularity_.set_borders(problem(), z, w_);
+  const TurnedBalance balance(problem(), z, *ties_, mechanism_, probe_);
+  const auto svd = balance.usable() ? singular_vectors(balance.matrix()) : std::nullopt;
+  if (!svd) return;
+  const Eigen::Index n = system_.nv, loops = balance.multipliers();
+  turned_column_ = svd->left.rightCols(1);
+  turned_column_.segment(n, loops).setZero();
+  turned_row_ = svd->right.rightCols(1);
+  turned_row_.tail(loops).setZero();
+}
+
+double ExtendedBalance::turned_singularity(const ExtendedState& state, Workspace& w) const {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const TurnedBalance balance(problem(), state.z, *ties_, mechanism_, w);
+  const Eigen::Index size = balance.matrix().rows();
+  if (!balance.usable() || turned_row_.size() != size) return none;
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(size + 1, size + 1);
+  m.topLeftCorner(size, size) = balance.matrix();
+  m.col(size).head(size) = turned_column_;
+  m.row(size).head(size) = turned_row_.transpose();
+  const auto solved = solve_square(m, Eigen::VectorXd::Unit(size + 1, size));
+  return solved ? (*solved)[size] : none;
 }
 
 double ExtendedBalance::transversality(const ExtendedState& state, std::size_t index, Workspace& w) const {

@@ -46,7 +46,7 @@ struct Condition {
 Condition coordinate_is(const CoordinateInfo& coordinate, double value);
 // A measure of the mechanism has a value, in its unit; `scale` is how large it is.
 Condition measure_is(std::size_t measure, double value, double scale);
-// The balance is singular: ExtendedBalance::singularity.
+// The balance is singular: ExtendedBalance::singularity or, where it has ties, turned_singularity.
 Condition balance_is_singular();
 // The balance does not leave its range as a parameter moves: ExtendedBalance::transversality.
 Condition branches_cross(std::size_t parameter);
@@ -62,8 +62,7 @@ class ExtendedBalance {
  public:
   // `scales` are the parameters' ranges of interest. `unfolded` adds an unknown force along the left border:
   // at a branch point the equations are regular only with it. `ties`: of states that stand turned, which none
-  // of the parameters changes; not with conditions on the balance alone (balance_is_singular,
-  // branches_cross).
+  // of the parameters changes; not with branches_cross.
   ExtendedBalance(const System& system, const Mechanism& mechanism, std::vector<std::string> addresses,
                   Eigen::VectorXd scales, std::vector<Condition> conditions, bool unfolded = false,
                   std::optional<AngleTies> ties = {});
@@ -100,6 +99,9 @@ class ExtendedBalance {
 
   // Vanishes where the balance is singular.
   const SingularityTest& singularity() const { return singularity_; }
+  // The same of a balance with ties, with the angles among the unknowns: g of a bordered TurnedBalance (see
+  // singularity.hpp). Not a number where that cannot be solved. The workspace is used.
+  double turned_singularity(const ExtendedState& state, Workspace& w) const;
   // At a singular state: by how much the balance leaves its range as parameter `index` moves; vanishes at a
   // branch point.
   double transversality(const ExtendedState& state, std::size_t index, Workspace& w) const;
@@ -163,6 +165,8 @@ class ExtendedBalance {
   Parameters parameters_;
   Scaling scaling_;
   SingularityTest singularity_;
+  // Borders of TurnedBalance: they leave out loops and multipliers, whose basis is another at each state.
+  Eigen::VectorXd turned_column_, turned_row_;
   Workspace w_, probe_;
 };
 

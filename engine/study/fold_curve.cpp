@@ -19,24 +19,33 @@ constexpr int largest_for_crossings = 100;
 PlaneCurves fold_curves(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
                         const PlaneOptions& options) {
   PlaneSearch plane(mechanism, x, y, options);
+  const std::optional<AngleTies> ties = plane.ties();
   ExtendedBalance folds = plane.balance({balance_is_singular()});
   plane.for_lines([&](const PlaneSearch::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     const ResponseDiagram d = plane.branches(line, false);
+    if (d.turned && !ties) return plane.refuse_turned();
     ExtendedBalance crossings =
         plane.balance({balance_is_singular(), branches_cross(static_cast<std::size_t>(line.varied))}, true);
     for (const SpecialPoint& s : d.special) {
+      const bool turned = d.turned && d.branches[static_cast<std::size_t>(s.branch)].connected;
       // Where a branch turns back because another crosses it there is no fold.
       const bool at_crossing = std::ranges::any_of(d.special, [&](const SpecialPoint& other) {
         return other.type == SpecialPointType::branch_point &&
                std::abs(other.at.parameter - s.at.parameter) < 1e-6 * (along.to - along.from);
       });
-      if (s.type == SpecialPointType::fold && !at_crossing)
+      if (s.type == SpecialPointType::fold && !at_crossing && turned) {
+        ExtendedBalance of_turned = plane.balance({balance_is_singular()}, false, ties);
+        plane.add(of_turned, PlaneCurveType::fold, line, s.at.parameter, s.at.coordinates);
+      } else if (s.type == SpecialPointType::fold && !at_crossing) {
         plane.add(folds, PlaneCurveType::fold, line, s.at.parameter, s.at.coordinates);
-      else if (s.type == SpecialPointType::branch_point && plane.system().nv > largest_for_crossings)
+      } else if (s.type == SpecialPointType::branch_point && turned) {
+        plane.give_up();
+      } else if (s.type == SpecialPointType::branch_point && plane.system().nv > largest_for_crossings) {
         plane.leave_out();
-      else if (s.type == SpecialPointType::branch_point)
+      } else if (s.type == SpecialPointType::branch_point) {
         plane.add(crossings, PlaneCurveType::branch_point, line, s.at.parameter, s.at.coordinates);
+      }
     }
   });
   return plane.finish("fold or crossing", "Curves of crossings are followed up to " +
@@ -48,6 +57,7 @@ PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const P
                          const std::string& name, double value, const PlaneOptions& options) {
   PlaneSearch plane(mechanism, x, y, options);
   const Wanted wanted = find_wanted(mechanism, plane.system(), name);
+  const std::optional<AngleTies> ties = plane.ties();
   plane.for_lines([&](const PlaneSearch::Line& line) {
     const PlaneAxis& along = plane.moving(line);
     DesignOptions ask;
@@ -59,9 +69,13 @@ PlaneCurves value_curves(const Mechanism& mechanism, const PlaneAxis& x, const P
     // Not reaching the value on one line is no failure.
     const bool solved = answer.lowest <= answer.highest && answer.highest != 0;
     plane.heard(solved ? Status::converged : answer.status, answer.message);
-    ExtendedBalance balance = plane.balance({wanted_is(wanted, value, answer.lowest, answer.highest)});
-    for (const DesignSolution& s : answer.solutions)
+    for (const DesignSolution& s : answer.solutions) {
+      const bool turned = plane.stands_turned(line, s.parameter, s.at.coordinates);
+      if (turned && !ties) return plane.refuse_turned();
+      ExtendedBalance balance = plane.balance({wanted_is(wanted, value, answer.lowest, answer.highest)},
+                                              false, turned ? ties : std::nullopt);
       plane.add(balance, PlaneCurveType::value, line, s.parameter, s.at.coordinates);
+    }
   });
   return plane.finish("such");
 }

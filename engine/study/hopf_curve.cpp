@@ -85,11 +85,9 @@ PlaneCurves hopf_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
   PlaneSearch plane(mechanism, x, y, options);
   std::optional<AngleTies> ties; // of states that stand turned
   plane.for_lines([&](const PlaneSearch::Line& line) {
-    const ResponseDiagram diagram = plane.branches(line, true, true);
+    const ResponseDiagram diagram = plane.branches(line, true);
     if (diagram.turned && !ties) ties = plane.ties();
-    if (diagram.turned && !ties)
-      plane.refuse("The steady state stands turned against the drawn pose, and the two numbers change which "
-                   "angles are tied to each other: its curves are not followed.");
+    if (diagram.turned && !ties) plane.refuse_turned();
     for (const SpecialPoint& s : diagram.special) {
       if (s.type != SpecialPointType::hopf || s.at.floquet) continue;
       if (plane.system().nv > largest_for_pairs) {

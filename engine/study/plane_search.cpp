@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -64,10 +66,9 @@ ReportProgress PlaneSearch::along_line() const {
   };
 }
 
-ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues, bool turned) {
+ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
   const PlaneAxis& along = moving(line);
   BranchOptions follow;
-  follow.turned = turned;
   follow.largest_step = options_.largest_step;
   follow.eigenvalues = eigenvalues;
   follow.all = options_.all;
@@ -91,6 +92,7 @@ ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unf
 
 std::optional<AngleTies> PlaneSearch::ties() const {
   std::optional<AngleTies> out;
+  if (system_.torques.empty()) return out;
   Workspace w;
   for (const double x : {x_.from, x_.to})
     for (const double y : {y_.from, y_.to})
@@ -108,6 +110,21 @@ std::optional<AngleTies> PlaneSearch::ties() const {
       } catch (const SceneError&) { // no mechanism can be made there
       }
   return out;
+}
+
+bool PlaneSearch::stands_turned(const Line& line, double varied,
+                                const std::vector<CoordinateSolution>& coordinates) const {
+  if (system_.torques.empty()) return false;
+  Parameters parameters;
+  Scaling scaling;
+  bind(system_, with_parameter(on(line), moving(line).address, varied), parameters);
+  set_scaling(system_, parameters, scaling);
+  const Eigen::VectorXd starts = starts_of({system_, parameters, scaling}, coordinates);
+  return std::ranges::any_of(system_.torques, [&](const DriveTorqueElement& torque) {
+    const bool angle = system_.links[static_cast<std::size_t>(torque.link)].type == LinkType::revolute;
+    const double start = starts[torque.link];
+    return std::abs(angle ? std::remainder(start, 2 * std::numbers::pi) : start) > 1e-12;
+  });
 }
 
 std::optional<PlaneSearch::Added> PlaneSearch::add(ExtendedBalance& balance, PlaneCurveType type,
@@ -156,8 +173,9 @@ void PlaneSearch::heard(Status status, const std::string& message) {
   out_.message = message;
 }
 
-void PlaneSearch::refuse(std::string why) {
-  refusal_ = std::move(why);
+void PlaneSearch::refuse_turned() {
+  refusal_ = "The steady state stands turned against the drawn pose, and the two numbers change which angles "
+             "are tied to each other: its curves are not followed.";
 }
 
 PlaneCurves PlaneSearch::finish(const std::string& what, const std::string& left_out) {

@@ -28,14 +28,18 @@ class PlaneSearch {
   void for_lines(const std::function<void(const Line&)>& search);
   // Of following the branches along the line that is searched: a part of the whole.
   ReportProgress along_line() const;
-  // The branches along a line, of which the search has heard; with `turned` those of states that stand turned
-  // against the drawn pose, too (ResponseDiagram::turned).
-  ResponseDiagram branches(const Line& line, bool eigenvalues, bool turned = false);
+  // The branches along a line, of which the search has heard.
+  ResponseDiagram branches(const Line& line, bool eigenvalues);
 
   ExtendedBalance balance(std::vector<Condition> conditions, bool unfolded = false,
                           std::optional<AngleTies> ties = {}) const;
   // Of states that stand turned, where they are the same all over the plane.
   std::optional<AngleTies> ties() const;
+  // Whether a state on a line stands turned: what turns at found speeds otherwise than drawn.
+  bool stands_turned(const Line& line, double varied,
+                     const std::vector<CoordinateSolution>& coordinates) const;
+  // Ends the search where such states are met and there are no ties of them.
+  void refuse_turned();
 
   // The curve through a point on a line, if it is not known yet; `pair` as in ExtendedState. Nothing where
   // there is none, or it is.
@@ -49,13 +53,11 @@ class PlaneSearch {
   static ResponsePoint response(ExtendedBalance& balance, const ExtendedState& state, bool eigenvalues);
   static PlanePoint point(ExtendedBalance& balance, PlaneCurveType type, const ExtendedState& state);
 
-  // Counts a start that is not followed for the size of the system.
+  // Counts a start that is not followed for the size of the system, or as nothing follows from it.
   void leave_out() { ++left_out_; }
+  void give_up() { ++not_followed_; }
 
   void heard(Status status, const std::string& message);
-  // There is no answer, whatever else was found.
-  void refuse(std::string why);
-
   // `what` there are curves of; `left_out`, what is said after how many starts were left out.
   PlaneCurves finish(const std::string& what, const std::string& left_out = "");
 

@@ -4,6 +4,7 @@
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/design.hpp"
+#include "engine/study/fold_curve.hpp"
 #include "engine/study/hopf_curve.hpp"
 #include "engine/study/lyapunov.hpp"
 #include "tests/catch.hpp"
@@ -129,6 +130,30 @@ TEST_CASE("design of states that stand turned, beyond a fold of theirs, too", "[
   const DesignAnswer never = design(m, "parameters.T", 1, 12, "apart", 2, {});
   CHECK(never.solutions.empty());
   CHECK(never.end == DesignEnd::never);
+}
+
+TEST_CASE("curves of folds and of values of states that stand turned", "[phase][coupling]") {
+  const Mechanism m = driven_and_braked();
+  const PlaneAxis torque{"parameters.T", 1, 12}, stiffness{"forces.k.stiffness", 30, 70};
+  const PlaneCurves folds = fold_curves(m, torque, stiffness);
+  INFO(folds.message);
+  REQUIRE(folds.curves.size() == 1);
+  CHECK(folds.curves[0].type == PlaneCurveType::fold);
+  CHECK(folds.curves[0].points.size() > 5);
+  CHECK_THAT(folds.curves[0].points.front().y, WithinAbs(30, 1e-9));
+  CHECK_THAT(folds.curves[0].points.back().x, WithinAbs(12, 1e-9));
+  for (const PlanePoint& p : folds.curves[0].points)
+    CHECK_THAT(per_torque * p.x, WithinRel(0.09 * p.y, 1e-9));
+  for (const double twist : {0.5, 2.}) {
+    const PlaneCurves values = value_curves(m, torque, stiffness, "apart", apart_at(twist));
+    CAPTURE(twist, values.message);
+    REQUIRE(values.curves.size() == 1);
+    CHECK(values.curves[0].points.size() > 5);
+    for (const PlanePoint& p : values.curves[0].points) {
+      CHECK_THAT(per_torque * p.x, WithinRel(0.09 * p.y * std::sin(twist), 1e-9));
+      CHECK(p.stable == (twist < 1.57));
+    }
+  }
 }
 
 TEST_CASE("where a load that eggs itself on makes two coupled shafts hunt", "[phase][coupling][hopf]") {
