@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 namespace flyball {
 namespace {
@@ -48,11 +49,18 @@ class Attempt {
     implied_.resize(parts_.size(), false);
   }
 
-  // Nothing where there is no such state.
-  std::optional<StateOnFriction> solve(const SolveOptions& options) const {
-    for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held()))
-      if (auto out = solve_with(at_rest, options)) return out;
-    return std::nullopt;
+  // Nothing where there is no such state. `unopposed`: see attempt_parts().
+  std::optional<StateOnFriction> solve(const SolveOptions& options, bool unopposed) const {
+    std::optional<StateOnFriction> first;
+    for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held())) {
+      auto out = solve_with(at_rest, options);
+      if (!out) continue;
+      if (std::ranges::none_of(std::views::iota(std::size_t(0), parts_.size()),
+                               [&](std::size_t i) { return parts_[i] == Part::none && out->margins[i] < 0; }))
+        return out;
+      if (!first) first = std::move(out);
+    }
+    return unopposed ? std::move(first) : std::nullopt;
   }
 
   // With its coordinates driven as their parts say, and drives by torque that have come to rest.
@@ -298,7 +306,9 @@ class Attempt {
       };
       const auto c = std::ranges::find_if(s.coordinates, is_it);
       if (parts_[i] == Part::none) { // what goes on has friction against it
-        if (c != s.coordinates.end() && c->speed && std::abs(*c->speed) > c->speed_error) return false;
+        if (c == s.coordinates.end() || !c->speed || std::abs(*c->speed) <= c->speed_error) continue;
+        out.margins[i] = -std::abs(*c->speed);
+        out.goes = false;
         continue;
       }
       const auto drive = std::ranges::find_if(s.drive_torques, is_it);
@@ -418,8 +428,9 @@ class Attempt {
 std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,
                                              const FrictionParts& parts, const SolveOptions& options,
-                                             const Holding* holding, std::vector<bool> implied) {
-  return Attempt(mechanism, frictions, parts, holding, std::move(implied)).solve(options);
+                                             const Holding* holding, std::vector<bool> implied,
+                                             bool unopposed) {
+  return Attempt(mechanism, frictions, parts, holding, std::move(implied)).solve(options, unopposed);
 }
 
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 
 namespace flyball {
 namespace {
@@ -20,6 +22,7 @@ using Part = FrictionPart;
 
 constexpr double balance_search = 0.02; // s, for what rests in balance beside what is held: see SolveOptions
 constexpr std::size_t most_tried = 3;   // joints that may slip: each forwards, backwards or not at all
+constexpr int most_changes = 250;       // of parts, where more may: more than four have together
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
@@ -30,6 +33,15 @@ bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
   const Joint& joint = joint_of(mechanism, at);
   const Coordinate& c = coordinate_of(mechanism, at);
   return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
+}
+
+// Joints by coordinate with friction.
+std::vector<std::size_t> that_may_slip(const Mechanism& mechanism,
+                                       const std::vector<CoordinateReference>& frictions) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < frictions.size(); ++i)
+    if (may_slip(mechanism, frictions[i])) out.push_back(i);
+  return out;
 }
 
 bool any_slips(const FrictionParts& parts) {
@@ -93,10 +105,12 @@ std::string slipping_text(const std::vector<FrictionForce>& forces) {
 }
 
 // With rates that are found by the torques or, where that leads to no state, of some that the drives give:
-// at first by Newton-Raphson alone, as one of the two has none. One that goes before others.
+// at first by Newton-Raphson alone, as one of the two has none. One that goes before others. `unopposed`: see
+// attempt_parts().
 std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
-                                        const FrictionParts& parts, const SolveOptions& options) {
+                                        const FrictionParts& parts, const SolveOptions& options,
+                                        bool unopposed = false) {
   std::vector<std::size_t> may_close;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
@@ -110,7 +124,7 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
       std::vector<bool> implied(parts.size(), false);
       for (std::size_t k = 0; k < may_close.size(); ++k)
         implied[may_close[k]] = (set >> k & 1) != 0;
-      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied));
+      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied), unopposed);
       if (state && (state->goes || !first)) first = std::move(state);
       if (first && first->goes) return first;
     }
@@ -119,14 +133,106 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
   return std::nullopt;
 }
 
-} // namespace
+// Of more joints than all ways are tried of: from the parts with which they begin the part of one joint is
+// changed at a time, of one whose friction would have to give more than its limit, that slips against the way
+// it is taken to or goes on without a part, until all go (principal pivoting: Murty, Opsearch 11, 1974). What
+// least is wrong with goes on first, and no parts come twice, so that it does not go in circles. By
+// Newton-Raphson alone.
+class PartsSearch {
+ public:
+  PartsSearch(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
+              const SolveOptions& options)
+      : mechanism_(mechanism), frictions_(frictions), tried_(that_may_slip(mechanism, frictions)),
+        options_(options) {
+    options_.newton_only = true;
+    options_.search = 0;
+  }
 
-std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  // Until `accept` takes parts that go.
+  template <class Accept>
+  void find(const Accept& accept) {
+    begin();
+    for (int k = 0; k < most_changes && !queue_.empty() && !is_cancelled(options_.cancel); ++k) {
+      const int wrong = queue_.begin()->first;
+      const FrictionParts parts = std::move(queue_.begin()->second);
+      queue_.erase(queue_.begin());
+      std::optional<StateOnFriction> state = let_slip(mechanism_, frictions_, parts, options_, true);
+      if (!state)
+        change_any(parts, wrong + static_cast<int>(tried_.size()));
+      else if (!state->goes)
+        change_wrong(*state);
+      else if (accept(parts))
+        return;
+    }
+  }
+
+ private:
+  // What torques turn slips as that begins; of the rest it holds what loops do not tie to that.
+  void begin() {
+    FrictionParts parts(frictions_.size(), Part::none);
+    for (const std::size_t i : find_holding(mechanism_, {}, options_.cancel, false).independent)
+      parts[i] = Part::holds;
+    for (const std::size_t i : tried_)
+      if (const Part part = part_at_start(mechanism_, frictions_[i]); part != Part::none) parts[i] = part;
+    add(std::move(parts), 0);
+  }
+
+  void add(FrictionParts parts, int wrong) {
+    const bool plays = std::ranges::count(parts, Part::none) < std::ssize(parts); // else it is as without it
+    if (plays && seen_.insert(parts).second) queue_.emplace(wrong, std::move(parts));
+  }
+
+  void add(FrictionParts parts, std::size_t i, Part part, int wrong) {
+    parts[i] = part;
+    add(std::move(parts), wrong);
+  }
+
+  void change_any(const FrictionParts& parts, int wrong) {
+    for (const std::size_t i : tried_)
+      for (const Part part : {Part::holds, Part::slips_forwards, Part::slips_backwards, Part::none})
+        add(parts, i, part, wrong);
+  }
+
+  void change_wrong(const StateOnFriction& state) {
+    std::vector<std::size_t> wrong;
+    for (const std::size_t i : tried_)
+      if (!(state.margins[i] > 0)) wrong.push_back(i);
+    const auto count = static_cast<int>(wrong.size());
+    for (const std::size_t i : wrong) {
+      if (is_slipping(state.parts[i])) {
+        add(state.parts, i, Part::holds, count);
+        add(state.parts, i, Part::none, count);
+        continue;
+      }
+      const std::optional<double> way = way_beyond(state, i);
+      if (!way || *way > 0) add(state.parts, i, Part::slips_forwards, count);
+      if (!way || *way < 0) add(state.parts, i, Part::slips_backwards, count);
+    }
+  }
+
+  // Which way one would go that holds too much or goes on: its sign. Nothing where that is open.
+  std::optional<double> way_beyond(const StateOnFriction& state, std::size_t i) const {
+    const auto is_it = [&](const auto& x) {
+      return x.joint == joint_of(mechanism_, frictions_[i]).name && x.index == frictions_[i].coordinate;
+    };
+    if (state.parts[i] == Part::none) return std::ranges::find_if(state.solution.coordinates, is_it)->speed;
+    const auto force = std::ranges::find_if(state.solution.frictions, is_it);
+    return force->value ? std::optional(-*force->value) : std::nullopt;
+  }
+
+  const Mechanism& mechanism_;
+  const std::vector<CoordinateReference>& frictions_;
+  std::vector<std::size_t> tried_;
+  SolveOptions options_;
+  std::multimap<int, FrictionParts> queue_; // by how much was wrong with those before
+  std::set<FrictionParts> seen_;
+};
+
+// What all that has a part at first holds, then all ways of few joints, or of more that in which they begin.
+std::vector<FrictionParts> parts_to_try(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   std::vector<FrictionParts> all{FrictionParts(frictions.size(), Part::none)};
-  std::vector<std::size_t> tried;
-  for (std::size_t i = 0; i < frictions.size(); ++i)
-    if (may_slip(mechanism, frictions[i])) tried.push_back(i);
+  std::vector<std::size_t> tried = that_may_slip(mechanism, frictions);
   if (tried.size() > most_tried) { // all ways would be too many: that in which they begin to slip, if none
                                    // closes a loop, whose rates take seconds to find or not
     FrictionParts slipping(frictions.size(), Part::none);
@@ -156,6 +262,21 @@ std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std:
     return std::pair(std::ranges::count(parts, Part::holds), std::ranges::count(parts, Part::none));
   });
   all.insert(all.begin(), held);
+  return all;
+}
+
+} // namespace
+
+std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std::atomic<bool>* cancel) {
+  std::vector<FrictionParts> all = parts_to_try(mechanism, cancel);
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  if (that_may_slip(mechanism, frictions).size() <= most_tried) return all;
+  SolveOptions options;
+  options.cancel = cancel;
+  PartsSearch(mechanism, frictions, options).find([&](const FrictionParts& parts) {
+    if (std::ranges::find(all, parts) == all.end()) all.push_back(parts);
+    return true;
+  });
   return all;
 }
 
@@ -213,7 +334,7 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     if (c.friction && c.drawn != value) return std::nullopt;
   }
   std::optional<StateOnFriction> unstable;
-  std::vector<FrictionParts> all = friction_parts(mechanism, options.cancel);
+  std::vector<FrictionParts> all = parts_to_try(mechanism, options.cancel);
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
   std::vector<Part> at_start;
   for (const CoordinateReference& at : frictions)
@@ -235,7 +356,15 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     }
     if (unstable) break;
   }
-  return unstable;
+  if (unstable || that_may_slip(mechanism, frictions).size() <= most_tried) return unstable;
+  std::optional<StateOnFriction> found;
+  PartsSearch(mechanism, frictions, options).find([&](const FrictionParts& parts) {
+    auto state = solve_with_parts(mechanism, parts, options);
+    if (!state || !state->goes) return false;
+    (state->solution.stable == false ? unstable : found) = std::move(state);
+    return found.has_value();
+  });
+  return found ? std::move(found) : std::move(unstable);
 }
 
 std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked,
@@ -271,8 +400,14 @@ std::vector<Solution> find_friction_states(const Mechanism& mechanism, const Sol
 
 std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {
   const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  std::vector<FrictionParts> all = parts_to_try(mechanism, nullptr);
+  if (const auto tried = that_may_slip(mechanism, frictions); tried.size() > most_tried)
+    for (const std::size_t i : tried) { // whatever the others do
+      all.emplace_back(frictions.size(), Part::none);
+      all.back()[i] = Part::slips_forwards;
+    }
   std::vector<std::string> out;
-  for (const FrictionParts& parts : friction_parts(mechanism)) {
+  for (const FrictionParts& parts : all) {
     if (!any_slips(parts) || std::ranges::count(parts, Part::slips_backwards) > 0) continue;
     try {
       for (const CoordinateSolution& c :

@@ -36,8 +36,8 @@ struct StateOnFriction {
 };
 
 // All parts that friction may have: at first what holds all that it can, as drawn; then those with something
-// that slips or rests in balance, most held first, then those with most in balance. The first alone where
-// more than three joints would have to be tried.
+// that slips or rests in balance, most held first, then those with most in balance. Of more than three joints
+// that may slip the first, how they begin, and those with which a search by single joints finds a state.
 std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
                                           const std::atomic<bool>* cancel = nullptr);
 
@@ -54,8 +54,8 @@ bool holds_more(const FrictionParts& here, const FrictionParts& there);
 std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, const FrictionParts& parts,
                                                 const SolveOptions& options, double slip_search = 0);
 
-// Where a solve without this found no steady state. Nothing where there is none, or where more than three
-// joints would have to be tried for slipping. Throws SceneError for starts that name nothing.
+// Where a solve without this found no steady state. Nothing where there is none, or where of more than three
+// joints that may slip the search by single ones finds none. Throws SceneError for starts that name nothing.
 std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, const SolveOptions& options);
 
 // Of a study that found no steady state without friction: what is said where solving answers with one that

@@ -269,8 +269,8 @@ std::string rubbing_message(const ReportInput& in) {
   return "No steady state was found in which dry friction holds " +
          coordinate_label(system, system.links[static_cast<std::size_t>(in.existence.rubs)]) +
          ", which a torque turns, or slips at a constant rate." +
-         (find_frictions(in.mechanism).size() > 3 ? " Of more than three joints that may slip, only all "
-                                                    "together were tried, as they begin, and none."
+         (find_frictions(in.mechanism).size() > 3 ? " Of more than three joints that may slip not all "
+                                                    "ways in which they slip and stick were tried."
                                                   : "");
 }
 

@@ -14,6 +14,7 @@
 #include "tests/support/solutions.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 using namespace flyball;
@@ -74,7 +75,103 @@ Mechanism jack(double at_rest) {
       R"("gravity": [0, -9.81, 0], )");
 }
 
+// Dry friction between a body and another or the ground (-1), N m.
+struct Rubbing {
+  int a, b;
+  double limit;
+};
+
+// The speeds of coaxial shafts with T_i - c_i w_i each: the least of sum(c w^2 / 2 - T w) + sum(limit |w_b -
+// w_a|), which is convex, over all ways in which they may stick and slip.
+std::vector<double> least_speeds(const std::vector<double>& torques, const std::vector<double>& resistances,
+                                 const std::vector<Rubbing>& rubbing) {
+  const auto of = [](const std::vector<double>& w, int i) {
+    return i < 0 ? 0 : w[static_cast<std::size_t>(i)];
+  };
+  std::vector<double> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int way = 0; way < std::pow(3, rubbing.size()); ++way) {
+    std::vector<double> pushed = torques;
+    std::vector<int> group(torques.size()); // what sticks together; -1: to the ground
+    for (std::size_t i = 0; i < group.size(); ++i)
+      group[i] = static_cast<int>(i);
+    int digits = way;
+    for (const Rubbing& r : rubbing) {
+      const int slip = digits % 3 - 1;
+      digits /= 3;
+      if (r.a >= 0) pushed[static_cast<std::size_t>(r.a)] += slip * r.limit;
+      pushed[static_cast<std::size_t>(r.b)] -= slip * r.limit;
+      if (slip != 0) continue;
+      const int one = r.a < 0 ? -1 : group[static_cast<std::size_t>(r.a)],
+                other = group[static_cast<std::size_t>(r.b)];
+      std::ranges::replace(group, std::max(one, other), std::min(one, other));
+    }
+    std::vector<double> w(torques.size());
+    double dissipated = 0;
+    for (std::size_t i = 0; i < w.size(); ++i) {
+      double torque = 0, resistance = 0;
+      for (std::size_t k = 0; k < w.size(); ++k)
+        if (group[k] == group[i]) torque += pushed[k], resistance += resistances[k];
+      w[i] = group[i] < 0 ? 0 : torque / resistance;
+      dissipated += resistances[i] * w[i] * w[i] / 2 - torques[i] * w[i];
+    }
+    for (const Rubbing& r : rubbing)
+      dissipated += r.limit * std::abs(of(w, r.b) - of(w, r.a));
+    if (dissipated < least) {
+      least = dissipated;
+      best = w;
+    }
+  }
+  return best;
+}
+
 } // namespace
+
+TEST_CASE("four joints with friction of which clutches close loops: as enumerated") {
+  std::mt19937 random(4);
+  int slipped = 0, stuck = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    std::vector<double> torques, resistances;
+    const std::vector<Rubbing> rubbing{{-1, 1, uniform(random, 0.1, 2)},
+                                       {0, 1, uniform(random, 0.1, 4)},
+                                       {1, 2, uniform(random, 0.1, 4)},
+                                       trial % 2 ? Rubbing{0, 2, uniform(random, 0.1, 4)}
+                                                 : Rubbing{-1, 2, uniform(random, 0.1, 2)}};
+    std::string bodies, joints;
+    for (int i = 0; i < 3; ++i) {
+      torques.push_back(uniform(random, -5, 5));
+      resistances.push_back(uniform(random, 0.1, 1));
+      const std::string b = "b" + std::to_string(i), j = "p" + std::to_string(i);
+      const auto brake = std::ranges::find_if(rubbing, [&](const Rubbing& r) { return r.a < 0 && r.b == i; });
+      bodies += (i ? ", " : "") + body_at(b, 0);
+      joints +=
+          (i ? ", " : "") + bearing_at(j, b, 0,
+                                       torque(number_text(torques.back()) + " N m - " +
+                                                  number_text(resistances.back()) + " N m s*rate(" + j + ")",
+                                              torques.back()) +
+                                           (brake == rubbing.end() ? "" : ", " + friction(brake->limit)));
+    }
+    for (const Rubbing& r : rubbing)
+      if (r.a >= 0)
+        joints += R"(, {"name": "k)" + std::to_string(r.a) + std::to_string(r.b) +
+                  R"(", "type": "revolute", "bodies": ["b)" + std::to_string(r.a) + R"(", "b)" +
+                  std::to_string(r.b) + R"("], "at": [0, 0, 0], "axis": [0, 1, 0], )" + friction(r.limit) +
+                  "}";
+    const Solution s = Analysis(scene(bodies, joints)).solve();
+    const std::vector<double> expected = least_speeds(torques, resistances, rubbing);
+    CAPTURE(trial, expected, s.message);
+    REQUIRE(s.status == Status::converged);
+    for (int i = 0; i < 3; ++i)
+      CHECK_THAT(coordinate(s, "p" + std::to_string(i)).speed.value_or(0),
+                 WithinAbs(expected[static_cast<std::size_t>(i)], 1e-9));
+    for (const FrictionForce& force : s.frictions) {
+      ++(force.slips ? slipped : stuck);
+      if (force.value) CHECK(std::abs(*force.value) <= force.limit * (1 + 1e-12));
+    }
+  }
+  CHECK(slipped > 6);
+  CHECK(stuck > 3);
+}
 
 TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
   const Mechanism m = countershaft(0.5);
