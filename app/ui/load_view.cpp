@@ -33,7 +33,7 @@ bool may_show_loads(const Session& session, const ToolState& tool, const ViewSta
 } // namespace
 
 bool shows_diagram(const ViewState& view) {
-  return view.scene.source.loads && view.scene.source.loads_body >= 0;
+  return view.scene.source.loads && view.scene.scene && view.scene.scene->diagram;
 }
 
 bool shows_roots(const ViewState& view) {
@@ -47,11 +47,16 @@ bool shows_moment(const Session& session) {
 
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
   frame.load_lengths = view.load_lengths;
+  const auto choose_body = [&] {
+    const auto is_body = [](const PartId& part) { return part.kind == PartKind::body; };
+    if (std::ranges::count_if(frame.selected, is_body) == 1)
+      frame.loads_body = std::ranges::find_if(frame.selected, is_body)->index;
+  };
   const PeriodicStudy::Posed* moment = shown_moment(session);
   if (moment && view.loads && !tool.pull && session.mode == Mode::explore) {
     frame.loads_motion = moment->motion.get();
     frame.loads_time = moment->time < 0 ? moment->time + moment->motion->time.back() : moment->time;
-    return;
+    return choose_body();
   }
   if (!may_show_loads(session, tool, view)) return;
   const std::optional<Quat> turn = turn_of_loads(session);
@@ -59,9 +64,7 @@ void show_loads(const Session& session, const ToolState& tool, const ViewState& 
   frame.loads = &session.answer.solution;
   frame.loads_turning = session.answer.turning;
   frame.loads_turn = *turn;
-  const auto is_body = [](const PartId& part) { return part.kind == PartKind::body; };
-  if (std::ranges::count_if(frame.selected, is_body) == 1)
-    frame.loads_body = std::ranges::find_if(frame.selected, is_body)->index;
+  choose_body();
 }
 
 std::string loads_missing(const Session& session, const ToolState& tool, const ViewState& view) {

@@ -52,8 +52,7 @@ ViewFrame view_frame(const Session& session, const Ui& ui, const ToolState& tool
   show_loads(session, tool, view, frame);
   // While a slider is held all arrows would change their lengths at once where these are not chosen.
   if (const std::shared_ptr<const ViewScene>& now = view.scene.scene;
-      ui.slider_press.dragging && !frame.load_lengths && now && !now->arrows.arrows.empty() &&
-      view.scene.source.loads_body < 0)
+      ui.slider_press.dragging && !frame.load_lengths && now && !now->arrows.arrows.empty() && !now->diagram)
     frame.load_lengths = now->arrows.scales.lengths();
   frame.cut_joints = session.answer.summary.cut_joints;
   frame.colouring = session.document.colouring();

@@ -66,6 +66,11 @@ LoadScales::LoadScales(const std::vector<Load>& loads, LoadLengths lengths, doub
   }
 }
 
+void LoadScales::leave_room(bool moment, double size) {
+  double& full = full_[moment ? 1 : 0];
+  if (full > 0) full = std::max(full, size);
+}
+
 double LoadScales::length(bool moment, double size) const {
   const double full = full_[moment ? 1 : 0];
   if (!(full > 0) || !(size > load_rounding * full)) return 0;

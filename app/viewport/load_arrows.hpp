@@ -19,6 +19,9 @@ class LoadScales {
   LoadScales() = default;
   LoadScales(const std::vector<Load>& loads, LoadLengths lengths, double longest);
 
+  // Makes the longest arrow stand for at least that much (N, N m), as at other moments of a motion.
+  void leave_room(bool moment, double size);
+
   // m; zero for what is rounding beside the other loads.
   double length(bool moment, double size) const;
   double length(const Load& load) const { return length(load.moment, load.vector.stableNorm()); }

@@ -1,6 +1,11 @@
 #include "app/viewport/motion_loads.hpp"
 
+#include "engine/dynamics/motion_model.hpp"
+#include "engine/dynamics/simulator.hpp"
+#include "engine/mechanism/error.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <unordered_map>
@@ -105,11 +110,154 @@ class MotionCollector {
   std::unordered_map<std::string_view, std::size_t> joints_;
 };
 
+// Of each body, one after the other: its mass centre, and that moved by 1 m along x and y of the world in the
+// drawn pose, which tell how the body turns.
+constexpr std::size_t points_a_body = 3;
+std::vector<BodyPoint> telling_points(const Mechanism& mechanism) {
+  std::vector<BodyPoint> points;
+  for (const Body& body : mechanism.bodies)
+    for (const Vec3& aside : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)})
+      points.push_back({body.name, body.position + aside});
+  return points;
+}
+
+// From the last sample to the time (s), with all outputs there. Without samples where it does not get there.
+Run run_to(const Run& motion, double time) {
+  const auto after = std::ranges::upper_bound(motion.time, time);
+  const auto sample = static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - motion.time.begin(), 1) - 1);
+  auto segment = motion.segments.rbegin();
+  while (segment->first > sample && segment + 1 != motion.segments.rend())
+    ++segment;
+  SimulationOptions options;
+  options.start = Start::state;
+  options.state = state_at(motion, sample);
+  options.rate = 0;
+  options.tolerance = 1e-9;
+  options.method = motion.method;
+  options.damped = motion.damped;
+  options.reactions = true;
+  options.measures = false;
+  options.points = telling_points(segment->model->mechanism);
+  options.time_limit = 0.5; // the window waits for it
+  try {
+    Simulator simulator(*segment->model, options);
+    if (simulator.advance(time, true)) return simulator.run();
+  } catch (const SceneError&) { // it has no such moment
+  }
+  return {};
+}
+
+// What loads_of() asks of a steady state.
+struct AsSteady {
+  Solution solution;
+  std::vector<AngularMotion> turning;
+};
+
+// How a body turns, by the motion of its points relative to the first, of which the others are at right
+// angles and 1 m away.
+AngularMotion turning_by(const std::array<PointMotion, points_a_body>& points) {
+  const Vec3 x = points[1].position - points[0].position, y = points[2].position - points[0].position,
+             z = x.cross(y);
+  // w from what w x r is of x and y.
+  const auto from = [&](const Vec3& of_x, const Vec3& of_y) {
+    return Vec3(of_y.dot(z) * x - of_x.dot(z) * y + of_x.dot(y) * z);
+  };
+  AngularMotion turning;
+  turning.velocity = from(points[1].velocity - points[0].velocity, points[2].velocity - points[0].velocity);
+  const Vec3& w = turning.velocity;
+  turning.acceleration = from(points[1].acceleration - points[0].acceleration - w.cross(w.cross(x)),
+                              points[2].acceleration - points[0].acceleration - w.cross(w.cross(y)));
+  return turning;
+}
+
+// The last sample of a run with the points above; nothing where accelerations of what has mass are not known.
+std::optional<AsSteady> as_steady(const Mechanism& mechanism, const Run& run) {
+  if (run.time.empty() || run.points.size() != points_a_body * mechanism.bodies.size()) return {};
+  AsSteady out;
+  Solution& solution = out.solution;
+  for (const CoordinateTrack& track : run.coordinates) {
+    CoordinateSolution& c = solution.coordinates.emplace_back();
+    c.joint = track.joint;
+    c.index = track.index;
+    c.count = track.count;
+    c.angle = track.angle;
+    c.value = track.value.back();
+  }
+  for (const DriveTrack& track : run.drives) {
+    DriveTorque& drive = solution.drive_torques.emplace_back();
+    drive.joint = track.joint;
+    drive.index = track.index;
+    drive.count = track.count;
+    drive.angle = track.angle;
+    drive.value = track.torque.back();
+  }
+  for (const ReactionTrack& track : run.reactions) {
+    Reaction& reaction = solution.reactions.emplace_back();
+    reaction.joint = track.joint;
+    reaction.force = track.force.back();
+    reaction.torque = track.torque.back();
+  }
+  for (const BearingTrack& track : run.bearings) {
+    BearingForce& bearing = solution.bearings.emplace_back();
+    bearing.bearing = track.bearing;
+    bearing.force = track.force.back();
+    bearing.torque = track.torque.back();
+  }
+  for (const GearTrack& track : run.gears) {
+    if (!std::isfinite(track.a.back()) || !std::isfinite(track.b.back())) continue;
+    GearReaction& gear = solution.gears.emplace_back();
+    gear.joint = track.joint;
+    gear.a = track.a.back();
+    gear.b = track.b.back();
+  }
+  for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+    const Body& body = mechanism.bodies[b];
+    const bool inert = body.mass > 0 || std::ranges::any_of(body.inertia, [](double i) { return i != 0; });
+    std::array<PointMotion, points_a_body> points;
+    for (std::size_t i = 0; i < points_a_body; ++i) {
+      const PointTrack& track = run.points[points_a_body * b + i];
+      if (inert && track.acceleration.empty()) return {};
+      points[i] = {track.position.back(), track.velocity.back(),
+                   track.acceleration.empty() ? Vec3(0, 0, 0) : track.acceleration.back()};
+    }
+    solution.centres.push_back(points[0]);
+    out.turning.push_back(turning_by(points));
+  }
+  return out;
+}
+
 } // namespace
 
 std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double time) {
   if (motion.time.empty()) return {};
   return MotionCollector(assembly, motion).at(Moment(motion.time, time));
+}
+
+std::optional<std::vector<Load>> diagram_at(const Assembly& assembly, const Run& motion, double time,
+                                            int body) {
+  if (motion.time.empty() || motion.segments.empty()) return {};
+  const std::optional<AsSteady> now = as_steady(assembly.mechanism, run_to(motion, time));
+  if (!now) return {};
+  return loads_of(assembly, now->solution, now->turning, body);
+}
+
+LoadScales diagram_scales(const Assembly& assembly, const Run& motion, int body,
+                          const std::vector<Load>& diagram) {
+  LoadScales scales = load_scales(assembly, diagram, LoadLengths::in_proportion);
+  const auto take = [&](const auto& track, const std::array<int, 2>& bodies) {
+    if (bodies[0] != body && bodies[1] != body) return;
+    for (const Vec3& force : track.force)
+      scales.leave_room(false, force.norm());
+    for (const Vec3& torque : track.torque)
+      scales.leave_room(true, torque.norm());
+  };
+  for (const ReactionTrack& track : motion.reactions)
+    if (const int joint = joint_index(assembly.mechanism, track.joint); joint >= 0)
+      take(track, assembly.joint_bodies[static_cast<std::size_t>(joint)]);
+  for (const BearingTrack& track : motion.bearings)
+    if (const int force = force_index(assembly.mechanism, track.bearing); force >= 0)
+      take(track, assembly.force_bodies[static_cast<std::size_t>(force)]);
+  return scales;
 }
 
 LoadScales motion_load_scales(const Assembly& assembly, const Run& motion,

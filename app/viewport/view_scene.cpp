@@ -26,18 +26,24 @@ GhostColors one_color(const Mechanism& mechanism, Color color) {
 void add_loads(const ViewFrame& frame, const Palette& colors, ViewScene& scene) {
   constexpr float faded = 0.16f; // alpha
   const Assembly assembly(*frame.mechanism, frame.poses);
-  const bool diagram = frame.loads_body >= 0;
-  scene.loads = frame.loads_motion ? loads_at(assembly, *frame.loads_motion, frame.loads_time)
-                                   : loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body,
-                                              frame.loads_turn);
-  const std::optional<LoadLengths> lengths =
-      diagram ? std::optional(LoadLengths::in_proportion) : frame.load_lengths;
-  const LoadScales scales = frame.loads_motion ? motion_load_scales(assembly, *frame.loads_motion, lengths)
-                                               : load_scales(assembly, scene.loads, lengths);
-  scene.arrows = load_arrows(assembly, scene.loads, scales, colors, diagram);
+  scene.diagram = frame.loads_body >= 0;
+  LoadScales scales;
+  if (const Run* motion = frame.loads_motion) {
+    std::optional<std::vector<Load>> diagram;
+    if (scene.diagram) diagram = diagram_at(assembly, *motion, frame.loads_time, frame.loads_body);
+    scene.diagram = diagram.has_value();
+    scene.loads = diagram ? std::move(*diagram) : loads_at(assembly, *motion, frame.loads_time);
+    scales = scene.diagram ? diagram_scales(assembly, *motion, frame.loads_body, scene.loads)
+                           : motion_load_scales(assembly, *motion, frame.load_lengths);
+  } else {
+    scene.loads = loads_of(assembly, *frame.loads, frame.loads_turning, frame.loads_body, frame.loads_turn);
+    scales = load_scales(assembly, scene.loads,
+                         scene.diagram ? std::optional(LoadLengths::in_proportion) : frame.load_lengths);
+  }
+  scene.arrows = load_arrows(assembly, scene.loads, scales, colors, scene.diagram);
   for (const Instance& instance : scene.arrows.solids)
     scene.solid.bounds.add(instance_bounds(instance));
-  if (!diagram) return;
+  if (!scene.diagram) return;
   for (Instance instance : scene.solid.instances) {
     const bool chosen = instance.part == PartId{PartKind::body, frame.loads_body};
     if (!chosen) instance.color.a = faded;

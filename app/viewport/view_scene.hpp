@@ -38,9 +38,10 @@ struct ViewFrame {
   Quat loads_turn = Quat::Identity();           // since the drawn phase, which the solution is of
   const Run* loads_motion = nullptr;            // instead: of this motion, at
   double loads_time = 0;                        // this moment (s)
-  int loads_body = -1;                          // its free-body diagram, in proportion; -1: all loads
-  std::optional<LoadLengths> load_lengths{};    // without: see load_scales()
-  BodyColouring colouring;                      // without: as the mechanism alone says
+  // Its free-body diagram, in proportion, where that is known; -1: all loads.
+  int loads_body = -1;
+  std::optional<LoadLengths> load_lengths{}; // without: see load_scales()
+  BodyColouring colouring;                   // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;
   ViewOptions options;
@@ -57,9 +58,9 @@ struct ViewScene {
   // Outlined by dashes: solids of the drawn pose, of those bodies that stand elsewhere in the other pose.
   std::vector<Instance> drawn;
   std::vector<Load> loads;
-  LoadArrows arrows; // of them, drawn over everything else
-  // In a free-body diagram: the solids of the body, and all others, which are drawn as glass. Empty
-  // otherwise.
+  LoadArrows arrows;    // of them, drawn over everything else
+  bool diagram = false; // they are the free-body diagram that the frame asked for
+  // In one: the solids of the body, and all others, which are drawn as glass. Empty otherwise.
   std::vector<Instance> free_body, others;
   bool drawn_is_solid = false; // they are among the solids; else there is nothing of them but the outline
 };

@@ -329,10 +329,13 @@ TEST_CASE(
   robot.key('A');
   CHECK(loads_missing(app.session, app.tool, app.view).empty());
   CHECK(has_row(app, "Of this moment"));
-  CHECK_FALSE(has_row(app, "No free-body diagram"));
+  CHECK_FALSE(shows_diagram(app.view));
   select(app.session, {{{PartKind::body, "rod1"}}});
   robot.frames(2);
-  CHECK(has_row(app, "No free-body diagram"));
+  CHECK(shows_diagram(app.view));
+  CHECK(has_row(app, "Free body: rod1, adds up to zero"));
+  CHECK(has_row(app, "inertial loads"));
+  CHECK_FALSE(has_row(app, "without inertial loads"));
   select(app.session, {});
   robot.frames(2);
   const Run& run = *motion->motion;

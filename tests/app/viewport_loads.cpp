@@ -1,7 +1,10 @@
 // What acts on a body adds up, inertial loads included (d'Alembert), and arrows tell how much it is.
 #include "app/viewport/load_arrows.hpp"
+#include "app/viewport/motion_loads.hpp"
 #include "engine/mechanism/scene.hpp"
+#include "engine/periodic/periodic_state.hpp"
 #include "engine/report/analysis.hpp"
+#include "slider_crank.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -135,6 +138,59 @@ TEST_CASE("gears, drag, dampers and applied loads are parts of the diagram") {
     const Sum sum = sum_of(less, steady.solution.poses[2].position, 0.5);
     CHECK(std::max(sum.force_error(), sum.moment_error()) > 1e-4);
   }
+}
+
+TEST_CASE("free-body diagrams of a periodic motion add up at every moment, inertial loads included") {
+  Mechanism crank;
+  crank.gravity = {0, -9.8, 0};
+  add_driven_slider_crank(crank, 10);
+  Mechanism laid = laden_arm();
+  laid.gravity = {-9.8, 0, 0}; // across its drive: what it weighs turns with it
+  for (const Mechanism& mechanism : {crank, laid, shipped("horizontal_rotor")}) {
+    INFO(mechanism.name);
+    const PeriodicState state = find_periodic_state(mechanism);
+    INFO(state.message);
+    REQUIRE(state.motion);
+    const Run& motion = *state.motion;
+    for (const double part : {0., 0.3141, 0.77, 1.}) { // of a period
+      const double time = part * motion.time.back();
+      const std::vector<Pose> poses = poses_at(motion, time);
+      const Assembly assembly(mechanism, poses);
+      const double reach = assembly.scale.bounds.radius();
+      for (std::size_t b = 0; b < mechanism.bodies.size(); ++b) {
+        const auto loads = diagram_at(assembly, motion, time, static_cast<int>(b));
+        REQUIRE(loads);
+        const Sum sum = sum_of(*loads, poses[b].position, reach);
+        INFO(mechanism.bodies[b].name << " after " << part << " of a period: forces " << sum.force_error()
+                                      << ", moments " << sum.moment_error());
+        CHECK(sum.force_error() < 1e-6);
+        CHECK(sum.moment_error() < 1e-6);
+        for (const bool moment : {false, true}) { // all of it is drawn no longer than the longest arrow
+          const LoadScales scales = diagram_scales(assembly, motion, static_cast<int>(b), *loads),
+                           alone = load_scales(assembly, *loads, LoadLengths::in_proportion);
+          CHECK(scales.length(moment, 1) <= alone.length(moment, 1));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("on an evenly turning crank the inertial load is m w^2 r, away from its axis") {
+  constexpr double speed = 10; // rad/s
+  Mechanism crank;
+  crank.gravity = {0, -9.8, 0};
+  add_driven_slider_crank(crank, speed);
+  const PeriodicState state = find_periodic_state(crank);
+  REQUIRE(state.motion);
+  const double time = 0.37 * state.motion->time.back();
+  const std::vector<Pose> poses = poses_at(*state.motion, time);
+  const auto loads = diagram_at(Assembly(crank, poses), *state.motion, time, 0);
+  REQUIRE(loads);
+  const auto inertia = std::ranges::find(*loads, LoadKind::inertia, &Load::kind);
+  REQUIRE(inertia != loads->end());
+  CHECK_FALSE(inertia->moment);
+  const Vec3 expected = crank.bodies[0].mass * speed * speed * poses[0].position;
+  CHECK((inertia->vector - expected).norm() < 1e-7 * expected.norm());
 }
 
 TEST_CASE("of a geared wheel drive, mesh and damper are told one by one") {

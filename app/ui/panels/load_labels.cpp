@@ -1,5 +1,6 @@
 #include "app/ui/panels/load_labels.hpp"
 
+#include "app/ui/load_view.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/tools.hpp"
@@ -118,8 +119,8 @@ std::optional<LabelBox> free_place(ImVec2 best, ImVec2 half, const LabelBox& roo
 } // namespace
 
 void load_labels(Ui& ui, const ViewState& view, const PanelRect& rect) {
+  if (!shows_diagram(view)) return;
   const ShownScene& shown = view.scene;
-  if (!shown.scene || !shown.source.loads || shown.source.loads_body < 0) return;
   const ViewScene& scene = *shown.scene;
   const ViewCamera& camera = view.camera;
   const ViewSize size{static_cast<double>(rect.width), static_cast<double>(rect.height)};

@@ -115,7 +115,7 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   const ShownScene& shown = context.view.scene;
   if (!shown.scene || !shown.source.loads) return;
   const ViewScene& scene = *shown.scene;
-  const bool diagram = shown.source.loads_body >= 0;
+  const bool diagram = scene.diagram;
   const double pixel = context.view.camera.pixel_size(context.view.size);
   if (diagram)
     note("Free body: " + shown.mechanism->bodies[static_cast<std::size_t>(shown.source.loads_body)].name +
@@ -148,11 +148,11 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
     rows.back().chooses = roots ? LoadLengths::in_proportion : LoadLengths::by_cube_root;
   }
   if (rows.size() == before || !shows_moment(context.session)) return;
-  note("Of this moment; without inertial loads");
-  if (context.session.selection().names(PartKind::body).size() == 1) {
-    note("No free-body diagram of a motion");
-    rows.back().help = "Inertial loads and the air are not kept along a motion: what acts on one body alone "
-                       "would not add up to zero.";
+  note(diagram ? "Of this moment" : "Of this moment; without inertial loads");
+  if (!diagram && shown.source.loads_body >= 0) {
+    note("No free-body diagram: accelerations are not known");
+    rows.back().help = "Bodies without mass have velocities that are no states, and so no known rates: what "
+                       "acts on one body alone would not add up to zero.";
   }
 }
 
