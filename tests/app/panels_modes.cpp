@@ -334,6 +334,28 @@ TEST_CASE("the Campbell diagram has the width beside the list, below which criti
         Approx((*robot.app.panels->studies.shown().campbell.critical)[0].at));
 }
 
+TEST_CASE("in a low window the diagram has the width, and one chooses between modes and critical speeds") {
+  ModesRobot robot("rotor_oil_whip", {1280, 720});
+  const auto& widgets = robot.app.ui.widgets;
+  const WidgetRect plot = robot.widget("plot/campbell/area");
+  CHECK(plot.to.x - plot.from.x > 700);
+  CHECK(plot.to.y - plot.from.y > 110);
+  CHECK(widgets.contains("modes/row/1"));
+  CHECK_FALSE(widgets.contains("campbell/critical/1"));
+  robot.click("modes/show_critical");
+  robot.frames(2);
+  const WidgetRect speed = robot.widget("campbell/critical/1");
+  CHECK(speed.to.x <= robot.widget("plot/campbell/area").from.x);
+  CHECK_FALSE(widgets.contains("modes/row/1"));
+  robot.click("campbell/critical/1");
+  robot.frames(2);
+  CHECK(get_parameter(robot.app.session.mechanism(), "parameters.n") ==
+        Approx((*robot.app.panels->studies.shown().campbell.critical)[0].at));
+  robot.click("modes/show_list");
+  robot.frames(2);
+  CHECK(widgets.contains("modes/row/1"));
+}
+
 TEST_CASE("only of the branch that is shown is it said where it has no modes") {
   // The arms of the other branch hang straight down, and are without modes at every speed.
   ModesRobot robot("governor");

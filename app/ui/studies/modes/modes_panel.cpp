@@ -245,8 +245,50 @@ float critical_height(const Session& session, const Ui& ui, const CampbellView& 
   return std::min(room, line * static_cast<float>(1 + rows));
 }
 
-// Returns whether the critical speeds are told below the list.
-bool modes_list(Session& session, Ui& ui, const CampbellView& drawn, const CommandRunner& commands) {
+// Where the critical speeds do not stand below the list of modes: beside the diagram or below it, `room`
+// being that of all three (pixels).
+struct BesideDiagram {
+  static constexpr float least_width = 520, least_height = 200; // points, of the diagram with its legend
+  static constexpr std::size_t fewest = 1, most_below = 3;      // rows
+  bool beside = false;
+  float below = 0; // pixels, of the table; 0: no room
+
+  BesideDiagram(const Ui& ui, std::size_t rows, ImVec2 room) {
+    const float gap = 10 * ui.scale;
+    beside = room.x >= critical_table_width(ui) + gap + least_width * ui.scale;
+    if (beside) return;
+    // As many rows as leave the diagram its height; its circles tell the others.
+    const float space = room.y - least_height * ui.scale - ImGui::GetStyle().ItemSpacing.y;
+    for (std::size_t count = std::min(rows, most_below); count >= fewest; --count)
+      if (const float height = table_line(ui) * static_cast<float>(1 + count); height <= space) {
+        below = height;
+        return;
+      }
+  }
+};
+
+// Whether there is room for the critical speeds or for the list of modes alone: then one chooses.
+bool one_table(const Session& session, const Ui& ui, const CampbellView& drawn, ImVec2 beside_list) {
+  if (!session.study.modes.campbell.diagram.found || !drawn.critical || drawn.critical->empty()) return false;
+  if (ImGui::GetContentRegionAvail().x < critical_table_width(ui)) return false;
+  beside_list.y -= ImGui::GetFrameHeightWithSpacing(); // of the diagram's choices
+  const BesideDiagram place(ui, drawn.critical->size(), beside_list);
+  return !place.beside && place.below == 0;
+}
+
+void choose_table(Ui& ui, CampbellView& drawn) {
+  for (const bool critical : {false, true}) {
+    if (critical) ImGui::SameLine(0, 2 * ui.scale);
+    const std::string words =
+        critical ? "Critical speeds (" + std::to_string(drawn.critical->size()) + ")" : std::string("Modes");
+    if (text_button(ui, critical ? "modes/show_critical" : "modes/show_list", words.c_str(),
+                    drawn.critical_for_modes == critical))
+      drawn.critical_for_modes = critical;
+  }
+}
+
+// Returns whether the critical speeds are told here. `beside`: pixels of the panel beside the list.
+bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, const CommandRunner& commands) {
   ModesState& modes = session.study.modes;
   const UiColors& colors = colors_of(ui);
   auto& search = modes.list;
@@ -278,6 +320,14 @@ bool modes_list(Session& session, Ui& ui, const CampbellView& drawn, const Comma
   }
   const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * ui.scale;
   const float critical = critical_height(session, ui, drawn, found.modes.size(), foot);
+  if (critical <= 0 && one_table(session, ui, drawn, beside)) {
+    choose_table(ui, drawn);
+    if (drawn.critical_for_modes) {
+      critical_table(session, ui, *drawn.critical, drawn.unit,
+                     session.study.modes.campbell.diagram.found->of.drive, ImGui::GetContentRegionAvail().y);
+      return true;
+    }
+  }
   const float all = table_line(ui) * static_cast<float>(1 + found.modes.size());
   list(session, ui, found,
        critical > 0 ? all : std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
@@ -375,8 +425,6 @@ struct CampbellPlaces {
 
 CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive,
                              bool told) {
-  constexpr float least_width = 360, least_height = 200; // points, of the plot with its legend
-  constexpr std::size_t fewest = 1, most_below = 3;      // rows
   const ImVec2 before = ImGui::GetContentRegionAvail();
   if (!drawn.critical || told) return {before};
   const std::vector<CriticalRow>& rows = *drawn.critical;
@@ -386,21 +434,16 @@ CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn
     return {ImGui::GetContentRegionAvail()};
   }
   const float width = critical_table_width(ui), gap = 10 * ui.scale;
-  const float line = table_line(ui);
-  if (before.x >= width + gap + least_width * ui.scale) {
+  const BesideDiagram place(ui, rows.size(), before);
+  if (place.beside) {
     const ImVec2 at = ImGui::GetCursorPos();
     ImGui::SetCursorPos({at.x + before.x - width, at.y});
     critical_table(session, ui, rows, drawn.unit, drive, before.y);
     ImGui::SetCursorPos(at);
     return {{before.x - width - gap, before.y}};
   }
-  // As many rows as leave the plot its height; its circles tell the others.
-  const float space = before.y - least_height * ui.scale - ImGui::GetStyle().ItemSpacing.y;
-  const std::size_t shown = std::min(rows.size(), most_below);
-  for (std::size_t count = shown; count >= fewest; --count)
-    if (const float height = line * static_cast<float>(1 + count); height <= space)
-      return {{before.x, before.y - height - ImGui::GetStyle().ItemSpacing.y}, height};
-  return {before};
+  if (place.below <= 0) return {before};
+  return {{before.x, before.y - place.below - ImGui::GetStyle().ItemSpacing.y}, place.below};
 }
 
 // `told`: the critical speeds are, elsewhere.
@@ -411,12 +454,10 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
                      colors.dim);
-  if (!modes_refusal(session).empty()) return;   // the list says it
-  const bool turns = turns_with_drives(session); // then axes without lines would say nothing
-  if (turns)
-    paragraph(without_modes(session), colors.dim);
-  else
-    campbell_choices(session, ui, drawn, drive);
+  if (!modes_refusal(session).empty()) return; // the list says it
+  // Then axes without lines would say nothing; the list says why.
+  const bool turns = turns_with_drives(session);
+  if (!turns) campbell_choices(session, ui, drawn, drive);
   const auto& diagram = campbell.diagram;
   if (const std::string problem = campbell_problem(session); !problem.empty()) {
     paragraph(problem, colors.bad);
@@ -448,9 +489,10 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
 void modes_panel(Session& session, Ui& ui, CampbellView& drawn, const CommandRunner& commands) {
   const float s = ui.scale;
   const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
+  const ImVec2 room = ImGui::GetContentRegionAvail(), beside(room.x - width - 14 * s, room.y);
   ImGui::BeginChild("modes", {width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
-  const bool told = modes_list(session, ui, drawn, commands);
+  const bool told = modes_list(session, ui, drawn, beside, commands);
   ImGui::PopStyleVar();
   ImGui::EndChild();
   ImGui::SameLine(0, 14 * s);
