@@ -123,6 +123,51 @@ TEST_CASE("a slide is offered from the one body to the other, not along a disc's
   CHECK(guess_axis(m, JointType::revolute, {"rod1", "block1"}, 2) == Vec3::UnitZ());
 }
 
+TEST_CASE("the slide of a crank's block is offered from the crank's pivot to the block") {
+  Mechanism m = Document::empty_mechanism();
+  add_slider_crank(m);
+  CHECK((guess_axis(m, JointType::prismatic, {"ground", "block1"}, 2) - Vec3::UnitX()).norm() < 1e-12);
+  // One that runs a little beside the pivot goes along the world's axis, another slantwise.
+  const auto moved_to = [&](const Vec3& at) {
+    m.bodies[2].position = at;
+    return guess_axis(m, JointType::prismatic, {"ground", "block1"}, 2);
+  };
+  CHECK((moved_to({0.3, 0.04, 0.2}) - Vec3::UnitX()).norm() < 1e-12); // what lies along the hinges is nothing
+  CHECK((moved_to({-0.3, 0, 0}) - Vec3::UnitX()).norm() < 1e-12);
+  CHECK((moved_to({0.3, 0.4, 0}) - Vec3(0.6, 0.8, 0)).norm() < 1e-12);
+  // Of what hangs on nothing else it goes upwards, as ever.
+  add_body(m, {.form = BodyForm::block, .at = {1, 0, 0}});
+  CHECK((guess_axis(m, JointType::prismatic, {"ground", "block2"}, 2) - Vec3::UnitY()).norm() < 1e-12);
+}
+
+TEST_CASE("the card of a joint does not hide its point") {
+  Robot d({1280, 720});
+  d.begin_empty(1);
+  edit(d.app.session, "Build", [](Mechanism& next, Selection&) {
+    const auto rod = [&](const Vec3& from, const Vec3& to) {
+      add_body(next, {.form = BodyForm::rod, .radius = 0.01, .from = from, .to = to});
+    };
+    rod({0, 0, 0}, {0, 0.1, 0});
+    rod({0, 0.1, 0}, {0.4, 0.26, 0});
+    rod({0.4, 0.26, 0}, {0.4, 0, 0});
+  });
+  d.frames(2);
+  for (const Vec3& at : {Vec3(0, 0.1, 0), Vec3(0.4, 0.26, 0), Vec3(0, 0, 0), Vec3(0.4, 0, 0)}) {
+    CAPTURE(at.transpose());
+    d.key('J');
+    d.click_at(at);
+    d.frames(2);
+    REQUIRE(d.app.tool.joint);
+    const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+    REQUIRE(card);
+    const ImVec2 point = d.pixel(at);
+    const bool hidden = point.x > card->Pos.x && point.x < card->Pos.x + card->Size.x &&
+                        point.y > card->Pos.y && point.y < card->Pos.y + card->Size.y;
+    CHECK_FALSE(hidden);
+    d.key(key_escape);
+  }
+}
+
 TEST_CASE("a bearing's card is no taller than what is in it") {
   SliderCrank d;
   d.begin(slider_crank_pin);
@@ -175,6 +220,20 @@ TEST_CASE(
   CHECK(d.app.tool.joint_type == JointType::fixed);
   d.key(key_escape);
   begin({0.3, 0, 0});
+  CHECK(d.app.tool.joint_type == JointType::revolute);
+  d.key(key_escape);
+  // It goes with the bodies and the place that it was offered for.
+  begin(middle);
+  d.click("tools/parent");
+  d.click("tools/parent/ground");
+  d.frames(2);
+  CHECK(d.app.tool.joint->bodies == Pair{"ground", "disc1"});
+  CHECK(d.app.tool.joint_type == JointType::revolute);
+  d.key(key_escape);
+  begin(middle);
+  CHECK(d.app.tool.joint_type == JointType::fixed);
+  d.click_at({0.3, 0.1, 0});
+  d.frames(2);
   CHECK(d.app.tool.joint_type == JointType::revolute);
   d.key(key_escape);
   // Chosen by hand it stays.

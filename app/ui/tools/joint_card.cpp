@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -75,24 +76,38 @@ void set_axis(ToolState& tool, const Vec3& axis) {
   }
 }
 
-void set_bodies(Session& session, ToolState& tool, const std::array<std::string, 2>& bodies) {
+// The axis that is offered for the type and the bodies, until one is chosen.
+void offer_axis(const Session& session, ToolState& tool, const ViewInput& input) {
+  JointDraft& draft = *tool.joint;
+  if (draft.axis_chosen) return;
+  draft.axis = guess_axis(session.mechanism(), tool.joint_type, draft.bodies, axis_in_view(input.camera));
+  draft.axis2 = axis_across(draft.axis);
+}
+
+void set_bodies(Session& session, ToolState& tool, const ViewInput& input,
+                const std::array<std::string, 2>& bodies) {
   JointDraft& draft = *tool.joint;
   draft.bodies = bodies;
   draft.bodies_chosen = true;
+  if (tool.tool == Tool::joint) {
+    if (tool.type_aside && !sits_on_shaft(session.mechanism(), bodies, draft.at))
+      tool.joint_type = *std::exchange(tool.type_aside, {}); // it was offered for the others
+    offer_axis(session, tool, input);
+  }
   Selection selection;
   for (const std::string& body : bodies)
     if (body != ground_name) selection.add({PartKind::body, body});
   select(session, std::move(selection));
 }
 
-void body_rows(Session& session, Ui& ui, ToolState& tool) {
+void body_rows(Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
   const std::vector<std::string> choices = body_choices(session.mechanism(), true);
   const std::array<std::string, 2> bodies = tool.joint->bodies;
   const auto take = [&](std::size_t end, const std::string& name) {
     std::array<std::string, 2> next = bodies;
     if (name == bodies[1 - end]) next[1 - end] = bodies[end];
     next[end] = name;
-    set_bodies(session, tool, next);
+    set_bodies(session, tool, input, next);
   };
   const bool bearing = tool.tool == Tool::bearing;
   if (const auto name =
@@ -107,7 +122,7 @@ void body_rows(Session& session, Ui& ui, ToolState& tool) {
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
   ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
   if (ImGui::Button(icon::swap, {ImGui::GetContentRegionAvail().x, 0}))
-    set_bodies(session, tool, {bodies[1], bodies[0]});
+    set_bodies(session, tool, input, {bodies[1], bodies[0]});
   ImGui::PopStyleColor();
   ImGui::PopStyleVar();
   note_widget(ui.widgets, "tools/swap");
@@ -126,7 +141,6 @@ void away_note(const Session& session, Ui& ui, const JointDraft& draft) {
 }
 
 void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput& input) {
-  JointDraft& draft = *tool.joint;
   const float gap = 4 * ui.scale, width = (ImGui::GetContentRegionAvail().x - gap) / 2;
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {gap, gap});
   for (std::size_t i = 0; i < types.size(); ++i) {
@@ -136,10 +150,7 @@ void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput&
     if (!choice(ui, name, type.title, tool.joint_type == type.type, type.help, width)) continue;
     tool.joint_type = type.type;
     tool.type_aside.reset();
-    if (!draft.axis_chosen) {
-      draft.axis = guess_axis(session.mechanism(), type.type, draft.bodies, axis_in_view(input.camera));
-      draft.axis2 = axis_across(draft.axis);
-    }
+    offer_axis(session, tool, input);
   }
   ImGui::PopStyleVar();
 }
@@ -259,7 +270,10 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
     below.y = std::clamp(std::max(from.y, lower.y + edge), top, foot);
   }
   const float rim = 3 * s; // of the card, which may touch a body
+  const PanelRect point{at.x - least_gap, at.y - least_gap, 2 * least_gap, 2 * least_gap};
   const auto hidden = [&](ImVec2 place) {
+    // The point is what the card is about: hiding it is worse than hiding bodies.
+    if (common_area(point, place, size) > 0) return 1e9f;
     float area = common_area(shown, place, size);
     for (const PanelRect& each : covered)
       area += common_area(each, {place.x + rim, place.y + rim}, {size.x - 2 * rim, size.y - 2 * rim});
@@ -286,7 +300,7 @@ void joint_card(const ViewContext& context, const ViewInput& input) {
   // Each has a window of its own, which begins as tall as it was last.
   begin_card(bearing ? "bearing" : "joint", s, ImGui::GetStyle().WindowPadding, ImGuiWindowFlags_NoScrollbar);
   heading(context.ui, bearing ? "Bearing" : "Join");
-  body_rows(context.session, context.ui, context.tool);
+  body_rows(context.session, context.ui, context.tool, input);
   away_note(context.session, context.ui, *context.tool.joint);
   ImGui::Dummy({0, s});
   if (!bearing) type_rows(context.session, context.ui, context.tool, input);

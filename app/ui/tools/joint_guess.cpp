@@ -115,6 +115,40 @@ const Body* find_body(const Mechanism& mechanism, const std::string& name) {
   return i < 0 ? nullptr : &mechanism.bodies[static_cast<std::size_t>(i)];
 }
 
+// Where the shortest chain of joints that leads from a body over others to the ground comes there: the
+// crank's pivot of a crank's block. Nothing where none does.
+const Joint* ground_pivot(const Mechanism& mechanism, const std::string& body) {
+  std::vector<std::string_view> reached{body};
+  for (std::size_t next = 0; next < reached.size(); ++next)
+    for (const Joint& joint : mechanism.joints) {
+      if (!has_at(joint.type)) continue;
+      const auto end = std::ranges::find(joint.bodies, reached[next]);
+      if (end == joint.bodies.end()) continue;
+      const std::string& other = joint.bodies[end == joint.bodies.begin() ? 1 : 0];
+      if (other == ground_name && next > 0) return &joint;
+      if (other != ground_name && std::ranges::find(reached, other) == reached.end())
+        reached.push_back(other);
+    }
+  return nullptr;
+}
+
+// The direction from a pivot, across its axis where it is a hinge, to a place; that of the world's axis where
+// this is nearly the same, as of a crank whose slide runs past its pivot.
+std::optional<Vec3> away_from(const Joint& pivot, const Vec3& place) {
+  constexpr double nearly = 0.95; // the cosine of 18 degrees
+  Vec3 line = place - pivot.at;
+  const double length = line.norm();
+  if (pivot.type == JointType::revolute) {
+    const Vec3 hinge = pivot.axis.stableNormalized();
+    line -= hinge.dot(line) * hinge;
+  }
+  if (!(line.norm() > 1e-6 * length)) return std::nullopt;
+  line.normalize();
+  Vec3::Index largest = 0;
+  if (line.cwiseAbs().maxCoeff(&largest) > nearly) return Vec3::Unit(largest);
+  return Vec3(line.array() + 0.0);
+}
+
 } // namespace
 
 std::array<std::string, 2> guess_bodies(const Mechanism& mechanism, std::span<const Instance> instances,
@@ -186,6 +220,9 @@ Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std
   if (a && b && type == JointType::prismatic)
     if (const Vec3 between = (b->position - a->position).stableNormalized(); between.norm() > 0.5)
       return Vec3(between.array() + 0.0);
+  if (const Body* alone = a ? a : b; alone && !(a && b) && type == JointType::prismatic)
+    if (const Joint* pivot = ground_pivot(mechanism, alone->name))
+      if (const auto line = away_from(*pivot, alone->position)) return *line;
   return up_axis(mechanism).array() + 0.0;
 }
 

@@ -62,7 +62,10 @@ void begin_joint(const ViewContext& context, const ViewInput& input, const Aim& 
   if (draft.away <= reach) draft.away = 0;
   draft.bodies_chosen = former.bodies_chosen;
   draft.bodies = former.bodies_chosen ? former.bodies : draft.guessed;
-  if (!context.tool.joint && !bearing) offer_type(context.session, context.tool, draft);
+  if (!context.tool.joint && !bearing)
+    offer_type(context.session, context.tool, draft);
+  else if (context.tool.type_aside && !sits_on_shaft(context.session.mechanism(), draft.bodies, draft.at))
+    context.tool.joint_type = *std::exchange(context.tool.type_aside, {}); // it was offered for another place
   draft.axis_chosen = former.axis_chosen;
   if (former.axis_chosen)
     draft.axis = former.axis;
