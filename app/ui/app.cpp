@@ -45,17 +45,51 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   return true;
 }
 
+// How far the tools reach into the view from its left edge, where something would lie behind them (pixels);
+// zero otherwise.
+double hidden_by_tools(const ViewContext& context, const ViewCamera& camera, ViewSize size) {
+  const WidgetMap& widgets = context.ui.widgets;
+  const auto strip = widgets.find("tool strip"), whole = widgets.find("view");
+  if (context.session.mode != Mode::build || strip == widgets.end() || whole == widgets.end()) return 0;
+  const ImVec2 origin = whole->second.from;
+  const Vec2 end(static_cast<double>(strip->second.to.x - origin.x),
+                 static_cast<double>(strip->second.to.y - origin.y));
+  const auto hidden = [&](const Instance& instance) {
+    const Bounds box = instance_bounds(instance);
+    Vec2 low(1e300, 1e300);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at(corner & 1 ? box.upper.x() : box.lower.x(), corner & 2 ? box.upper.y() : box.lower.y(),
+                    corner & 4 ? box.upper.z() : box.lower.z());
+      if (const auto pixel = camera.project(at, size)) low = low.cwiseMin(*pixel);
+    }
+    return low.x() < end.x() && low.y() < end.y();
+  };
+  const ViewScene& scene = *shown_scene(context);
+  const bool any = std::ranges::any_of(scene.solid.instances, hidden) ||
+                   std::ranges::any_of(scene.ghost, hidden) || std::ranges::any_of(scene.drawn, hidden);
+  return any && 2 * end.x() < size.width ? end.x() : 0;
+}
+
 void fit_whole(const ViewContext& context, ViewSize size) {
   const ViewScene& scene = *shown_scene(context);
   Bounds bounds = scene.solid.bounds;
   for (const std::vector<Instance>* beside : {&scene.ghost, &scene.drawn})
     for (const Instance& instance : *beside)
       bounds.add(instance_bounds(instance));
-  if (context.view.keep_direction) {
-    (context.view.glide ? context.view.glide->to : context.view.camera).fit(bounds, size);
-  } else {
-    context.view.glide.reset();
-    context.view.camera = initial_camera(*shown_mechanism(context.session, context.tool), bounds, size);
+  const Mechanism& mechanism = *shown_mechanism(context.session, context.tool);
+  if (!context.view.keep_direction) context.view.glide.reset();
+  ViewCamera& camera = context.view.glide ? context.view.glide->to : context.view.camera;
+  const auto fit = [&](ViewSize room) {
+    if (context.view.keep_direction)
+      camera.fit(bounds, room);
+    else
+      camera = initial_camera(mechanism, bounds, room);
+  };
+  fit(size);
+  const bool chosen = !context.view.keep_direction && mechanism.view.camera; // as the scene has it
+  if (const double tools = hidden_by_tools(context, camera, size); tools > 0 && !chosen) {
+    fit({size.width - tools, size.height});
+    camera.pan(tools / 2, 0, size);
   }
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(context.session)) context.view.fit = false;

@@ -1,8 +1,11 @@
 // How the mouse moves the camera, by the habits that a person has chosen.
+#include "app/document/create.hpp"
 #include "app/ui/choices.hpp"
 #include "robot.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
+
+#include <cmath>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -143,6 +146,29 @@ TEST_CASE("how the mouse came to where it is pressed is no drag") {
     robot.key(key_escape);
     robot.point({view.from.x + 20, view.to.y - 20});
   }
+}
+
+TEST_CASE("what is fitted into the view while building does not lie behind the tools") {
+  Robot robot({1280, 720});
+  App& app = robot.app;
+  robot.begin_empty(1);
+  const double half = GENERATE(1.5, 0.2); // m: across the view, and across its middle
+  edit(app.session, "Build", [&](Mechanism& next, Selection&) {
+    add_body(next, {.form = BodyForm::rod, .radius = 0.05, .from = {-half, 0, 0}, .to = {half, 0, 0}});
+    add_body(next, {.form = BodyForm::rod, .radius = 0.05, .from = {0, -0.4, 0}, .to = {0, 0.4, 0}});
+  });
+  robot.frames(2);
+  robot.key('F');
+  robot.frames(80);
+  const WidgetRect tools = robot.widget("tool strip"), view = robot.widget("view");
+  CHECK(robot.pixel({-half, 0, 0}).x > tools.to.x);
+  CHECK(robot.pixel({half, 0, 0}).x < view.to.x);
+  // Where nothing lies behind them the mechanism stands in the middle.
+  const float middle = robot.pixel({0, 0, 0}).x, off = middle - (view.from.x + view.to.x) / 2;
+  if (half < 1)
+    CHECK(std::abs(off) < 1);
+  else
+    CHECK(off == Approx((tools.to.x - view.from.x) / 2).margin(4));
 }
 
 TEST_CASE("a scene that is opened has its drawn pose in view, too") {
