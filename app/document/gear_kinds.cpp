@@ -1,5 +1,6 @@
 #include "app/document/gear_kinds.hpp"
 
+#include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/gear_ratio.hpp"
 
 #include <algorithm>
@@ -39,6 +40,11 @@ std::string joint_noun(const Joint& joint) {
   if (joint.type == JointType::gear && joint.kind != GearKind::gear)
     return std::string(type_name(joint.kind));
   return std::string(type_name(joint.type)) + " joint";
+}
+
+std::string force_noun(const Force& force) {
+  return force.type == ForceType::spring && is_damper_alone(force) ? "damper"
+                                                                   : std::string(type_name(force.type));
 }
 
 std::vector<GearKind> gear_kinds(const Mechanism& mechanism, const std::array<std::string, 2>& coordinates) {

@@ -11,6 +11,8 @@ namespace flyball {
 
 // "revolute joint", "gear joint", "belt".
 std::string joint_noun(const Joint& joint);
+// "spring", "drag"; "damper" of a spring that only damps.
+std::string force_noun(const Force& force);
 
 // Those that two coordinates, as find_coordinate knows them, can be tied by; none where one is unknown or a
 // component of a rotation vector.

@@ -20,8 +20,9 @@ Comparison measure(const CompareRequest& request, const TaskContext<Comparison>&
   options.progress = [&](std::size_t done, std::size_t all) {
     // Later runs take longer; it ends when the time is over, if not before.
     const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-    context.progress({"measuring motions", std::max(static_cast<double>(done) / static_cast<double>(all),
-                                                    seconds / request.time_limit)});
+    const double part =
+        std::max(static_cast<double>(done) / static_cast<double>(all), seconds / request.time_limit);
+    context.progress({"measuring motions", std::min(part, 1.)});
   };
   return compare(*request.mechanism, options);
 }

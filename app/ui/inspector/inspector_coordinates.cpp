@@ -161,6 +161,9 @@ struct CoordinateRows {
           : coordinate().drive->torque
               ? "The steady speed: there the torque, less the load, is what turning takes."
               : "The steady speed, at which it has the momentum that it keeps.");
+    } else if (coordinate().drive &&
+               (coordinate().drive->torque || coordinate().drive->keeps == DriveKeeps::momentum)) {
+      no_value("not known", "No speed was found that goes on as it is.", angle() ? "Turns at" : "Moves at");
     } else if (coordinate().drive || (found && found->driven)) {
       no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
     } else if (!found) {
@@ -179,9 +182,9 @@ struct CoordinateRows {
   }
 
   // The row of a value that there is not.
-  void no_value(const char* word, const char* help) const {
+  void no_value(const char* word, const char* help, const char* label = "Settles at") const {
     ImGui::BeginDisabled();
-    row(ui, "Settles at", word, "", help);
+    row(ui, label, word, "", help);
     ImGui::EndDisabled();
   }
 

@@ -16,7 +16,7 @@ namespace {
 std::string word_for(const Mechanism& mechanism, PartId id) {
   const auto i = static_cast<std::size_t>(id.index);
   if (id.kind == PartKind::joint) return joint_noun(mechanism.joints[i]);
-  if (id.kind == PartKind::force) return std::string(type_name(mechanism.forces[i].type));
+  if (id.kind == PartKind::force) return force_noun(mechanism.forces[i]);
   return "body";
 }
 

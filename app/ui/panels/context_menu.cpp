@@ -54,7 +54,7 @@ void menu_title(Ui& ui, const std::string& name, const std::string& what) {
 std::string menu_kind(const Mechanism& mechanism, PartId part) {
   const auto i = static_cast<std::size_t>(part.index);
   if (part.kind == PartKind::joint) return joint_noun(mechanism.joints[i]);
-  if (part.kind == PartKind::force) return std::string(type_name(mechanism.forces[i].type));
+  if (part.kind == PartKind::force) return force_noun(mechanism.forces[i]);
   return "body";
 }
 

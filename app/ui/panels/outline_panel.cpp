@@ -1,5 +1,6 @@
 #include "app/ui/panels/outline_panel.hpp"
 
+#include "app/document/gear_kinds.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
@@ -11,7 +12,6 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "app/viewport/body_form.hpp"
-#include "engine/mechanism/damped.hpp"
 
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
@@ -88,9 +88,7 @@ std::string kind_words(const Mechanism& mechanism, PartId id) {
     return std::string(joint.type == JointType::gear ? type_name(joint.kind) : type_name(joint.type));
   }
   if (id.kind == PartKind::body) return short_text(mechanism.bodies[i].mass, 4) + " kg";
-  const Force& force = mechanism.forces[i];
-  const bool damper = force.type == ForceType::spring && is_damper_alone(force);
-  return damper ? "damper" : std::string(type_name(force.type));
+  return force_noun(mechanism.forces[i]);
 }
 
 // In order, those of closed sections left out.

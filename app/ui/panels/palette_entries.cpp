@@ -47,7 +47,7 @@ void read_mechanism(const Session& session, PaletteIndex& index) {
   for (const Joint& joint : mechanism.joints)
     index.entries.push_back(part_entry(PartKind::joint, joint.name, joint_noun(joint)));
   for (const Force& force : mechanism.forces)
-    index.entries.push_back(part_entry(PartKind::force, force.name, std::string(type_name(force.type))));
+    index.entries.push_back(part_entry(PartKind::force, force.name, force_noun(force)));
   for (const std::string& address : parameter_addresses(mechanism)) {
     PaletteEntry entry;
     entry.name = "number/" + address;

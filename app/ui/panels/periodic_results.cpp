@@ -60,8 +60,8 @@ void range_row(Session& session, Ui& ui, const RangeWords& words, const Periodic
   const std::string within =
       std::isfinite(range.error) ? " ± " + magnitude_text(range.error * unit.factor, numbers) : "";
   right_digits(ui,
-               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, shown_digits) + within +
-                   " " + unit.text,
+               "amplitude " + short_text(unit.factor * (range.most - range.least) / 2, shown_digits) +
+                   within + " " + unit.text,
                colors_of(ui).dim);
   ImGui::Dummy({0, 0});
 }
@@ -77,8 +77,9 @@ bool by_torque(const Mechanism& m, const PeriodicTorque& t) {
 
 std::string advance_words(const PeriodicCoordinate& c, const ShownUnit& unit) {
   if (!c.goes_on()) return "";
+  const std::string turns = short_text(c.advance / (2 * std::numbers::pi), shown_digits);
   return "beside its even " +
-         (c.angle ? short_text(c.advance / (2 * std::numbers::pi), shown_digits) + " turns"
+         (c.angle ? turns + (turns == "1" || turns == "-1" ? " turn" : " turns")
                   : short_text(unit.shown(c.advance), shown_digits) + " " + unit.text) +
          " a period";
 }

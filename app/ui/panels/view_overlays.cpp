@@ -66,7 +66,7 @@ void part_label(const ViewContext& context) {
     what = joint_noun(m.joints[i]);
   } else if (part.kind == PartKind::force && i < m.forces.size()) {
     name = m.forces[i].name;
-    what = type_name(m.forces[i].type);
+    what = force_noun(m.forces[i]);
   } else {
     return;
   }
