@@ -159,17 +159,10 @@ TEST_CASE("where there is no motion is told with the reason, and steady states a
 }
 
 TEST_CASE("periodic motions are found one by one while the window goes on, until they are stopped") {
-  const OffscreenContext context;
-  App app({.mode = LiveSolver::Mode::background,
-           .on_news = {},
-           .scenes = {},
-           .theme = Theme::light,
-           .numbers = {},
-           .state = {}});
-  app.view.samples = 1;
-  Stage stage(app.ui, 1);
+  Robot robot({1280, 900}, {}, LiveSolver::Mode::background);
+  App& app = robot.app;
   const auto frame = [&] {
-    stage.frame(app, {1280, 900}, 0.01);
+    robot.frames(1);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   };
   open_scene(app.session, shipped_file("horizontal_rotor"));
@@ -190,12 +183,7 @@ TEST_CASE("periodic motions are found one by one while the window goes on, until
   for (int i = 0; i < 200 && !app.ui.widgets.contains("response/cancel"); ++i)
     frame();
   REQUIRE(app.ui.widgets.contains("response/cancel"));
-  ImGuiIO& io = ImGui::GetIO();
-  io.MousePos = app.ui.widgets.at("response/cancel").center();
-  frame();
-  io.MouseDown[0] = true;
-  frame();
-  io.MouseDown[0] = false;
+  robot.click("response/cancel");
   for (int i = 0; i < 400 && study.running(); ++i)
     frame();
   frame();
@@ -207,12 +195,7 @@ TEST_CASE("periodic motions are found one by one while the window goes on, until
   const std::shared_ptr<const ResonancePoint> first = study.found->result.points.front();
   const std::size_t before = study.found->result.points.size();
   REQUIRE(app.ui.widgets.contains("response/go_on"));
-  io.MousePos = app.ui.widgets.at("response/go_on").center();
-  frame();
-  io.MouseDown[0] = true;
-  frame();
-  io.MouseDown[0] = false;
-  frame();
+  robot.click("response/go_on");
   CHECK(study.running());
   for (int i = 0; i < 20 && app.ui.widgets.contains("response/go_on"); ++i)
     frame();

@@ -39,17 +39,9 @@ Mechanism long_chain(int links) {
 } // namespace
 
 TEST_CASE("while a long solve runs the view moves and says that it is solving") {
-  const OffscreenContext context;
-  App app({.mode = LiveSolver::Mode::background,
-           .on_news = {},
-           .scenes = {},
-           .theme = Theme::light,
-           .numbers = {},
-           .state = {}});
-  app.view.samples = 1;
-  Stage stage(app.ui, 1);
-  const PixelSize size{900, 600};
-  const auto frame = [&] { stage.frame(app, size, 0.1); };
+  Robot robot({900, 600}, {}, LiveSolver::Mode::background);
+  App& app = robot.app;
+  const auto frame = [&] { robot.frames(1, 0.1); };
   open_document(app.session, Document(long_chain(190)));
   for (int i = 0; i < 4; ++i)
     frame();
@@ -58,16 +50,8 @@ TEST_CASE("while a long solve runs the view moves and says that it is solving") 
   CHECK(app.ui.widgets.contains("status"));
 
   const Vec3 before = app.view.camera.target;
-  const ImVec2 middle = app.ui.widgets.at("view").center();
-  ImGuiIO& io = ImGui::GetIO();
-  io.MousePos = middle;
-  frame();
-  io.MouseDown[1] = true;
-  frame();
-  io.MousePos = {middle.x + 60, middle.y};
-  frame();
-  io.MouseDown[1] = false;
-  frame();
+  const ImVec2 middle = robot.widget("view").center();
+  robot.drag(middle, {middle.x + 60, middle.y}, 1);
   CHECK(solving(app.session)); // all this while
   CHECK((app.view.camera.target - before).norm() > 0);
 }

@@ -20,8 +20,8 @@ KeptFonts& fonts() {
 
 } // namespace
 
-Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
-    : app({.mode = LiveSolver::Mode::immediate,
+Robot::Robot(PixelSize wanted, const NumberStyle& numbers, LiveSolver::Mode solving)
+    : app({.mode = solving,
            .on_news = {},
            .scenes = FLYBALL_ASSETS "/scenes",
            .theme = Theme::light,

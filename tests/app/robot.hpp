@@ -12,7 +12,9 @@ namespace flyball::test {
 
 class Robot {
  public:
-  explicit Robot(PixelSize size = {900, 600}, const NumberStyle& numbers = {});
+  // In the background it solves as the program does, while frames go on.
+  explicit Robot(PixelSize size = {900, 600}, const NumberStyle& numbers = {},
+                 LiveSolver::Mode solving = LiveSolver::Mode::immediate);
 
   OffscreenContext context;
   App app;
