@@ -79,6 +79,20 @@ TEST_CASE("a part that is found is selected and brought into view") {
   CHECK(std::abs(at.y - middle.y) < 160);
 }
 
+TEST_CASE("a spring that only damps is called a damper") {
+  Finder robot;
+  edit(robot.app.session, "Build", [](Mechanism& next, Selection&) {
+    Force& force = next.forces.emplace_back();
+    force.name = "dashpot";
+    force.type = ForceType::spring;
+    force.bodies = {"ground", "ball1"};
+    force.points = {Vec3(0, 1, 0), Vec3(0, 0, 0)};
+    force.damping = 2;
+  });
+  robot.find("dashpot");
+  CHECK(robot.entry().about == "damper");
+}
+
 TEST_CASE("in another document its own parts and numbers are found") {
   Finder robot;
   App& app = robot.app;
