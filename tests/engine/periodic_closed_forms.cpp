@@ -233,9 +233,16 @@ TEST_CASE("A pendulum that the drive pumps up swings with twice its period") {
 }
 
 TEST_CASE("A swing that is seen to come back after four periods is told the two that it takes") {
-  Mechanism m = shaken_pendulum(0.1, 10, 0.4, 0.15, 0);
-  m.bodies.back().mass = 1.3;
-  m.bodies.back().inertia = {0.02, 0.02, 0.02};
+  // Its pivot goes up and down by r sin(speed t).
+  const Vec3 pin(0.1, 0, 0);
+  Mechanism m;
+  m.gravity = {0, -9.81, 0};
+  m.bodies = {body("crank", 1, {0, 0, 0}, {0.01, 0.01, 0.01}), body("block", 0.1, pin), body("yoke", 0.5),
+              body("bob", 1.3, {0, -0.4, 0}, {0.02, 0.02, 0.02})};
+  m.joints = {driven(revolute("spin", "ground", "crank", {0, 0, 0}), 10),
+              prismatic("up", "ground", "yoke", {0, 0, 0}, Vec3::UnitY()),
+              prismatic("slot", "yoke", "block", pin, Vec3::UnitX()), revolute("pin", "crank", "block", pin),
+              dampened(revolute("swing", "yoke", "bob", {0, 0, 0}), 0.15)};
   const PeriodicState s = find_periodic_state(m);
   CAPTURE(s.message);
   REQUIRE(s.status == PeriodicStatus::found);
