@@ -107,6 +107,17 @@ TEST_CASE_METHOD(OpenGovernor, "a picture is offered a place beside the file, as
   CHECK(fs::path(app.panels->picture.query().path).parent_path() == file.parent_path());
 }
 
+TEST_CASE("a picture of an example is not offered a place among the examples") {
+  Robot robot;
+  REQUIRE(is_example(robot.app.session));
+  robot.key('E', true);
+  robot.frames(2);
+  REQUIRE(robot.app.dialog.showing);
+  const fs::path offered = robot.app.panels->picture.query().path;
+  CHECK(offered.parent_path() == fs::current_path());
+  CHECK(offered.filename() == "flyball-governor.png");
+}
+
 TEST_CASE("a picture of a file of the program's own is called without its two endings") {
   const TemporaryFolder folder;
   FileRobot robot(folder);

@@ -221,7 +221,8 @@ bool may_write_to(const Session& session, FileQuery& query, const fs::path& file
 
 fs::path usual_folder(const Session& session) {
   std::error_code ignored;
-  std::vector<fs::path> folders{session.document.file().parent_path()};
+  std::vector<fs::path> folders;
+  if (!is_example(session)) folders.push_back(session.document.file().parent_path());
   for (const fs::path& recent : session.files.recent)
     if (recent.parent_path() != session.options.scenes) folders.push_back(recent.parent_path());
   folders.push_back(fs::current_path(ignored));

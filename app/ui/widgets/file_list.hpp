@@ -42,7 +42,8 @@ bool may_write_to(const Session& session, FileQuery& query, const std::filesyste
 // button then says. Null where nothing is asked.
 const char* asked_before_writing(Ui& ui, const FileQuery& query, const std::filesystem::path& file);
 
-// Where a file that has no place yet may be put: what was used lately, the current folder, the home folder.
+// Where a file that has no place yet may be put: the folder of the document, unless it is an example; what
+// was used lately, the current folder, the home folder.
 std::filesystem::path usual_folder(const Session& session);
 // A name for a file from words: "Swing pendulum" is swing_pendulum.
 std::string file_stem(const std::string& words);
