@@ -7,6 +7,7 @@
 #include "engine/linear/exponential.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
 #include "tests/catch.hpp"
@@ -401,4 +402,32 @@ TEST_CASE("forces that are far larger beside the balance have their slopes at it
   CHECK((*model.gain)(1, 0) == Approx(w * w * moved).epsilon(1e-7));
   CHECK((*model.gain)(1, 1) == Approx(rate).epsilon(1e-7));
   CHECK(model.output_error.maxCoeff() < 1e-10);
+}
+
+TEST_CASE("beside a kink an output has the slope of its side, or is refused", "[linear-model]") {
+  int known = 0, refused = 0;
+  for (const double away : {1e-3, 1e-4, 1e-5, 5e-6, 4e-6, 3e-6, 2e-6, 1e-6, 1e-7, 1e-8})
+    for (const double side : {1., -1.}) {
+      CAPTURE(away, side);
+      // A slide that its spring holds where it is drawn, on a turntable.
+      Mechanism m;
+      m.bodies = {spindle(), body("puck", 1, {0.3, 0, 0})};
+      m.joints = {spin(1),
+                  sprung(prismatic("slide", "spindle", "puck", {0.3, 0, 0}, {1, 0, 0}), 101, -0.3 / 101)};
+      m.measures = {
+          {"r", "",
+           "max(coordinate(slide) + 0.5 * coordinate(slide)^2 / (1 m), " + number_text(-side * away) + " m)",
+           "m"}};
+      const LinearModel model = linearize(m, Names{"joints.slide.spring.free"}, Names{"r"});
+      if (!model.refusal.empty()) {
+        CHECK_THAT(model.refusal, ContainsSubstring("kink"));
+        ++refused;
+        continue;
+      }
+      ++known;
+      const Eigen::MatrixXd& c = best_form(model).c;
+      CHECK(std::abs(c(0, 0) - (side > 0 ? 1 : 0)) <= 10 * model.output_error[0] + 1e-11);
+    }
+  CHECK(known >= 8);
+  CHECK(refused >= 4);
 }
