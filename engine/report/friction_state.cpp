@@ -10,6 +10,7 @@
 #include "engine/report/messages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -207,7 +208,10 @@ class PartsSearch {
       const std::optional<double> way = way_beyond(state, i);
       if (!way || *way > 0) add(state.parts, i, Part::slips_forwards, count);
       if (!way || *way < 0) add(state.parts, i, Part::slips_backwards, count);
+      if (state.parts[i] == Part::none) add(state.parts, i, Part::holds, count);
     }
+    for (const std::size_t i : tried_) // which stands with others, and may bear a share of what they hold
+      if (state.parts[i] == Part::none && state.margins[i] > 0) add(state.parts, i, Part::holds, count);
   }
 
   // Which way one would go that holds too much or goes on: its sign. Nothing where that is open.
@@ -345,16 +349,27 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
       count += is_slipping(parts[i]) && parts[i] == at_start[i];
     return count;
   });
-  for (const double slip_search : {0., balance_search}) { // the second where nothing else is found
+  // What slips at first by Newton-Raphson alone, which takes a fraction of the time where there is no such
+  // state, then by all that solving knows; by a search where nothing else is found.
+  struct Effort {
+    bool newton_only;
+    double slip_search;
+  };
+  const std::array efforts{Effort{true, 0}, Effort{false, 0}, Effort{false, balance_search}};
+  const std::size_t first = options.newton_only ? 1 : 0;
+  for (std::size_t e = first; e < efforts.size() && !unstable; ++e) {
+    const auto [newton_only, slip_search] = efforts[e];
     if (slip_search > options.search) break;
+    SolveOptions now = options;
+    now.newton_only = now.newton_only || newton_only;
     for (const FrictionParts& parts : all) {
-      if (slip_search > 0 && !any_slips(parts)) continue;
-      auto state = solve_with_parts(mechanism, parts, options, slip_search);
+      const bool slips = any_slips(parts);
+      if (e > first && !slips) continue;
+      auto state = solve_with_parts(mechanism, parts, slips ? now : options, slip_search);
       if (!state || !state->goes) continue;
-      if (!any_slips(parts) || state->solution.stable != false) return state;
-      if (!unstable) unstable = std::move(state);
+      if (!slips || state->solution.stable != false) return state;
+      if (!newton_only && !unstable) unstable = std::move(state);
     }
-    if (unstable) break;
   }
   if (unstable || that_may_slip(mechanism, frictions).size() <= most_tried) return unstable;
   std::optional<StateOnFriction> found;
