@@ -58,11 +58,12 @@ struct ViewScene {
   // Outlined by dashes: solids of the drawn pose, of those bodies that stand elsewhere in the other pose.
   std::vector<Instance> drawn;
   std::vector<Load> loads;
-  LoadArrows arrows;    // of them, drawn over everything else
-  bool diagram = false; // they are the free-body diagram that the frame asked for
-  // In one: the solids of the body, and all others, which are drawn as glass. Empty otherwise.
+  LoadArrows arrows; // of them, drawn over everything else
+  // In a free-body diagram: the solids of the body, and all others, which are drawn as glass. Empty
+  // otherwise.
   std::vector<Instance> free_body, others;
   bool drawn_is_solid = false; // they are among the solids; else there is nothing of them but the outline
+  bool diagram = false;        // the loads are the free-body diagram that the frame asked for
 };
 ViewScene view_scene(const ViewFrame& frame);
 // The solid list alone, for picking.

@@ -159,7 +159,7 @@ TEST_CASE("where there is no motion is told with the reason, and steady states a
 }
 
 TEST_CASE("periodic motions are found one by one while the window goes on, until they are stopped") {
-  Robot robot({1280, 900}, {}, LiveSolver::Mode::background);
+  Robot robot({1280, 900}, LiveSolver::Mode::background);
   App& app = robot.app;
   const auto frame = [&] {
     robot.frames(1);

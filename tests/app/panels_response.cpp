@@ -686,7 +686,7 @@ TEST_CASE("a list that is opened shows what is chosen, however far down it stand
 }
 
 TEST_CASE("with branches apart what there is shows before the search for them ends") {
-  Robot robot(wide, {}, LiveSolver::Mode::background);
+  Robot robot(wide, LiveSolver::Mode::background);
   App& app = robot.app;
   open_scene(app.session, shipped_file("governor_watt"));
   app.session.study.response.choice.all = true;

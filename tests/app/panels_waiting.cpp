@@ -39,7 +39,7 @@ Mechanism long_chain(int links) {
 } // namespace
 
 TEST_CASE("while a long solve runs the view moves and says that it is solving") {
-  Robot robot({900, 600}, {}, LiveSolver::Mode::background);
+  Robot robot({900, 600}, LiveSolver::Mode::background);
   App& app = robot.app;
   const auto frame = [&] { robot.frames(1, 0.1); };
   open_document(app.session, Document(long_chain(190)));

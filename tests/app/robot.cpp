@@ -20,6 +20,11 @@ KeptFonts& fonts() {
 
 } // namespace
 
+Robot::Robot(PixelSize wanted, const NumberStyle& numbers)
+    : Robot(wanted, numbers, LiveSolver::Mode::immediate) {}
+
+Robot::Robot(PixelSize wanted, LiveSolver::Mode solving) : Robot(wanted, NumberStyle(), solving) {}
+
 Robot::Robot(PixelSize wanted, const NumberStyle& numbers, LiveSolver::Mode solving)
     : app({.mode = solving,
            .on_news = {},

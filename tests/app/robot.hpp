@@ -12,9 +12,9 @@ namespace flyball::test {
 
 class Robot {
  public:
+  explicit Robot(PixelSize size = {900, 600}, const NumberStyle& numbers = {});
   // In the background it solves as the program does, while frames go on.
-  explicit Robot(PixelSize size = {900, 600}, const NumberStyle& numbers = {},
-                 LiveSolver::Mode solving = LiveSolver::Mode::immediate);
+  Robot(PixelSize size, LiveSolver::Mode solving);
 
   OffscreenContext context;
   App app;
@@ -51,6 +51,8 @@ class Robot {
   Image picture();
 
  private:
+  Robot(PixelSize size, const NumberStyle& numbers, LiveSolver::Mode solving);
+
   bool ctrl_ = false, shift_ = false; // held
 };
 

@@ -88,13 +88,13 @@ struct CriticalRow {
 };
 
 struct CampbellView {
-  bool hertz = true; // or rad/s
+  bool hertz = true;               // or rad/s
+  bool critical_for_modes = false; // where there is room for one table: that of the critical speeds
   PlotView view;
   Plot plot;
   std::optional<std::vector<CriticalRow>> critical; // none: the axis sets no speed of turning
   ShownUnit unit;                                   // of the drive's speed
   std::string without_modes;                        // where the branch that is shown has none; empty: nowhere
-  bool critical_for_modes = false; // where there is room for one table: that of the critical speeds
   struct Of {
     std::shared_ptr<const void> diagram, modes; // what was found
     std::uint64_t answer = 0;                   // its ticket
