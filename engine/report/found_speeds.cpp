@@ -129,6 +129,8 @@ turned_stability_at_constant_speed(const Mechanism& mechanism, const Problem& pr
 
 std::string missing_speed_message(const Mechanism& mechanism, const Problem& problem, Workspace& w) {
   const System& system = problem.system;
+  // With all drives at constant speeds these are left, and it would be asked for again.
+  if (std::ranges::all_of(system.torques, &DriveTorqueElement::implied)) return {};
   Eigen::VectorXd q;
   drawn_configuration(system, problem.parameters, q);
   const Solution there = Analysis(at_constant_speeds(mechanism, system, q)).solve();

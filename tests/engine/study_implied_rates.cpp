@@ -567,12 +567,27 @@ TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
     m.joints[2].at.x() = 1.1;
     CHECK(Analysis(m).solve().status == Status::no_steady_state);
   }
+  SECTION("beside what falls there is no equilibrium, and no drive that lacks anything") {
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies.push_back(body("block", 1, {2, 0, 0}));
+    m.joints.push_back(prismatic("fall", "ground", "block", {2, 0, 0}, Vec3::UnitY()));
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_THAT(s.message, ContainsSubstring("fall"));
+  }
   SECTION("in its weight it takes a torque that changes") {
     m.gravity = {0, -standard_gravity, 0};
     const Solution s = Analysis(m).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged); // at a given speed the drive gives what it takes
-    CHECK(s.drive_torques.at(0).varying);
+    const DriveTorque& drive = s.drive_torques.at(0);
+    CHECK(drive.varying);
+    // Twice a turn it passes a flat pose, a change point, a quarter turn from where it is drawn.
+    const double amplitude = (1 * 0.15 + 2 * 0.3 + 1 * 0.15) * standard_gravity;
+    REQUIRE(drive.range);
+    CHECK_THAT(drive.range->mean, WithinRel(7, 1e-9));
+    CHECK_THAT(drive.range->most, WithinRel(7 + amplitude, 1e-7));
+    CHECK_THAT(drive.range->least, WithinRel(7 - amplitude, 1e-7));
     m.joints[0] = torque_driven(revolute("crank", "ground", "crank", {0, 0, 0}, {0, 0, 1}), 5, "8");
     CHECK(Analysis(m).solve().status == Status::no_steady_state);
   }
