@@ -49,18 +49,18 @@ class Attempt {
     implied_.resize(parts_.size(), false);
   }
 
-  // Nothing where there is no such state. `unopposed`: see attempt_parts().
-  std::optional<StateOnFriction> solve(const SolveOptions& options, bool unopposed) const {
+  // Nothing where there is no such state. `loose`: see attempt_parts().
+  std::optional<StateOnFriction> solve(const SolveOptions& options, bool loose) const {
     std::optional<StateOnFriction> first;
     for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held())) {
-      auto out = solve_with(at_rest, options);
+      auto out = solve_with(at_rest, options, loose);
       if (!out) continue;
       if (std::ranges::none_of(std::views::iota(std::size_t(0), parts_.size()),
                                [&](std::size_t i) { return parts_[i] == Part::none && out->margins[i] < 0; }))
         return out;
       if (!first) first = std::move(out);
     }
-    return unopposed ? std::move(first) : std::nullopt;
+    return loose ? std::move(first) : std::nullopt;
   }
 
   // With its coordinates driven as their parts say, and drives by torque that have come to rest.
@@ -93,7 +93,7 @@ class Attempt {
 
  private:
   std::optional<StateOnFriction> solve_with(std::span<const CoordinateReference> at_rest,
-                                            const SolveOptions& options) const try {
+                                            const SolveOptions& options, bool loose) const try {
     const Standstill still = driven(at_rest);
     StateOnFriction out{
         Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, implied_, {}};
@@ -105,7 +105,7 @@ class Attempt {
       return plays(named.first) || is_speed_at_rest(mechanism_, still, named.first);
     });
     out.solution = out.analysis.solve(inner);
-    if (out.solution.status != Status::converged || !tell(still, out)) return std::nullopt;
+    if (out.solution.status != Status::converged || !tell(still, loose, out)) return std::nullopt;
     return out;
   } catch (const SceneError&) { // drives that close a loop, say
     return std::nullopt;
@@ -292,7 +292,7 @@ class Attempt {
   }
 
   // Puts what was found of drives into the words of friction. False where it is not found what they give.
-  bool tell(const Standstill& still, StateOnFriction& out) const {
+  bool tell(const Standstill& still, bool loose, StateOnFriction& out) const {
     const Mechanism& changed = still.mechanism;
     Solution& s = out.solution;
     add_fixed(changed, s);
@@ -319,8 +319,16 @@ class Attempt {
       force.count = c->count;
       force.angle = c->angle;
       force.limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-      force.slips = slips(i);
-      if (force.slips) {
+      const bool stands = !c->speed || std::abs(*c->speed) <= c->speed_error;
+      force.slips = slips(i) && !(loose && stands);
+      if (slips(i) && !force.slips) { // with others, of which it bears a share
+        force.value = slipping_force(i);
+        out.margins[i] = 0;
+        if (!coordinate_of(mechanism_, frictions_[i]).drive) {
+          c->driven = false;
+          c->speed.reset();
+        }
+      } else if (force.slips) {
         slipping = true;
         force.value = slipping_force(i);
         if (!c->speed) return false;
@@ -353,7 +361,7 @@ class Attempt {
         out.goes = out.goes && out.margins[i] >= 0;
       }
       if (drive == s.drive_torques.end()) continue;
-      if (force.slips && coordinate_of(mechanism_, frictions_[i]).drive) { // its load without the friction
+      if (slips(i) && coordinate_of(mechanism_, frictions_[i]).drive) { // its load without the friction
         drive->value -= slipping_force(i);
         if (drive->given) drive->given->load += slipping_force(i);
       } else {
@@ -428,9 +436,8 @@ class Attempt {
 std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,
                                              const FrictionParts& parts, const SolveOptions& options,
-                                             const Holding* holding, std::vector<bool> implied,
-                                             bool unopposed) {
-  return Attempt(mechanism, frictions, parts, holding, std::move(implied)).solve(options, unopposed);
+                                             const Holding* holding, std::vector<bool> implied, bool loose) {
+  return Attempt(mechanism, frictions, parts, holding, std::move(implied)).solve(options, loose);
 }
 
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,

@@ -14,14 +14,14 @@ inline bool is_slipping(FrictionPart part) {
 
 // Nothing where there is no such state. `frictions`: find_frictions(). `holding`: what holding takes, where
 // all hold and springs and stops of their own help. `implied`: of those that slip the ones whose rate follows
-// from the drives, by coordinate with friction; empty: none. `unopposed`: whether to tell also of what is no
-// state, as a coordinate without a part goes on, friction not against it; its margin is then below zero, less
-// its rate.
+// from the drives, by coordinate with friction; empty: none. `loose`: what is taken to slip may stand with
+// others, its limit being its share of what they hold together (its margin is 0); and whether to tell also of
+// what is no state, as a coordinate without a part goes on (its margin is less its rate).
 std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,
                                              const FrictionParts& parts, const SolveOptions& options,
                                              const Holding* holding = nullptr, std::vector<bool> implied = {},
-                                             bool unopposed = false);
+                                             bool loose = false);
 
 // The mechanism that is solved then. Throws SceneError.
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,

@@ -98,6 +98,8 @@ std::optional<StateOnFriction> hold_as_drawn(const Mechanism& mechanism,
 
 std::string slipping_text(const std::vector<FrictionForce>& forces) {
   const std::string holding = names_of(forces, false);
+  if (std::ranges::count(forces, true, &FrictionForce::slips) == 0)
+    return "Friction holds " + holding + ": how they share what they hold is open, this is one way.";
   return names_of(forces, true) +
          (std::ranges::count(forces, true, &FrictionForce::slips) > 1
               ? " slip at constant rates, against which friction gives its limits"
@@ -106,12 +108,12 @@ std::string slipping_text(const std::vector<FrictionForce>& forces) {
 }
 
 // With rates that are found by the torques or, where that leads to no state, of some that the drives give:
-// at first by Newton-Raphson alone, as one of the two has none. One that goes before others. `unopposed`: see
+// at first by Newton-Raphson alone, as one of the two has none. One that goes before others. `loose`: see
 // attempt_parts().
 std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
                                         const FrictionParts& parts, const SolveOptions& options,
-                                        bool unopposed = false) {
+                                        bool loose = false) {
   std::vector<std::size_t> may_close;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
@@ -125,7 +127,7 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
       std::vector<bool> implied(parts.size(), false);
       for (std::size_t k = 0; k < may_close.size(); ++k)
         implied[may_close[k]] = (set >> k & 1) != 0;
-      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied), unopposed);
+      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied), loose);
       if (state && (state->goes || !first)) first = std::move(state);
       if (first && first->goes) return first;
     }
@@ -211,7 +213,9 @@ class PartsSearch {
       if (state.parts[i] == Part::none) add(state.parts, i, Part::holds, count);
     }
     for (const std::size_t i : tried_) // which stands with others, and may bear a share of what they hold
-      if (state.parts[i] == Part::none && state.margins[i] > 0) add(state.parts, i, Part::holds, count);
+      if (state.parts[i] == Part::none && state.margins[i] > 0)
+        for (const Part part : {Part::holds, Part::slips_forwards, Part::slips_backwards})
+          add(state.parts, i, part, count);
   }
 
   // Which way one would go that holds too much or goes on: its sign. Nothing where that is open.
@@ -374,8 +378,11 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
   if (unstable || that_may_slip(mechanism, frictions).size() <= most_tried) return unstable;
   std::optional<StateOnFriction> found;
   PartsSearch(mechanism, frictions, options).find([&](const FrictionParts& parts) {
-    auto state = solve_with_parts(mechanism, parts, options);
+    SolveOptions inner = options;
+    inner.search = 0;
+    auto state = let_slip(mechanism, frictions, parts, inner, true);
     if (!state || !state->goes) return false;
+    add_message(*state, slipping_text(state->solution.frictions));
     (state->solution.stable == false ? unstable : found) = std::move(state);
     return found.has_value();
   });
@@ -410,6 +417,8 @@ std::vector<Solution> find_friction_states(const Mechanism& mechanism, const Sol
       found.push_back(parts);
     }
   }
+  if (!out.empty() || that_may_slip(mechanism, find_frictions(mechanism)).size() <= most_tried) return out;
+  if (auto state = find_friction_state(mechanism, plain)) out.push_back(std::move(state->solution));
   return out;
 }
 

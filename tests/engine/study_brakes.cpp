@@ -164,10 +164,20 @@ TEST_CASE("four joints with friction of which clutches close loops: as enumerate
     for (int i = 0; i < 3; ++i)
       CHECK_THAT(coordinate(s, "p" + std::to_string(i)).speed.value_or(0),
                  WithinAbs(expected[static_cast<std::size_t>(i)], 1e-9));
+    std::vector<double> left = torques; // of each shaft's balance
+    for (std::size_t i = 0; i < left.size(); ++i)
+      left[i] -= resistances[i] * expected[i];
+    bool all = true; // are known
     for (const FrictionForce& force : s.frictions) {
       ++(force.slips ? slipped : stuck);
-      if (force.value) CHECK(std::abs(*force.value) <= force.limit * (1 + 1e-12));
+      all = all && force.value;
+      if (!force.value) continue;
+      CHECK(std::abs(*force.value) <= force.limit * (1 + 1e-12));
+      left[static_cast<std::size_t>(force.joint.back() - '0')] += *force.value;
+      if (force.joint[0] == 'k') left[static_cast<std::size_t>(force.joint[1] - '0')] -= *force.value;
     }
+    for (const double each : left)
+      CHECK((!all || std::abs(each) < 1e-9));
   }
   CHECK(slipped > 6);
   CHECK(stuck > 3);
