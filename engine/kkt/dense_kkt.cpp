@@ -1,6 +1,7 @@
 #include "engine/kkt/dense_kkt.hpp"
 
 #include "engine/kkt/body_stiffness.hpp"
+#include "engine/kkt/speed_time.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/large.hpp"
 
@@ -132,6 +133,15 @@ void DenseKkt::need_metric() {
       motions.col(static_cast<Eigen::Index>(i)) *= problem_->scaling.column[moved_by[i]];
     }
     metric_(moved_by, moved_by) += motions.transpose() * inertia_matrix(body) * motions;
+  }
+  if (!system.torques.empty()) {
+    // Speeds that are found have their inertia for themselves, as a border of trees has (speeds_kkt.hpp).
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(size_);
+    for (const Link& link : system.links)
+      if (link.v >= 0 && finds_speed(link)) found[link.v] = 1;
+    const double time = speed_time(*problem_);
+    for (int j = 0; j < size_; ++j)
+      metric_.col(j).array() *= found[j] > 0 ? Eigen::ArrayXd(time * found) : Eigen::ArrayXd(1 - found);
   }
   const double length = problem_->parameters.length;
   const double least = own_share * own_share * std::max(mass_, 1e-300) * length * length;

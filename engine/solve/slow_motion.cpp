@@ -1,5 +1,6 @@
 #include "engine/solve/slow_motion.hpp"
 
+#include "engine/kkt/speed_time.hpp"
 #include "engine/linear/interruption.hpp"
 
 #include <algorithm>
@@ -10,7 +11,15 @@ namespace {
 
 class SlowMotion {
  public:
-  SlowMotion(const Problem& problem, Unknowns& z, Workspace& w) : p_(problem), z_(z), w_(w) {}
+  SlowMotion(const Problem& problem, Unknowns& z, Workspace& w) : p_(problem), z_(z), w_(w) {
+    // Trees take speeds as they are: a second.
+    const double unit = p_.form == KktForm::dense ? speed_time(p_) : 1;
+    weight_.setOnes(p_.system.nv);
+    for (const Link& link : p_.system.links)
+      if (link.v >= 0 && finds_speed(link)) weight_[link.v] = unit;
+    square_ = unit * unit;
+    time_ = first_time * square_;
+  }
 
   // To where it all but rests, or as far as it is followed; whether it got there.
   bool run() {
@@ -28,7 +37,8 @@ class SlowMotion {
   int iterations() const { return iterations_; }
 
  private:
-  static constexpr double longest = 0.3; // scaled, or of the speed
+  static constexpr double longest = 0.3;     // scaled, or of the speed
+  static constexpr double first_time = 1e-3; // of the square of speed_time()
 
   // Bounded so that a refusal takes no more than a second or so.
   int most_steps() const { return p_.system.nv <= 30 || p_.form != KktForm::dense ? 3000 : 300; }
@@ -39,6 +49,10 @@ class SlowMotion {
     return std::ranges::any_of(p_.system.links, [&](const Link& link) {
       return finds_speed(link) && std::abs(z_.q[link.q]) > beyond * largest_found_speed(p_, link);
     });
+  }
+
+  Eigen::VectorXd energies(const Eigen::VectorXd& f) const {
+    return f.cwiseProduct(p_.scaling.column).cwiseProduct(weight_);
   }
 
   // Of a step, each speed by how large it is already.
@@ -60,7 +74,7 @@ class SlowMotion {
     KktSystem& kkt = w_.kkt(p_);
     const Eigen::VectorXd f = w_.residual.f, phi = w_.residual.phi;
     const Unknowns begin = z_;
-    constexpr double least_time = 1e-30, most_time = 1e12;
+    const double least_time = 1e-30 * square_, most_time = 1e12 * square_;
     constexpr double least_size =
         1e-12; // scaled: what is not as the model says so near is not to be followed
     for (; time_ > least_time; time_ /= 4) {
@@ -69,8 +83,9 @@ class SlowMotion {
       newton_step(p_, f, phi, w_, w_.scaled_step, w_.trial.lambda);
       const double size = length(w_.scaled_step);
       if (!(size <= longest)) continue;
-      const double inertia = kkt.metric_of_solution(w_.scaled_step, resisted_),
-                   pulled = -f.cwiseProduct(p_.scaling.column).dot(w_.scaled_step);
+      kkt.metric_of_solution(w_.scaled_step, resisted_);
+      resisted_ = resisted_.cwiseProduct(weight_);
+      const double inertia = resisted_.dot(w_.scaled_step), pulled = -energies(f).dot(w_.scaled_step);
       if (pulled < inertia / (2 * time_)) continue; // see slow_motion.hpp
       w_.step = w_.scaled_step.cwiseProduct(p_.scaling.column);
       z_.q = begin.q;
@@ -78,8 +93,8 @@ class SlowMotion {
       z_.lambda = begin.lambda + w_.trial.lambda;
       evaluate(p_, z_, 0, w_);
       // By the model -W x / h is left of the balance.
-      const Eigen::VectorXd left = w_.residual.f.cwiseProduct(p_.scaling.column), model = -resisted_ / time_;
-      const double before = f.cwiseProduct(p_.scaling.column).norm();
+      const Eigen::VectorXd left = energies(w_.residual.f), model = -resisted_ / time_;
+      const double before = energies(f).norm();
       const double wrong = (left - model).norm() / std::max(before, 1e-300);
       const bool at_rest = size < 1e-6 && scaled_residual(p_, w_) < tolerance::near_balance;
       if (wrong > 0.3 && !at_rest) {
@@ -96,8 +111,10 @@ class SlowMotion {
   const Problem& p_;
   Unknowns& z_;
   Workspace& w_;
-  Eigen::VectorXd resisted_; // W x of a step
-  double time_ = 1e-3;       // s^2, as W is an inertia: pseudo-time of the next step
+  Eigen::VectorXd weight_;   // what makes energies of the rows: 1, of speeds a time
+  Eigen::VectorXd resisted_; // W x of a step, as energies
+  double square_ = 1;        // s^2, of that time
+  double time_ = 0;          // s^2, as W is an inertia: pseudo-time of the next step
   int iterations_ = 0;
   bool rests_ = false;
 };

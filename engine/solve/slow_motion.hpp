@@ -8,6 +8,10 @@
 // Newton-Raphson at the end. Along a direction of stiffness -k such a step grows until h = 1 / k in the units
 // of W and goes backwards beyond, to the unstable state that the motion leaves: steps stay within half of
 // that, -f^T x >= x^T W x / (2 h).
+//
+// What a speed gains counts by the time of a radian at its unit (kkt/speed_time.hpp), and so do the first
+// step and its bounds: the way is the same in another unit of time. Of trees beyond the dense matrices it is
+// a second.
 #pragma once
 
 #include "engine/solve/newton.hpp"

@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <complex>
+#include <optional>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -300,6 +301,29 @@ TEST_CASE("a pendulum drawn hanging on a shaft swings out as the motion from bes
   CHECK(s.stable == true);
   CHECK(s.fallback == Fallback::slow_motion);
   CHECK_THAT(std::cos(s.coordinates[1].value), WithinRel(standard_gravity / (9 * length), 1e-12));
+}
+
+TEST_CASE("where the slow motion leads does not depend on the unit of time", "[torque]") {
+  // The pendulum above, in seconds of another length.
+  std::optional<int> iterations;
+  for (const double second : {1., 1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e6}) {
+    CAPTURE(second);
+    const double square = second * second;
+    Mechanism m;
+    m.gravity = {0, -standard_gravity / square, 0};
+    m.bodies = {body("hub", 1, Vec3::Zero(), {0.1, 0.1, 0.1}),
+                body("bob", 1, {0, -2, 0}, {0.01, 0.01, 0.01})};
+    m.joints = {torque_driven(revolute("spin", "ground", "hub", Vec3::Zero(), Vec3::UnitY()), 3 / second,
+                              number_text(60 / square) + " N m - " + number_text(20 / second) +
+                                  " N m s * rate(spin)"),
+                dampened(revolute("hinge", "hub", "bob", Vec3::Zero(), Vec3::UnitZ()), 0.1 / second)};
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.fallback == Fallback::slow_motion);
+    CHECK_THAT(std::cos(s.coordinates[1].value), WithinRel(standard_gravity / 18, 1e-12));
+    if (!iterations) iterations = s.iterations;
+    CHECK(s.iterations == *iterations);
+  }
 }
 
 TEST_CASE("random mechanisms: the speed is found at which the drive gives what turning takes",
