@@ -8,6 +8,9 @@
 
 #include <imgui_internal.h>
 
+#include <algorithm>
+#include <vector>
+
 using namespace flyball;
 using namespace flyball::test;
 
@@ -34,6 +37,21 @@ struct SliderCrank : Robot {
     frames(2);
   }
 };
+
+bool under_card(Robot& robot, const Vec3& at) {
+  const ImGuiWindow* card = ImGui::FindWindowByName("joint");
+  REQUIRE(card);
+  const ImVec2 point = robot.pixel(at);
+  return point.x > card->Pos.x && point.x < card->Pos.x + card->Size.x && point.y > card->Pos.y &&
+         point.y < card->Pos.y + card->Size.y;
+}
+
+// One of these that can be clicked.
+Vec3 beside_card(Robot& robot, const std::vector<Vec3>& places) {
+  const auto found = std::ranges::find_if(places, [&](const Vec3& at) { return !under_card(robot, at); });
+  REQUIRE(found != places.end());
+  return *found;
+}
 
 } // namespace
 
@@ -69,7 +87,10 @@ TEST_CASE("what was chosen in the card stays when its point is moved") {
   d.begin(slider_crank_pin);
   d.choose("tools/parent", "rod1");
   d.click("tools/axis/x");
-  for (const Vec3& at : {Vec3(-0.2, -0.2, 0), slider_crank_pin}) {
+  using Places = std::vector<Vec3>;
+  for (const Places& places : {Places{{-0.2, -0.2, 0}, {-0.2, 0.3, 0}, {0.2, 0.4, 0}, {0.4, -0.3, 0}},
+                               Places{slider_crank_pin, {0.4, 0.3, 0}, {-0.3, 0.4, 0}, {0.2, -0.4, 0}}}) {
+    const Vec3 at = beside_card(d, places);
     d.begin(at);
     CHECK(d.app.tool.joint->bodies == Pair{"rod1", "block1"});
     CHECK(d.app.tool.joint->axis == Vec3::UnitX());
@@ -158,12 +179,7 @@ TEST_CASE("the card of a joint does not hide its point") {
     d.click_at(at);
     d.frames(2);
     REQUIRE(d.app.tool.joint);
-    const ImGuiWindow* card = ImGui::FindWindowByName("joint");
-    REQUIRE(card);
-    const ImVec2 point = d.pixel(at);
-    const bool hidden = point.x > card->Pos.x && point.x < card->Pos.x + card->Size.x &&
-                        point.y > card->Pos.y && point.y < card->Pos.y + card->Size.y;
-    CHECK_FALSE(hidden);
+    CHECK_FALSE(under_card(d, at));
     d.key(key_escape);
   }
 }
@@ -232,7 +248,7 @@ TEST_CASE(
   d.key(key_escape);
   begin(middle);
   CHECK(d.app.tool.joint_type == JointType::fixed);
-  d.click_at({0.3, 0.1, 0});
+  d.click_at(beside_card(d, {{0.3, 0.15, 0}, {-0.3, 0.15, 0}, {0.3, -0.3, 0}, {-0.3, -0.3, 0}}));
   d.frames(2);
   CHECK(d.app.tool.joint_type == JointType::revolute);
   d.key(key_escape);
