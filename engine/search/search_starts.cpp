@@ -67,7 +67,10 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       const double middle = elsewhere ? value : 0;
       ranges.push_back({middle - half, middle + half});
     } else {
-      const double reach = 2 * problem.parameters.length;
+      // What floats may hang by something as long as the mechanism, above its anchor as well as below.
+      const bool floats =
+          problem.system.tree_joints[static_cast<std::size_t>(c.tree_joint)].type == JointType::free;
+      const double reach = (floats ? 4 : 2) * problem.parameters.length;
       SearchRange range{value - reach, value + reach};
       const CoordinateForce& f = lp.force[0];
       if (f.has_spring()) {

@@ -371,6 +371,29 @@ TEST_CASE("a ball on a string stands out in line with the pull") {
   }
 }
 
+TEST_CASE("all equilibria of a ball on a string, those above its anchor as well") {
+  const Mechanism m = shipped("ball_on_string");
+  const AllSolutions all = Analysis(m).solve_all();
+  const Real tip = 0.25L, pi = std::numbers::pi_v<Real>;
+  std::size_t count = 0;
+  for (const Real length : {0.535L, 0.465L}) { // the string and the ball's radius: beyond each other, or back
+    const auto f = [&](Real a) { return conical_slope(length, tip, 4, a); };
+    const int steps = 1000;
+    for (int i = 0; i < steps; ++i) {
+      const Real from = -pi + 2 * pi * i / steps, to = -pi + 2 * pi * (i + 1) / steps;
+      if (f(from) * f(to) > 0) continue;
+      const Real a = root(f, from, to);
+      const Vec3 wanted(static_cast<double>(tip + length * std::sin(a)),
+                        static_cast<double>(Real(0.9L) - length * std::cos(a)), 0);
+      CAPTURE(wanted.transpose());
+      ++count;
+      CHECK(std::ranges::any_of(
+          all.equilibria, [&](const Solution& s) { return (s.poses[1].position - wanted).norm() < 1e-9; }));
+    }
+  }
+  CHECK(all.equilibria.size() == count);
+}
+
 TEST_CASE("Watt's governor balances where its potential is stationary") {
   for (const double speed : {5., 8., 11.}) {
     const Mechanism m = shipped("watt_governor", {{"joints.spin.drive.speed", speed}});
