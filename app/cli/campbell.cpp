@@ -61,7 +61,7 @@ Json diagram_json(const CampbellDiagram& d, const std::string& unit, DriveSpeed&
               line_json(*mode, branch.names[l],
                         branch.points[i].whirls[static_cast<std::size_t>(branch.points[i].lines[l])]));
       points.push_back({{"value", at.parameter},
-                        {"speed_rad_s", turns ? Json(drive.at(at.parameter)) : Json(nullptr)},
+                        {"speed", turns ? Json(drive.at(at.parameter)) : Json(nullptr)},
                         {"stable", at.stable ? Json(*at.stable) : Json(nullptr)},
                         {"modes", std::move(modes)}});
     }

@@ -296,7 +296,7 @@ def critical_speeds_over_an_expression(_):
     check(f"critical speeds over half the speed: {told}, {alone}", len(told) == len(alone) > 0 and all(
         abs(a - b) < 1e-9 and abs(2 * n - a) < 1e-9 and b == w for (a, n), (b, w) in zip(told, alone)))
     point = twice["branches"][0]["points"][0]
-    check(f"points tell both: {point['value']}, {point['speed_rad_s']}", point["speed_rad_s"] == 2 * point["value"])
+    check(f"points tell both: {point['value']}, {point['speed']}", point["speed"] == 2 * point["value"])
     text = run(*args, input=json.dumps(scene).encode())[1].decode()
     check(f"the text tells both: {text}", f"parameters.n = {told[0][1]:.12g} rad/s" in text)
 
