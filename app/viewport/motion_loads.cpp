@@ -138,7 +138,7 @@ Run run_to(const Run& motion, double time) {
   options.reactions = true;
   options.measures = false;
   options.points = telling_points(segment->model->mechanism);
-  options.time_limit = 0.5; // the window waits for it
+  options.time_limit = 0.1; // the window waits for it
   try {
     Simulator simulator(*segment->model, options);
     if (simulator.advance(time, true)) return simulator.run();

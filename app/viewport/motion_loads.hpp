@@ -14,7 +14,7 @@ std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double t
 
 // The free-body diagram of one body at that moment, as loads_of() has it, inertial loads and the air
 // included: the motion is integrated from the last sample to the moment. Nothing where accelerations are not
-// known, as those of what carries bodies without mass.
+// known, as those of what carries bodies without mass, or where that takes more than 0.1 s.
 std::optional<std::vector<Load>> diagram_at(const Assembly& assembly, const Run& motion, double time,
                                             int body);
 

@@ -152,7 +152,8 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   if (!diagram && shown.source.loads_body >= 0) {
     note("No free-body diagram: accelerations are not known");
     rows.back().help = "Bodies without mass have velocities that are no states, and so no known rates: what "
-                       "acts on one body alone would not add up to zero.";
+                       "acts on one body alone would not add up to zero. In very large mechanisms finding "
+                       "them takes too long.";
   }
 }
 
