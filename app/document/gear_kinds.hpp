@@ -1,4 +1,5 @@
-// Gears, belts, racks and screws: the same tie of two coordinates by other numbers.
+// Gears, belts, racks and screws: the same tie of two coordinates by other numbers; and what joints and
+// forces are called.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"

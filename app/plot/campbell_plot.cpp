@@ -91,6 +91,11 @@ void add_lines(Plot& plot, const ResponseBranch& followed, const CampbellBranch&
 // Lines of so many oscillations a turn, where unbalance and the like would excite.
 void add_orders(Plot& plot, DriveSpeed& drive, PlotRange values, std::span<const double> orders,
                 double factor, double highest) {
+  std::vector<std::array<double, 2>> speeds; // value of the number, rad/s
+  for (int i = 0; i <= 200; ++i) {
+    const double value = values[0] + (values[1] - values[0]) * i / 200;
+    speeds.push_back({value, std::abs(drive.at(value))});
+  }
   double width = 1.2; // points; each next one wider, to tell them apart
   for (const double order : orders) {
     PlotCurve line{.name = order_text(order) + " speed",
@@ -98,9 +103,8 @@ void add_orders(Plot& plot, DriveSpeed& drive, PlotRange values, std::span<const
                    .line = PlotLine::dotted,
                    .color = plot_color::neutral,
                    .width = std::exchange(width, std::min(width + 1, 4.))};
-    for (int i = 0; i <= 200; ++i) {
-      const double value = values[0] + (values[1] - values[0]) * i / 200,
-                   y = order * std::abs(drive.at(value)) * factor;
+    for (const auto& [value, speed] : speeds) {
+      const double y = order * speed * factor;
       line.points.push_back({value, y <= highest ? y : no_value});
     }
     // Told at its end, too: the legend's samples are short.

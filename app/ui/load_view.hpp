@@ -13,7 +13,7 @@ struct ViewState;
 
 // Asks for the arrows in a frame of the steady state, where they are wanted and known: of the one body that
 // is selected its free-body diagram, else those of the whole mechanism. Of a periodic motion those at the
-// moment that is shown; of the whole mechanism where accelerations are not known (diagram_at()), too.
+// moment that is shown; of the whole mechanism where there is no diagram (diagram_at()), too.
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame);
 // Whether they are one body's free-body diagram, which is in proportion.
 bool shows_diagram(const ViewState& view);

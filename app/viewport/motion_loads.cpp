@@ -138,7 +138,6 @@ Run run_to(const Run& motion, double time) {
   options.reactions = true;
   options.measures = false;
   options.points = telling_points(segment->model->mechanism);
-  options.time_limit = 0.1; // the window waits for it
   try {
     Simulator simulator(*segment->model, options);
     if (simulator.advance(time, true)) return simulator.run();
@@ -235,7 +234,9 @@ std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double t
 
 std::optional<std::vector<Load>> diagram_at(const Assembly& assembly, const Run& motion, double time,
                                             int body) {
-  if (motion.time.empty() || motion.segments.empty()) return {};
+  constexpr std::size_t most_bodies = 50; // the window waits for it
+  if (motion.time.empty() || motion.segments.empty() || assembly.mechanism.bodies.size() > most_bodies)
+    return {};
   const std::optional<AsSteady> now = as_steady(assembly.mechanism, run_to(motion, time));
   if (!now) return {};
   return loads_of(assembly, now->solution, now->turning, body);

@@ -14,15 +14,15 @@ std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double t
 
 // The free-body diagram of one body at that moment, as loads_of() has it, inertial loads and the air
 // included: the motion is integrated from the last sample to the moment. Nothing where accelerations are not
-// known, as those of what carries bodies without mass, or where that takes more than 0.1 s.
+// known, as those of what carries bodies without mass, and of more than 50 bodies.
 std::optional<std::vector<Load>> diagram_at(const Assembly& assembly, const Run& motion, double time,
                                             int body);
 
 // Lengths of arrows that are the same through all of the motion.
 LoadScales motion_load_scales(const Assembly& assembly, const Run& motion,
                               std::optional<LoadLengths> lengths);
-// Of a body's diagram at one moment, in proportion: to the largest that joints and bearings do to it through
-// all of the motion.
+// Of a body's diagram at one moment, in proportion: to the largest there, and that joints and bearings do to
+// it through all of the motion.
 LoadScales diagram_scales(const Assembly& assembly, const Run& motion, int body,
                           const std::vector<Load>& diagram);
 

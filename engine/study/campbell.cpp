@@ -427,9 +427,11 @@ bool stable_at(DriveSpeed& drive, const ResponseBranch& followed, const Critical
   for (std::size_t i = 1; i < followed.points.size(); ++i) {
     const ResponsePoint &a = followed.points[i - 1], &b = followed.points[i];
     const auto [low, high] = std::minmax({a.parameter, b.parameter});
-    const auto [slow, fast] = std::minmax({drive.at(a.parameter), drive.at(b.parameter)});
-    const bool beside = critical.until ? *critical.until >= slow && critical.speed <= fast
-                                       : critical.value >= low && critical.value <= high;
+    bool beside = critical.value >= low && critical.value <= high;
+    if (critical.until) {
+      const auto [slow, fast] = std::minmax({drive.at(a.parameter), drive.at(b.parameter)});
+      beside = *critical.until >= slow && critical.speed <= fast;
+    }
     if (beside && (a.stable == false || b.stable == false)) return false;
   }
   return true;

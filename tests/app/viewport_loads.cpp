@@ -152,6 +152,7 @@ TEST_CASE("free-body diagrams of a periodic motion add up at every moment, inert
     INFO(state.message);
     REQUIRE(state.motion);
     const Run& motion = *state.motion;
+    bool shorter = false;
     for (const double part : {0., 0.3141, 0.77, 1.}) { // of a period
       const double time = part * motion.time.back();
       const std::vector<Pose> poses = poses_at(motion, time);
@@ -165,13 +166,13 @@ TEST_CASE("free-body diagrams of a periodic motion add up at every moment, inert
                                       << ", moments " << sum.moment_error());
         CHECK(sum.force_error() < 1e-6);
         CHECK(sum.moment_error() < 1e-6);
-        for (const bool moment : {false, true}) { // all of it is drawn no longer than the longest arrow
-          const LoadScales scales = diagram_scales(assembly, motion, static_cast<int>(b), *loads),
-                           alone = load_scales(assembly, *loads, LoadLengths::in_proportion);
-          CHECK(scales.length(moment, 1) <= alone.length(moment, 1));
-        }
+        // There is room for what its joints do to it at other moments.
+        const LoadScales scales = diagram_scales(assembly, motion, static_cast<int>(b), *loads),
+                         alone = load_scales(assembly, *loads, LoadLengths::in_proportion);
+        shorter = shorter || scales.length(false, 1) < 0.99 * alone.length(false, 1);
       }
     }
+    CHECK(shorter);
   }
 }
 

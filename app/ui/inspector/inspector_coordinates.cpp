@@ -163,7 +163,7 @@ struct CoordinateRows {
               : "The steady speed, at which it has the momentum that it keeps.");
     } else if (coordinate().drive &&
                (coordinate().drive->torque || coordinate().drive->keeps == DriveKeeps::momentum)) {
-      no_value("not known", "No speed was found that goes on as it is.", angle() ? "Turns at" : "Moves at");
+      no_value("not known", "No steady speed was found.", angle() ? "Turns at" : "Moves at");
     } else if (coordinate().drive || (found && found->driven)) {
       no_value("driven", "It moves at a constant speed, so there is no place where it settles.");
     } else if (!found) {

@@ -150,10 +150,10 @@ void add_load_rows(const ViewContext& context, std::vector<LegendRow>& rows) {
   if (rows.size() == before || !shows_moment(context.session)) return;
   note(diagram ? "Of this moment" : "Of this moment; without inertial loads");
   if (!diagram && shown.source.loads_body >= 0) {
-    note("No free-body diagram: accelerations are not known");
-    rows.back().help = "Bodies without mass have velocities that are no states, and so no known rates: what "
-                       "acts on one body alone would not add up to zero. In very large mechanisms finding "
-                       "them takes too long.";
+    note("No free-body diagram here");
+    rows.back().help =
+        "Where bodies have no mass their accelerations are not known, and of more than 50 bodies "
+        "finding them takes too long: without them the arrows would not add up to zero.";
   }
 }
 

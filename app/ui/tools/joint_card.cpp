@@ -80,8 +80,8 @@ void set_axis(ToolState& tool, const Vec3& axis) {
 void offer_axis(const Session& session, ToolState& tool, const ViewInput& input) {
   JointDraft& draft = *tool.joint;
   if (draft.axis_chosen) return;
-  draft.axis = guess_axis(session.mechanism(), tool.joint_type, draft.bodies, axis_in_view(input.camera));
-  draft.axis2 = axis_across(draft.axis);
+  set_axis(tool, guess_axis(session.mechanism(), tool.joint_type, draft.bodies, axis_in_view(input.camera)));
+  draft.axis_chosen = false;
 }
 
 void set_bodies(Session& session, ToolState& tool, const ViewInput& input,
@@ -90,9 +90,11 @@ void set_bodies(Session& session, ToolState& tool, const ViewInput& input,
   draft.bodies = bodies;
   draft.bodies_chosen = true;
   if (tool.tool == Tool::joint) {
-    if (tool.type_aside && !sits_on_shaft(session.mechanism(), bodies, draft.at))
-      tool.joint_type = *std::exchange(tool.type_aside, {}); // it was offered for the others
-    offer_axis(session, tool, input);
+    const bool given_back = tool.type_aside && !sits_on_shaft(session.mechanism(), bodies, draft.at);
+    if (given_back) tool.joint_type = *std::exchange(tool.type_aside, {}); // it was offered for the others
+    // That of a hinge is across the picture, whichever the bodies are.
+    if (given_back || tool.joint_type == JointType::prismatic || tool.joint_type == JointType::cylindrical)
+      offer_axis(session, tool, input);
   }
   Selection selection;
   for (const std::string& body : bodies)

@@ -221,7 +221,8 @@ Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std
     if (const Vec3 between = (b->position - a->position).stableNormalized(); between.norm() > 0.5)
       return Vec3(between.array() + 0.0);
   if (const Body* alone = a ? a : b; alone && !(a && b) && type == JointType::prismatic)
-    if (const Joint* pivot = ground_pivot(mechanism, alone->name))
+    if (const Joint* pivot = ground_pivot(mechanism, alone->name);
+        pivot && (pivot->type == JointType::revolute || pivot->type == JointType::spherical))
       if (const auto line = away_from(*pivot, alone->position)) return *line;
   return up_axis(mechanism).array() + 0.0;
 }

@@ -31,8 +31,8 @@ struct BodyAxis {
 std::vector<BodyAxis> body_axes(const Mechanism& mechanism, const std::array<std::string, 2>& bodies);
 
 // Where the joint slides along a rod, or from the one body to the other, or, of a crank's block on the
-// ground, from the crank's pivot to the block, or upwards; otherwise across the picture. `normal` is the
-// world axis (0 to 2) nearest to the line of sight.
+// ground, from the crank's pivot to the block (along a world axis within 18 degrees), or upwards; otherwise
+// across the picture. `normal` is the world axis (0 to 2) nearest to the line of sight.
 Vec3 guess_axis(const Mechanism& mechanism, JointType type, const std::array<std::string, 2>& bodies,
                 int normal);
 // Of a bearing: that which one of the bodies turns about, the second rather; or along a rod, or across the

@@ -33,9 +33,9 @@ void draw_campbell(const Session& session, CampbellView& drawn) {
   if (const std::optional<CampbellPlace> place = campbell_place(session)) {
     const CampbellDiagram& diagram = campbell.diagram.found->result;
     const std::vector<std::string> names = campbell_names(session, *place);
-    plot = campbell_plot(session.mechanism(), of.drive, diagram, place->branch, names, range, of.orders,
-                         drawn.hertz);
-    if (!DriveSpeed(session.mechanism(), of.drive).joint().empty())
+    plot =
+        campbell_plot(*of.mechanism, of.drive, diagram, place->branch, names, range, of.orders, drawn.hertz);
+    if (!DriveSpeed(*of.mechanism, of.drive).joint().empty())
       drawn.critical = critical_rows(diagram, place->branch, names, drawn.unit);
     drawn.without_modes = left_out(
         diagram.response.branches[place->branch],

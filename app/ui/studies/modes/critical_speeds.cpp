@@ -28,7 +28,9 @@ constexpr std::array columns{
     CriticalColumn{"Unbalance", 66,
                    "Whether an unbalance can excite it: that turns with the drive, once a turn, and does not "
                    "excite what goes round against it in circles."},
-    CriticalColumn{"Speed", 84, "Of the drive. A click on a row sets it to that."}};
+    CriticalColumn{
+        "Speed", 84,
+        "The drive's speed. A click on a row sets the number along the axis so that the drive has it."}};
 
 std::string help_of(const CriticalSpeed& at, const std::string& name, const std::string& speed,
                     const ShownUnit& unit) {

@@ -324,7 +324,8 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
     choose_table(ui, drawn);
     if (drawn.critical_for_modes) {
       critical_table(session, ui, *drawn.critical, drawn.unit,
-                     session.study.modes.campbell.diagram.found->of.drive, ImGui::GetContentRegionAvail().y);
+                     session.study.modes.campbell.diagram.found->of.drive,
+                     std::max(ImGui::GetContentRegionAvail().y, 60 * ui.scale));
       return true;
     }
   }
@@ -364,7 +365,7 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
     note_widget(ui.widgets, "campbell/drive");
   }
   ImGui::PopStyleColor();
-  help_on_hover("The number along the axis: the speed of a drive, or what an expression makes it of.");
+  help_on_hover("The number along the axis: the speed of a drive, or a number that its expression uses.");
   const PlotRange range = campbell_range(session);
   const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
@@ -452,7 +453,8 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   const UiColors& colors = colors_of(ui);
   const std::string drive = campbell_drive(session);
   if (drive.empty())
-    return paragraph("A Campbell diagram is over the given speed of a drive, and there is none here.",
+    return paragraph("A Campbell diagram is over the given speed of a drive, or a number that sets it, and "
+                     "there is none here.",
                      colors.dim);
   if (!modes_refusal(session).empty()) return; // the list says it
   // Then axes without lines would say nothing; the list says why.
