@@ -424,6 +424,7 @@ void ExtendedBalance::set_borders(const ExtendedState& state) {
   else
     evaluate_with_multipliers(problem(), z, w_);
   if (!ties_) return singularity_.set_borders(problem(), z, w_);
+  turned_row_.resize(0); // without them turned_singularity() is none
   const TurnedBalance balance(problem(), z, *ties_, mechanism_, probe_);
   const auto svd = balance.usable() ? singular_vectors(balance.matrix()) : std::nullopt;
   if (!svd) return;

@@ -6,6 +6,7 @@
 #include "engine/report/kink_message.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report_forces.hpp"
+#include "engine/system/classify.hpp"
 #include "engine/system/drive_rates.hpp"
 #include "engine/system/joint_coordinates.hpp"
 #include "engine/system/point_motion.hpp"
@@ -169,8 +170,10 @@ std::vector<CoordinateSolution> coordinate_solutions(const System& system, const
       // A loop joint that turns or slides with the drives is driven, too, also where it stands for a moment.
       x.driven = std::abs(measured.rate[r.index]) > 1e-9 * measured.fastest * (r.angle ? 1 : p.length) ||
                  turns_on(system, r);
+      const CutJoint& cut = system.cuts[static_cast<std::size_t>(r.cut)];
       const bool may_go_on = !x.driven && !p.phase_free && measured.fastest > 0 &&
-                             !is_rotation_vector(system.cuts[static_cast<std::size_t>(r.cut)].type, r.index);
+                             moving_frame(system, cut.ends.a) != moving_frame(system, cut.ends.b) &&
+                             !is_rotation_vector(cut.type, r.index);
       const auto rate =
           x.driven || may_go_on ? constant_rate(system, p, q, error, r) : std::optional<RateWithError>{};
       if (may_go_on && !rate) x.driven = true;

@@ -70,8 +70,8 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       // What floats may hang by something as long as the mechanism, above its anchor as well as below.
       const bool floats =
           problem.system.tree_joints[static_cast<std::size_t>(c.tree_joint)].type == JointType::free;
-      const double reach = (floats ? 4 : 2) * problem.parameters.length;
-      SearchRange range{value - reach, value + reach};
+      const double reach = 2 * problem.parameters.length, around = (floats ? 2 : 1) * reach;
+      SearchRange range{value - around, value + around};
       const CoordinateForce& f = lp.force[0];
       if (f.has_spring()) {
         range = {std::min(range.lower, f.slack() - reach), std::max(range.upper, f.slack() + reach)};

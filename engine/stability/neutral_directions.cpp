@@ -70,6 +70,7 @@ Eigen::MatrixXd without_drift(const FactoredState& at, const PhaseStiffness& ang
 NeutralDirections neutral_directions(const FactoredState& at, const Eigen::MatrixXd& null_space) {
   const Problem& problem = at.problem;
   NeutralDirections out;
+  out.directions.resize(problem.system.nv, null_space.cols());
   const auto stays_along = [&](const Eigen::VectorXd& direction) {
     const auto step = [&](double size) { return step_within_play(problem, at.z.q, size * direction); };
     return stays_balanced(at, null_space, step(0.05)) && stays_balanced(at, null_space, step(-0.11));
@@ -83,13 +84,13 @@ NeutralDirections neutral_directions(const FactoredState& at, const Eigen::Matri
     direction /= size;
     if (!all && !stays_along(direction)) continue;
     ++out.count;
-    out.directions.conservativeResize(problem.system.nv, out.count);
-    out.directions.rightCols<1>() = direction;
+    out.directions.col(out.count - 1) = direction;
     for (int i = 0; i < problem.system.nv; ++i)
       if (std::abs(direction[i]) > tolerance::takes_part &&
           std::ranges::find(out.coordinates, i) == out.coordinates.end())
         out.coordinates.push_back(i);
   }
+  out.directions.conservativeResize(Eigen::NoChange, out.count);
   std::ranges::sort(out.coordinates);
   return out;
 }

@@ -495,11 +495,11 @@ double DriveSpeed::rate(double value) {
 }
 
 std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBranch& branch,
-                                std::size_t after, double speed, std::span<const VibrationMode> modes) {
+                                std::size_t after, double value, std::span<const VibrationMode> modes) {
   constexpr double none = 2, most = 9; // unlikeness of what lies on no line, and of what is farthest from one
   const std::size_t lines = branch.names.size();
   const double from = followed.points[after].parameter, to = followed.points[after + 1].parameter;
-  const double part = from == to ? 0 : (speed - from) / (to - from);
+  const double part = from == to ? 0 : (value - from) / (to - from);
   Eigen::MatrixXd cost = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(modes.size()),
                                                    static_cast<Eigen::Index>(lines + modes.size()), none);
   for (std::size_t l = 0; l < lines; ++l) {

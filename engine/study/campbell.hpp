@@ -54,10 +54,10 @@ struct CampbellDiagram {
   double run_time_s = 0; // that of the response included
 };
 
-// By line of a branch: which of the modes of a state at `speed`, between its points `after` and `after + 1`,
+// By line of a branch: which of the modes of a state at `value`, between its points `after` and `after + 1`,
 // lies on it, or -1.
 std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBranch& branch,
-                                std::size_t after, double speed, std::span<const VibrationMode> modes);
+                                std::size_t after, double value, std::span<const VibrationMode> modes);
 
 // Whether an unbalance, which turns with the drive, can excite the critical speed: once a turn, and what does
 // not go round against it in circles. Not known where modes are seen from what turns along, to which an

@@ -353,7 +353,7 @@ void find_best(Comparison& c) {
     for (const MotionMark& p : curve.points) {
       if (p.status != RunStatus::completed) continue;
       if (!nearest || distance(p) < nearest->first) nearest = {distance(p), curve.duration};
-      if (distance(p) > comes_near || (c.best && p.error >= c.best->error)) continue;
+      if (!(distance(p) <= comes_near) || (c.best && p.error >= c.best->error)) continue;
       c.best = {curve.method, curve.duration, p.tolerance, p.error, p.run_time_s, c.answer.run_time_s};
     }
   if (!nearest) return;
@@ -382,10 +382,11 @@ Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
 
 // 1/s: of the slowest motion about the steady state; 0 where it is not known.
 double slowest_rate(const Solution& steady) {
+  if (!steady.eigenvalues) return 0;
   double fastest = 0, slowest = std::numeric_limits<double>::infinity();
-  for (const std::complex<double>& s : steady.eigenvalues.value_or(std::vector<std::complex<double>>{}))
+  for (const std::complex<double>& s : *steady.eigenvalues)
     fastest = std::max(fastest, std::abs(s));
-  for (const std::complex<double>& s : steady.eigenvalues.value_or(std::vector<std::complex<double>>{}))
+  for (const std::complex<double>& s : *steady.eigenvalues)
     if (std::abs(s) > 1e-9 * fastest) slowest = std::min(slowest, std::abs(s));
   return std::isfinite(slowest) ? slowest : 0;
 }

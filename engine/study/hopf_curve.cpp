@@ -87,7 +87,7 @@ PlaneCurves hopf_curves(const Mechanism& mechanism, const PlaneAxis& x, const Pl
   plane.for_lines([&](const PlaneSearch::Line& line) {
     const ResponseDiagram diagram = plane.branches(line, true);
     if (diagram.turned && !ties) ties = plane.ties();
-    if (diagram.turned && !ties) plane.refuse_turned();
+    if (diagram.turned && !ties) return plane.refuse_turned();
     for (const SpecialPoint& s : diagram.special) {
       if (s.type != SpecialPointType::hopf || s.at.floquet) continue;
       if (plane.system().nv > largest_for_pairs) {

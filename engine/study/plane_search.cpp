@@ -50,7 +50,7 @@ Mechanism PlaneSearch::on(const Line& line) const {
 void PlaneSearch::for_lines(const std::function<void(const Line&)>& search) {
   const Interruptible scope(options_.cancel);
   try {
-    for (std::size_t i = 0; i < lines_.size() && !cancelled(); ++i) {
+    for (std::size_t i = 0; i < lines_.size() && !cancelled() && refusal_.empty(); ++i) {
       line_ = i;
       report_progress(options_.progress, "following", part_before());
       search(lines_[i]);
