@@ -20,8 +20,8 @@ bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& noise) {
   return potential.positive_definite();
 }
 
-// Whether the symmetric part of a matrix is positive semidefinite but for rounding: its own, or that of
-// terms of this norm whose difference it is.
+// Whether the symmetric part of a matrix is positive semidefinite but for rounding: its own, or that of a
+// matrix of this norm that it was made of.
 bool is_semidefinite(const Eigen::MatrixXd& a, double terms) {
   Eigen::MatrixXd symmetric = (a + a.transpose()) / 2;
   symmetric.diagonal().array() += 1e-12 * std::max(a.norm(), terms);

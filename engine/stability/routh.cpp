@@ -22,13 +22,10 @@ std::optional<LinearPencil> at_given_momenta(const Eigen::MatrixXd& mass, const 
   const Eigen::MatrixXd mass_up = turning.solve(beside(mass, kept, x)),
                         velocity_up = turning.solve(beside(velocity, kept, x)),
                         mass_down = beside(mass, x, kept), velocity_down = beside(velocity, x, kept);
-  const Eigen::MatrixXd mass_beside = large::projected(mass, x), mass_turned = mass_down * mass_up,
-                        velocity_beside = large::projected(velocity, x),
-                        velocity_turned = mass_down * velocity_up, turned_velocity = velocity_down * mass_up;
-  out.mass = mass_beside - mass_turned;
-  out.velocity = velocity_beside - velocity_turned - turned_velocity;
-  out.mass_terms = mass_beside.norm() + mass_turned.norm();
-  out.velocity_terms = velocity_beside.norm() + velocity_turned.norm() + turned_velocity.norm();
+  out.mass = large::projected(mass, x) - mass_down * mass_up;
+  out.velocity = large::projected(velocity, x) - mass_down * velocity_up - velocity_down * mass_up;
+  out.mass_terms = mass.norm();
+  out.velocity_terms = velocity.norm();
   out.stiffness = large::projected(stiffness, x) - velocity_down * velocity_up;
   return out;
 }

@@ -13,7 +13,7 @@ namespace flyball {
 // s^2 M + s D + K on directions, orthonormal, by column.
 struct LinearPencil {
   Eigen::MatrixXd mass, velocity, stiffness, directions;
-  double mass_terms = 0, velocity_terms = 0; // norms of what both are differences of, where they are
+  double mass_terms = 0, velocity_terms = 0; // norms of what both were made of, where something was condensed
 };
 
 // `kept`: the directions (orthonormal columns) along which nothing acts, K x = 0 and x^T K = 0. What turns

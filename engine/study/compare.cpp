@@ -382,12 +382,13 @@ Run simulated(const Mechanism& mechanism, const SimulationOptions& options) {
 
 // 1/s: of the slowest motion about the steady state; 0 where it is not known.
 double slowest_rate(const Solution& steady) {
+  constexpr double null = 1e-5; // of the fastest: a double zero is known to half of the digits
   if (!steady.eigenvalues) return 0;
   double fastest = 0, slowest = std::numeric_limits<double>::infinity();
   for (const std::complex<double>& s : *steady.eigenvalues)
     fastest = std::max(fastest, std::abs(s));
   for (const std::complex<double>& s : *steady.eigenvalues)
-    if (std::abs(s) > 1e-9 * fastest) slowest = std::min(slowest, std::abs(s));
+    if (std::abs(s) > null * fastest) slowest = std::min(slowest, std::abs(s));
   return std::isfinite(slowest) ? slowest : 0;
 }
 

@@ -172,9 +172,11 @@ TEST_CASE("what nothing resists is no error, and what else there is of that join
   CAPTURE(c.message);
   REQUIRE(c.status == Status::converged);
   CHECK(c.answer.error < 1e-9);
-  REQUIRE_FALSE(c.direct.empty());
-  CHECK(c.direct.front().error > 0.1);
-  CHECK(c.motion.at(0).points.at(0).error > 1e-3);
+  // The motion swings on, a tenth of a radian or more away, and not millions.
+  const MotionMark& end = c.motion.at(0).points.at(0);
+  CHECK(end.error > 1e-3);
+  CHECK(end.goes_on < 100);
+  CHECK_FALSE(c.best);
 }
 
 TEST_CASE("what is asked for is what is measured") {
