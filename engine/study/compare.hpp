@@ -36,13 +36,13 @@ struct DirectMark {
 struct MotionMark {
   double tolerance = 0;
   double error = 0; // NaN where the run did not come to its end
-  // The largest rate at the end by that of the slowest motion about the steady state: about how far it goes
-  // on from there, as errors are. 0 where no eigenvalues are known.
-  double goes_on = 0;
   double run_time_s = 0;
   long steps = 0, evaluations = 0;
   RunStatus status = RunStatus::completed;
   std::vector<double> measure_errors{}; // none where the run did not come to its end
+  // The largest rate at the end by that of the slowest motion about the steady state: about how far it goes
+  // on from there, as errors are. 0 where no eigenvalues are known.
+  double goes_on = 0;
 };
 
 struct MotionCurve {

@@ -206,8 +206,8 @@ TEST_CASE("a joint is made by a click and the card beside it") {
   }
   SECTION("about an axis through two points") {
     d.click("tools/axis/points");
-    d.click_at({0.1, -0.3, 0}); // the card is beside the bodies
-    d.click_at({0.3, -0.1, 0});
+    d.click_at({-0.3, -0.3, 0}); // the card is on the other side
+    d.click_at({-0.1, -0.1, 0});
     CHECK_FALSE(d.app.tool.joint->picking_axis);
     d.click("tools/join");
     REQUIRE(d.m().joints.size() == 1);
