@@ -319,7 +319,7 @@ class Attempt {
       force.count = c->count;
       force.angle = c->angle;
       force.limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-      const bool stands = !c->speed || std::abs(*c->speed) <= c->speed_error;
+      const bool stands = c->speed ? std::abs(*c->speed) <= c->speed_error : !c->driven; // else it varies
       force.slips = slips(i) && !(loose && stands);
       if (slips(i) && !force.slips) { // with others, of which it bears a share
         force.value = slipping_force(i);
@@ -432,6 +432,12 @@ class Attempt {
 };
 
 } // namespace
+
+bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
+  const Joint& joint = joint_of(mechanism, at);
+  const Coordinate& c = coordinate_of(mechanism, at);
+  return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
+}
 
 std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,

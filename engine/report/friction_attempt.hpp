@@ -12,6 +12,9 @@ inline bool is_slipping(FrictionPart part) {
   return part == FrictionPart::slips_forwards || part == FrictionPart::slips_backwards;
 }
 
+// Of one axis, along which it may go on and on.
+bool may_slip(const Mechanism& mechanism, CoordinateReference at);
+
 // Nothing where there is no such state. `frictions`: find_frictions(). `holding`: what holding takes, where
 // all hold and springs and stops of their own help. `implied`: of those that slip the ones whose rate follows
 // from the drives, by coordinate with friction; empty: none. `loose`: what is taken to slip may stand with

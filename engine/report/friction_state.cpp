@@ -23,17 +23,11 @@ using Part = FrictionPart;
 
 constexpr double balance_search = 0.02; // s, for what rests in balance beside what is held: see SolveOptions
 constexpr std::size_t most_tried = 3;   // joints that may slip: each forwards, backwards or not at all
-constexpr int most_changes = 250;       // of parts, where more may: more than four have together
+constexpr int most_attempts = 2000;     // where more may: random clutches and brakes, six, took up to 1400
+constexpr std::size_t most_implied = 6; // of what slips in loops: which rates the drives give, all ways
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
-}
-
-// Of one axis, along which it may go on and on.
-bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
-  const Joint& joint = joint_of(mechanism, at);
-  const Coordinate& c = coordinate_of(mechanism, at);
-  return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
 }
 
 // Joints by coordinate with friction.
@@ -96,26 +90,36 @@ std::optional<StateOnFriction> hold_as_drawn(const Mechanism& mechanism,
   return state;
 }
 
-std::string slipping_text(const std::vector<FrictionForce>& forces) {
+// Of what is found by let_slip().
+std::string slipping_text(const StateOnFriction& state) {
+  const std::vector<FrictionForce>& forces = state.solution.frictions; // of what has a part, in its order
+  bool shared = false; // what is taken to slip stands with others
+  auto force = forces.begin();
+  for (const Part part : state.parts) {
+    if (part == Part::none) continue;
+    shared = shared || (is_slipping(part) && !force->slips);
+    ++force;
+  }
   const std::string holding = names_of(forces, false);
-  if (std::ranges::count(forces, true, &FrictionForce::slips) == 0)
-    return "Friction holds " + holding + ": how they share what they hold is open, this is one way.";
+  const std::string end = shared ? ": how they share what they hold is open, this is one way." : ".";
+  const auto slipping = std::ranges::count(forces, true, &FrictionForce::slips);
+  if (slipping == 0) return "Friction holds " + holding + (shared ? end : " as drawn.");
   return names_of(forces, true) +
-         (std::ranges::count(forces, true, &FrictionForce::slips) > 1
-              ? " slip at constant rates, against which friction gives its limits"
-              : " slips at a constant rate, against which friction gives its limit") +
-         (holding.empty() ? "." : "; it holds " + holding + ".");
+         (slipping > 1 ? " slip at constant rates, against which friction gives its limits"
+                       : " slips at a constant rate, against which friction gives its limit") +
+         (holding.empty() ? "." : "; it holds " + holding + end);
 }
 
 // With rates that are found by the torques or, where that leads to no state, of some that the drives give:
-// at first by Newton-Raphson alone, as one of the two has none. One that goes before others. `loose`: see
-// attempt_parts().
+// at first by Newton-Raphson alone, as one of the two has none. Of more than six that close loops the
+// torques give the rates of all but the first six. One that goes before others. `loose`: see
+// attempt_parts(). `attempts`: counts those made, if given.
 std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
                                         const FrictionParts& parts, const SolveOptions& options,
-                                        bool loose = false) {
+                                        bool loose = false, int* attempts = nullptr) {
   std::vector<std::size_t> may_close;
-  for (std::size_t i = 0; i < parts.size(); ++i)
+  for (std::size_t i = 0; i < parts.size() && may_close.size() < most_implied; ++i)
     if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
   std::optional<StateOnFriction> first;
   for (const bool newton_only : {true, false}) {
@@ -124,10 +128,12 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
     SolveOptions now = options;
     now.newton_only = newton_only || options.newton_only;
     for (std::size_t set = 0; set < std::size_t(1) << may_close.size(); ++set) {
+      if (is_cancelled(options.cancel)) return first;
       std::vector<bool> implied(parts.size(), false);
       for (std::size_t k = 0; k < may_close.size(); ++k)
         implied[may_close[k]] = (set >> k & 1) != 0;
       auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied), loose);
+      if (attempts) ++*attempts;
       if (state && (state->goes || !first)) first = std::move(state);
       if (first && first->goes) return first;
     }
@@ -155,11 +161,12 @@ class PartsSearch {
   template <class Accept>
   void find(const Accept& accept) {
     begin();
-    for (int k = 0; k < most_changes && !queue_.empty() && !is_cancelled(options_.cancel); ++k) {
+    for (int attempts = 0; attempts < most_attempts && !queue_.empty() && !is_cancelled(options_.cancel);) {
       const int wrong = queue_.begin()->first;
       const FrictionParts parts = std::move(queue_.begin()->second);
       queue_.erase(queue_.begin());
-      std::optional<StateOnFriction> state = let_slip(mechanism_, frictions_, parts, options_, true);
+      std::optional<StateOnFriction> state =
+          let_slip(mechanism_, frictions_, parts, options_, true, &attempts);
       if (!state)
         change_any(parts, wrong + static_cast<int>(tried_.size()));
       else if (!state->goes)
@@ -319,7 +326,7 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
   if (any_slips(parts)) {
     inner.search = slip_search;
     auto state = let_slip(mechanism, frictions, parts, inner);
-    if (state) add_message(*state, slipping_text(state->solution.frictions));
+    if (state) add_message(*state, slipping_text(*state));
     return state;
   }
   const Holding holding = find_holding(mechanism, inner.start, inner.cancel, false);
@@ -347,14 +354,16 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
   std::vector<Part> at_start;
   for (const CoordinateReference& at : frictions)
     at_start.push_back(part_at_start(mechanism, at));
-  std::ranges::stable_sort(all, std::greater(), [&](const FrictionParts& parts) { // as it begins goes first
+  const auto as_it_begins = [&](const FrictionParts& parts) {
     int count = 0;
     for (std::size_t i = 0; i < parts.size(); ++i)
       count += is_slipping(parts[i]) && parts[i] == at_start[i];
     return count;
-  });
+  };
+  std::ranges::stable_sort(all, std::greater(), as_it_begins); // that goes first
   // What slips at first by Newton-Raphson alone, which takes a fraction of the time where there is no such
-  // state, then by all that solving knows; by a search where nothing else is found.
+  // state, then by all that solving knows; by a search where nothing else is found. What slips as it begins
+  // is looked for by all that solving knows before it is said to stand.
   struct Effort {
     bool newton_only;
     double slip_search;
@@ -371,6 +380,12 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
       if (e > first && !slips) continue;
       auto state = solve_with_parts(mechanism, parts, slips ? now : options, slip_search);
       if (!state || !state->goes) continue;
+      if (!slips && newton_only)
+        for (const FrictionParts& turning : all) {
+          if (as_it_begins(turning) == 0) break;
+          auto turns = solve_with_parts(mechanism, turning, options, 0);
+          if (turns && turns->goes && turns->solution.stable != false) return turns;
+        }
       if (!slips || state->solution.stable != false) return state;
       if (!newton_only && !unstable) unstable = std::move(state);
     }
@@ -382,8 +397,11 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     inner.search = 0;
     auto state = let_slip(mechanism, frictions, parts, inner, true);
     if (!state || !state->goes) return false;
-    add_message(*state, slipping_text(state->solution.frictions));
-    (state->solution.stable == false ? unstable : found) = std::move(state);
+    add_message(*state, slipping_text(*state));
+    if (state->solution.stable != false)
+      found = std::move(state);
+    else if (!unstable)
+      unstable = std::move(state);
     return found.has_value();
   });
   return found ? std::move(found) : std::move(unstable);

@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/friction_attempt.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/search/most_turned.hpp"
 #include "engine/solve/unbounded.hpp"
@@ -266,12 +267,14 @@ std::string open_loop_message(const ReportInput& in) {
 
 std::string rubbing_message(const ReportInput& in) {
   const System& system = in.problem.system;
+  const auto slipping = std::ranges::count_if(
+      find_frictions(in.mechanism), [&](CoordinateReference at) { return may_slip(in.mechanism, at); });
   return "No steady state was found in which dry friction holds " +
          coordinate_label(system, system.links[static_cast<std::size_t>(in.existence.rubs)]) +
          ", which a torque turns, or slips at a constant rate." +
-         (find_frictions(in.mechanism).size() > 3 ? " Of more than three joints that may slip not all "
-                                                    "ways in which they slip and stick were tried."
-                                                  : "");
+         (slipping > 3 ? " Of more than three joints that may slip not all ways in which they slip and "
+                         "stick were tried."
+                       : "");
 }
 
 } // namespace

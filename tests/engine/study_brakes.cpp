@@ -129,7 +129,7 @@ std::vector<double> least_speeds(const std::vector<double>& torques, const std::
 
 TEST_CASE("four joints with friction of which clutches close loops: as enumerated") {
   std::mt19937 random(4);
-  int slipped = 0, stuck = 0;
+  int slipped = 0, stuck = 0, balanced = 0;
   for (int trial = 0; trial < 8; ++trial) {
     std::vector<double> torques, resistances;
     const std::vector<Rubbing> rubbing{{-1, 1, uniform(random, 0.1, 2)},
@@ -176,11 +176,13 @@ TEST_CASE("four joints with friction of which clutches close loops: as enumerate
       left[static_cast<std::size_t>(force.joint.back() - '0')] += *force.value;
       if (force.joint[0] == 'k') left[static_cast<std::size_t>(force.joint[1] - '0')] -= *force.value;
     }
+    balanced += all;
     for (const double each : left)
       CHECK((!all || std::abs(each) < 1e-9));
   }
   CHECK(slipped > 6);
   CHECK(stuck > 3);
+  CHECK(balanced > 6);
 }
 
 TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {
@@ -292,6 +294,20 @@ TEST_CASE("a shaft that starts fast runs on where one that rests is held") {
   INFO(all.message);
   CHECK(std::ranges::any_of(all.equilibria, [](const Solution& s) { return s.frictions.at(0).slips; }));
   CHECK(std::ranges::any_of(all.equilibria, [](const Solution& s) { return !s.frictions.at(0).slips; }));
+}
+
+TEST_CASE("a shaft that starts fast runs on at a speed that Newton-Raphson alone does not find") {
+  // As above, and with a dip about 5 rad/s, where the torque left is least, but above zero.
+  const Mechanism m =
+      scene(body_at("a", 0), bearing_at("pa", "a", 0,
+                                        torque("1 N m + 0.6 N m s*rate(pa) - 0.06 N m s^2*rate(pa)^2 - "
+                                               "1 N m*exp(-4 s^2*(rate(pa) - 5 rad/s)^2)",
+                                               5.1) +
+                                            ", " + friction(1.2)));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "pa"), WithinRel(5 + std::sqrt(25 - 0.2 / 0.06), 1e-9));
 }
 
 TEST_CASE("random trains of gears with several brakes and torques: as summed on the first shaft") {
