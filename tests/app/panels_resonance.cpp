@@ -256,7 +256,9 @@ TEST_CASE("while the limit cycle is looked for, what is done is told in words") 
     if (!phase.empty()) phases.insert(phase);
     robot.frames(1);
     bar = bar || app.ui.widgets.contains("results/cycle/running");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5)); // as a display would
   }
+  REQUIRE_FALSE(search.running());
   robot.frames(2);
   CHECK(bar);
   CHECK(phases.contains("following a motion"));
