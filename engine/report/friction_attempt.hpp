@@ -12,7 +12,7 @@ inline bool is_slipping(FrictionPart part) {
   return part == FrictionPart::slips_forwards || part == FrictionPart::slips_backwards;
 }
 
-// Of one axis, along which it may go on and on.
+// Whether a coordinate may slip at a constant rate without end: along one axis, without spring or stop.
 bool may_slip(const Mechanism& mechanism, CoordinateReference at);
 
 // Nothing where there is no such state. `frictions`: find_frictions(). `holding`: what holding takes, where

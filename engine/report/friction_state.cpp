@@ -144,9 +144,9 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
 
 // Of more joints than all ways are tried of: from the parts with which they begin the part of one joint is
 // changed at a time, of one whose friction would have to give more than its limit, that slips against the way
-// it is taken to or goes on without a part, until all go (principal pivoting: Murty, Opsearch 11, 1974). What
-// least is wrong with goes on first, and no parts come twice, so that it does not go in circles. By
-// Newton-Raphson alone.
+// it is taken to or goes on without a part, until all go (principal pivoting: Murty, Opsearch 11, 1974).
+// Those with the fewest violated conditions are changed first, and no parts are tried twice, so that it
+// cannot cycle. By Newton-Raphson alone.
 class PartsSearch {
  public:
   PartsSearch(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
@@ -239,7 +239,7 @@ class PartsSearch {
   const std::vector<CoordinateReference>& frictions_;
   std::vector<std::size_t> tried_;
   SolveOptions options_;
-  std::multimap<int, FrictionParts> queue_; // by how much was wrong with those before
+  std::multimap<int, FrictionParts> queue_; // by how many conditions those before violated
   std::set<FrictionParts> seen_;
 };
 
