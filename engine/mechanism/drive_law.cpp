@@ -27,29 +27,24 @@ const NamedMeasure* measure_called(const Mechanism& mechanism, std::string_view 
 }
 
 // Whether it follows from where parts are and how they move, without a kink but at zero.
-bool is_of_places(const Mechanism& mechanism, const ResultCall& call) {
+bool is_of_places(const ResultCall& call) {
   using enum Result;
   const Result result = call.result;
-  if (result == acceleration) return false;
-  if (result <= vz || (result >= speed && result <= tension) || result == spring) return true;
-  if (result < force_x || result > force) return false;
-  const int element = force_index(mechanism, call.arguments.front().name);
-  return element < 0 || mechanism.forces[static_cast<std::size_t>(element)].type != ForceType::bearing;
+  return result != acceleration && (result <= vz || (result >= speed && result <= spring));
 }
 
 std::string refusal(const ResultCall& call) {
-  const bool of_bearing = call.result >= Result::force_x && call.result <= Result::couple;
   return std::string(result_function(call.result).name) +
          "(): a torque or load is one of coordinates, rates, places and velocities of points, distances, "
-         "angles, lengths and forces of springs and parameters; " +
-         (of_bearing ? "what bearings exert is not among them"
-                     : "reactions and accelerations follow from the balance that it is part of");
+         "angles, lengths, what springs and bearings exert and parameters; reactions and accelerations "
+         "follow "
+         "from the balance that it is part of";
 }
 
 // What a measure asks for that a law may not.
-void expect_of_places(const Mechanism& mechanism, const NamedMeasure& measure, const Expression& expression) {
+void expect_of_places(const NamedMeasure& measure, const Expression& expression) {
   for (const ResultCall& call : expression.results())
-    if (!is_of_places(mechanism, call)) throw ExpressionError(measure.name + " asks for " + refusal(call));
+    if (!is_of_places(call)) throw ExpressionError(measure.name + " asks for " + refusal(call));
 }
 
 class MeasureWriter {
@@ -78,7 +73,7 @@ class MeasureWriter {
     if (std::ranges::find(path_, measure.name) != path_.end())
       throw ExpressionError("expected no circle of measures; " + measure.name + " leads back to itself");
     if (path_.size() > deepest) throw ExpressionError("expected a simpler expression");
-    expect_of_places(mechanism_, measure, Expression(measure.text, Expression::Results::allowed));
+    expect_of_places(measure, Expression(measure.text, Expression::Results::allowed));
     path_.push_back(measure.name);
     std::string text = write(measure.text);
     path_.pop_back();
@@ -133,7 +128,7 @@ bool asks_for_coordinate(const ResultCall& call) {
 }
 
 ResultQuantity find_law_quantity(const Mechanism& mechanism, const ResultCall& call) {
-  if (!is_of_places(mechanism, call))
+  if (!is_of_places(call))
     throw ExpressionError("column " + std::to_string(call.begin + 1) + ": found " + refusal(call));
   if (!asks_for_coordinate(call) || call.result == Result::spring) return find_quantity(mechanism, call);
   const CoordinateReference at = find_coordinate(mechanism, call);

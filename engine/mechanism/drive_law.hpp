@@ -1,9 +1,9 @@
 // Torques and loads of drives as expressions of the state: "7500 N * (0.15 m - coordinate(slide))". Of what
 // measures may ask they know what follows from where parts are and how they move alone: coordinate(joint), in
 // rad or m as the joint labels it, rate(joint), places and velocities of points, distances, angles between
-// three points, lengths of springs and what springs exert; and the measures that are made of these and of
-// parameters, by name. Their derivatives enter the balance. They have no value by themselves, but one at
-// every state. Nothing that they ask for may change as the drives turn (law_phase.hpp).
+// three points, lengths of springs and what springs and bearings exert; and the measures that are made of
+// these and of parameters, by name. Their derivatives enter the balance. They have no value by themselves,
+// but one at every state. Nothing that they ask for may change as the drives turn (law_phase.hpp).
 #pragma once
 
 #include "engine/mechanism/measure_plan.hpp"

@@ -92,12 +92,11 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
     const auto s = static_cast<std::size_t>(elastic.spring);
     return spring_state<N>(system.springs[s], p.springs[s], k);
   };
-  const auto bearing = [&] {
+  if (elastic.bearing >= 0) {
     const auto b = static_cast<std::size_t>(elastic.bearing);
-    return bearing_state<N>(system.bearings[b], p.bearings[b], k);
-  };
+    return bearing_force<N>(quantity.result, system.bearings[b], p.bearings[b], k);
+  }
   const auto force = [&]() -> Vec3T<N> { // on the second body
-    if (elastic.bearing >= 0) return -bearing().force;
     const SpringState<N> s = state();
     const BasicPointSpringParameters<N>& spring = p.springs[static_cast<std::size_t>(elastic.spring)];
     if (spring.without_length()) return spring.stiffness * (s.a - s.b); // they may meet
@@ -123,10 +122,6 @@ N quantity_value(const ResultQuantity& quantity, const BasicQuantityNumbers<N>& 
   case Result::force_y:
   case Result::force_z: return component<N>(force(), quantity.result, Result::force_x);
   case Result::force: return force().norm();
-  case Result::couple_x:
-  case Result::couple_y:
-  case Result::couple_z: return component<N>(-bearing().moment, quantity.result, Result::couple_x);
-  case Result::couple: return bearing().moment.norm();
   case Result::mass: return numbers.mass;
   default: return std::numeric_limits<double>::quiet_NaN(); // asked of other things
   }

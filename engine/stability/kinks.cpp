@@ -137,7 +137,10 @@ void look_at_drive_law(const Problem& problem, const Eigen::VectorXd& q, const K
       if (link.v < 0) continue;
       size = (link.type == LinkType::spherical ? 1 : problem.scaling.column[link.v]) / 64;
     }
-    if (is_spring_force(input.quantity.result) || input.quantity.result == Result::spring)
+    // A bearing gives way by little: what it bears is small beside what it might.
+    if (input.bearing >= 0)
+      size = std::max(std::abs(at), 1e-8 * law_input_size(system, p, law, numbers, i, q, k)) / 64;
+    else if (is_spring_force(input.quantity.result) || input.quantity.result == Result::spring)
       size = law_input_size(system, p, law, numbers, i, q, k) / 64;
     const auto slopes = [&](double by) { return drive_law_slopes(system, p, law, numbers, q, k, i, by); };
     const auto slope = [&](double by) { // of all that ask for the same

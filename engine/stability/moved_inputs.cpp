@@ -47,6 +47,16 @@ VectorRates turn_of_arms(const PointsInMotion& motion, const TrackedPoints& poin
   return out;
 }
 
+// What an input is, or is the size of.
+std::vector<Result> parts_of(const DriveLaw::Input& input) {
+  using enum Result;
+  const Result asked = input.quantity.result;
+  if (asked == force && input.bearing < 0) return {tension};
+  if (asked == force) return {force_x, force_y, force_z};
+  if (asked == couple) return {couple_x, couple_y, couple_z};
+  return {asked};
+}
+
 // How coordinates and their rates change an input, or what it is the size of.
 struct InputRates {
   std::vector<Eigen::VectorXd> by_places, by_rates; // scaled, of coordinates; none that is nothing
@@ -83,7 +93,8 @@ InputRates rates_of(const Problem& problem, const DriveLaw& law, const DriveLawP
   const double size = asked == Result::angle ? 1 : p.length;
   const bool kink = stands_on_own_kink(system, p, law, numbers, i, q, k);
   const bool vanishes =
-      kink && (asked != Result::force || motion.way(points[0], points[1]).norm() <= moves * p.length);
+      kink && input.bearing < 0 &&
+      (asked != Result::force || motion.way(points[0], points[1]).norm() <= moves * p.length);
   if (asked == Result::angle && kink) {
     take_vector(turn_of_arms(motion, points), size, out.by_places);
   } else if (asked == Result::speed && kink) {
@@ -93,17 +104,17 @@ InputRates rates_of(const Problem& problem, const DriveLaw& law, const DriveLawP
   } else if (vanishes) {
     take_vector(motion.apart(points[0], points[1]), size, out.by_places);
   } else {
-    PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
-    if (asked == Result::force) { // of which the size is taken
-      const auto s = static_cast<std::size_t>(input.spring);
-      by = spring_force_rates(Result::tension, system.springs[s], p.springs[s], k);
-    }
-    Eigen::VectorXd by_places = Eigen::VectorXd::Zero(system.nv), by_rates = by_places;
-    add_coordinate_rates(system, by, points, k, [&](int v, double rate) { by_places[v] += rate; });
-    add_velocity_rates(system, by, points, k, [&](int v, double rate) { by_rates[v] += rate; });
     const double most = law_input_size(system, p, law, numbers, i, q, k);
-    take(by_places, most, out.by_places);
-    take(by_rates, is_of_velocity(asked) ? size : most, out.by_rates);
+    for (const Result part : parts_of(input)) {
+      DriveLaw::Input alone = input;
+      alone.quantity.result = part;
+      for (const bool with_rates : {false, true}) {
+        Eigen::VectorXd by = Eigen::VectorXd::Zero(system.nv);
+        add_input_rates(system, p, alone, points, k, with_rates, [&](int v, double rate) { by[v] += rate; });
+        take(by, with_rates && is_of_velocity(asked) ? size : most,
+             with_rates ? out.by_rates : out.by_places);
+      }
+    }
   }
   return out;
 }

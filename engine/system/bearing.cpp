@@ -67,7 +67,34 @@ struct Linear {
     const Vec3 own = s.axes.transpose() * i.column.turn();
     return out + (i.second ? 1. : -1.) * along.tail<3>().dot(turning_change(by) * own);
   }
+
+  // What the bearing asks of the second body: forces along x.
+  Vec6 along() const { return p.stiffness * s.x + p.damping * s.dx; }
+
+  // How the force or moment that it asks for changes with a coordinate, or with the coordinate's rate.
+  Vec3 change(bool moment, const PairPart& j, const ScrewRates& screw) const {
+    const Vec6 by = direction(j), forces = p.stiffness * by + p.damping * rate_change(j, screw, by);
+    const Vec3 here = moment ? Vec3(s.turning.transpose() * forces.tail<3>() +
+                                    turning_change(by).transpose() * along().tail<3>())
+                             : Vec3(forces.head<3>());
+    const Vec3 carried =
+        j.second ? Vec3(Vec3::Zero()) : Vec3(j.column.turn().cross(moment ? s.moment : s.force));
+    return s.axes * here + carried;
+  }
+  Vec3 change_by_rate(bool moment, const PairPart& j) const {
+    const Vec6 forces = p.damping * direction(j);
+    return s.axes * (moment ? Vec3(s.turning.transpose() * forces.tail<3>()) : Vec3(forces.head<3>()));
+  }
 };
+
+bool is_moment(Result result) {
+  return result >= Result::couple_x;
+}
+
+// Which component is asked for; 3 of the size.
+int axis_of(Result result) {
+  return static_cast<int>(result) - static_cast<int>(is_moment(result) ? Result::couple_x : Result::force_x);
+}
 
 } // namespace
 
@@ -98,6 +125,39 @@ BearingState<S> bearing_state(const BearingElement& e, const BearingParametersOf
   s.force = s.axes * along.template head<3>();
   s.moment = s.axes * (s.turning.transpose() * along.template tail<3>());
   return s;
+}
+
+template <class S>
+S bearing_force(Result result, const BearingElement& e, const BearingParametersOf<S>& p,
+                const Kinematics<S>& k) {
+  const BearingState<S> s = bearing_state<S>(e, p, k);
+  const Vec3T<S>& asked = is_moment(result) ? s.moment : s.force;
+  const int axis = axis_of(result);
+  return axis < 3 ? S(-asked[axis]) : S(asked.norm());
+}
+
+void bearing_force_rates(const System& system, const Parameters& p, Result result, std::size_t n,
+                         const Kinematics<double>& k, bool with_rates,
+                         const std::function<void(int v, double change)>& add) {
+  const Linear bearing(system.bearings[n], p.bearings[n], k);
+  const bool moment = is_moment(result);
+  const int axis = axis_of(result);
+  Vec3 along = (moment ? bearing.s.moment : bearing.s.force).stableNormalized();
+  if (axis < 3) along = -Vec3::Unit(axis);
+  for (const SupportColumn& c : bearing.e.ends.support) {
+    const PairPart j = pair_part(c, k);
+    add(c.v, along.dot(with_rates ? bearing.change_by_rate(moment, j)
+                                  : bearing.change(moment, j, screw_rates(system, p, k, c.link, c.v))));
+  }
+}
+
+double bearing_force_size(Result result, const BearingParameters& p, const BearingState<double>& s,
+                          double reach) {
+  Vec6 size = s.x.cwiseAbs();
+  size.head<3>().array() += reach;
+  size.tail<3>().array() += 1;
+  const Vec6 along = p.stiffness.cwiseAbs() * size + p.damping.cwiseAbs() * s.dx.cwiseAbs();
+  return is_moment(result) ? along.tail<3>().norm() : along.head<3>().norm();
 }
 
 template <class S>
@@ -139,7 +199,7 @@ void add_bearing_stiffness(const System& system, const Parameters& p, const Kine
     interruption_point();
     const BearingParameters& f = p.bearings[n];
     const Linear bearing(system.bearings[n], f, k);
-    const Vec6 along = f.stiffness * bearing.s.x + f.damping * bearing.s.dx;
+    const Vec6 along = bearing.along();
     for (const SupportColumn& cj : bearing.e.ends.support) {
       const PairPart j = pair_part(cj, k);
       const Vec6 by = bearing.direction(j);
@@ -189,6 +249,12 @@ template BearingState<double> bearing_state(const BearingElement&, const Bearing
                                             const Kinematics<double>&);
 template BearingState<Dual> bearing_state(const BearingElement&, const BasicBearingParameters<Dual>&,
                                           const Kinematics<Dual>&);
+template double bearing_force<double>(Result, const BearingElement&, const BearingParameters&,
+                                      const Kinematics<double>&);
+template Dual bearing_force<Dual>(Result, const BearingElement&, const BasicBearingParameters<Dual>&,
+                                  const Kinematics<Dual>&);
+template Extended bearing_force<Extended>(Result, const BearingElement&, const BearingParameters&,
+                                          const Kinematics<Extended>&);
 template void add_bearings<double>(const System&, const Parameters&, const Kinematics<double>&,
                                    Configuration<double>&);
 template void add_bearings<Extended>(const System&, const Parameters&, const Kinematics<Extended>&,

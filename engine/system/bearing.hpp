@@ -16,7 +16,10 @@
 // against the other, and a motion that takes it over half a turn ends there.
 #pragma once
 
+#include "engine/mechanism/result_functions.hpp"
 #include "engine/system/linearization.hpp"
+
+#include <functional>
 
 namespace flyball {
 
@@ -32,6 +35,20 @@ struct BearingState {
 template <class S>
 BearingState<S> bearing_state(const BearingElement& element, const BearingParametersOf<S>& parameters,
                               const Kinematics<S>& kinematics);
+
+// force_x() to couple() of what it exerts on the second body (N, N m), as measures and laws of drives ask for
+// them. Instantiated for double, Dual and Extended.
+template <class S>
+S bearing_force(Result result, const BearingElement& element, const BearingParametersOf<S>& parameters,
+                const Kinematics<S>& kinematics);
+// How it changes with the coordinates of q_R, the rates of these being held, or with the rates: calls
+// add(v, change) for each that moves the bearing. Zero for the size of what is nothing.
+void bearing_force_rates(const System& system, const Parameters& parameters, Result result,
+                         std::size_t bearing, const Kinematics<double>& kinematics, bool with_rates,
+                         const std::function<void(int v, double change)>& add);
+// What the sum of its terms may be in size.
+double bearing_force_size(Result result, const BearingParameters& parameters,
+                          const BearingState<double>& state, double reach);
 
 // Adds what bearings ask of the coordinates.
 template <class S>

@@ -1,6 +1,7 @@
 #include "engine/system/drive_torque.hpp"
 
 #include "engine/mechanism/unset_duals.hpp"
+#include "engine/system/bearing.hpp"
 #include "engine/system/extended.hpp"
 #include "engine/system/point_quantity.hpp"
 
@@ -37,6 +38,10 @@ struct LawState {
 
   N input(const DriveLaw& law, const BasicDriveLawParameters<N>& numbers, std::size_t i) const {
     const DriveLaw::Input& input = law.inputs[i];
+    if (input.bearing >= 0) {
+      const auto b = static_cast<std::size_t>(input.bearing);
+      return static_cast<N>(bearing_force<S>(input.quantity.result, system.bearings[b], p.bearings[b], k));
+    }
     if (is_spring_force(input.quantity.result)) {
       const auto s = static_cast<std::size_t>(input.spring);
       return static_cast<N>(spring_force<S>(input.quantity.result, system.springs[s], p.springs[s], k));
@@ -147,7 +152,10 @@ struct LawState {
     for (std::size_t i = 0; i < law.inputs.size(); ++i) {
       const DriveLaw::Input& input = law.inputs[i];
       if (input.coordinate < 0) {
-        add_derivatives_of_points(law, numbers, i, rates, factor, row, add);
+        const double change = factor * slope(law, numbers, i);
+        // On the kink of an angle at 0 and pi there is no rate; see kinks.hpp.
+        add_input_rates(system, p, input, numbers.points[i], k, rates,
+                        [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); });
         continue;
       }
       if (input.rate() != rates) continue;
@@ -165,19 +173,6 @@ struct LawState {
       for (int j = 0; j < 3; ++j)
         add(row, link.v + j, change * turned(c.index - link.coordinate, j));
     }
-  }
-
-  template <class Add>
-  void add_derivatives_of_points(const DriveLaw& law, const DriveLawParameters& numbers, std::size_t i,
-                                 bool rates, double factor, int row, const Add& add) const {
-    const PointQuantityRates by = input_rates(system, p, law, numbers, i, k);
-    const double change = factor * slope(law, numbers, i);
-    // On the kink of an angle at 0 and pi there is no rate; see kinks.hpp.
-    const auto act = [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); };
-    if (rates)
-      add_velocity_rates(system, by, numbers.points[i], k, act);
-    else
-      add_coordinate_rates(system, by, numbers.points[i], k, act);
   }
 
   template <class Add>
@@ -251,13 +246,23 @@ double law_input(const System& system, const Parameters& p, const DriveLaw& law,
   return LawState<double>{system, p, q, k}.input(law, numbers, input);
 }
 
-PointQuantityRates input_rates(const System& system, const Parameters& p, const DriveLaw& law,
-                               const DriveLawParameters& numbers, std::size_t i,
-                               const Kinematics<double>& k) {
-  const DriveLaw::Input& input = law.inputs[i];
-  if (!is_spring_force(input.quantity.result)) return point_rates_of(of_points(input), numbers.points[i], k);
-  const auto s = static_cast<std::size_t>(input.spring);
-  return spring_force_rates(input.quantity.result, system.springs[s], p.springs[s], k);
+void add_input_rates(const System& system, const Parameters& p, const DriveLaw::Input& input,
+                     const TrackedPoints& points, const Kinematics<double>& k, bool with_rates,
+                     const std::function<void(int v, double change)>& add) {
+  const Result asked = of_points(input);
+  if (input.bearing >= 0)
+    return bearing_force_rates(system, p, asked, static_cast<std::size_t>(input.bearing), k, with_rates, add);
+  PointQuantityRates by;
+  if (is_spring_force(asked)) {
+    const auto s = static_cast<std::size_t>(input.spring);
+    by = spring_force_rates(asked, system.springs[s], p.springs[s], k);
+  } else {
+    by = point_rates_of(asked, points, k);
+  }
+  if (with_rates)
+    add_velocity_rates(system, by, points, k, add);
+  else
+    add_coordinate_rates(system, by, points, k, add);
 }
 
 double law_input_size(const System& system, const Parameters& p, const DriveLaw& law,
@@ -273,6 +278,11 @@ double law_input_size(const System& system, const Parameters& p, const DriveLaw&
     return value + std::abs(slope) * (c.angle ? 1 : p.length);
   }
   if (asked == Result::angle) return std::max(value, 1.);
+  if (input.bearing >= 0) {
+    const auto b = static_cast<std::size_t>(input.bearing);
+    return bearing_force_size(asked, p.bearings[b], bearing_state(system.bearings[b], p.bearings[b], k),
+                              p.length);
+  }
   if (is_spring_force(asked)) {
     const auto s = static_cast<std::size_t>(input.spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
@@ -288,6 +298,13 @@ bool stands_on_own_kink(const System& system, const Parameters& p, const DriveLa
                         const Kinematics<double>& k) {
   constexpr double near = 1e-8;
   const Result asked = of_points(law.inputs[i]);
+  if (law.inputs[i].bearing >= 0) {
+    // Stiff ones give way by little: what they bear is small beside their size.
+    constexpr double nothing = 1e-12;
+    return (asked == Result::force || asked == Result::couple) &&
+           law_input(system, p, law, numbers, i, q, k) <=
+               nothing * law_input_size(system, p, law, numbers, i, q, k);
+  }
   if (is_spring_force(asked)) {
     const auto s = static_cast<std::size_t>(law.inputs[i].spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);

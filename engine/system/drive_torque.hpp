@@ -12,6 +12,8 @@
 #include "engine/system/kinematics.hpp"
 #include "engine/system/point_quantity.hpp"
 
+#include <functional>
+
 namespace flyball {
 
 // Adds the dampers of what turns so, less torques, plus loads, to f. In a system for the motion, where it is
@@ -37,7 +39,7 @@ TorqueAndLoad torque_and_load(const System& system, const Parameters& parameters
 
 // What the law of a torque or load is given for one of its inputs, what it may be in size, and whether it
 // stands where that has no slope: a distance or the speed of a point of zero, an angle of 0 or pi, the size
-// of a spring's force that vanishes, what a spring exerts whose points meet.
+// of a spring's or bearing's force that vanishes, what a spring exerts whose points meet.
 double law_input(const System& system, const Parameters& parameters, const DriveLaw& law,
                  const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
                  const Kinematics<double>& kinematics);
@@ -48,10 +50,12 @@ bool stands_on_own_kink(const System& system, const Parameters& parameters, cons
                         const DriveLawParameters& numbers, std::size_t input, const Eigen::VectorXd& q,
                         const Kinematics<double>& kinematics);
 
-// How an input of points or of a spring between two changes with them.
-PointQuantityRates input_rates(const System& system, const Parameters& parameters, const DriveLaw& law,
-                               const DriveLawParameters& numbers, std::size_t input,
-                               const Kinematics<double>& kinematics);
+// How an input of points (which are DriveLawParameters::points of it), or of what is between two, changes
+// with the coordinates of q_R or with their rates: calls add(v, change), several times for one that moves
+// several points. Not a number of an angle of 0 or pi.
+void add_input_rates(const System& system, const Parameters& parameters, const DriveLaw::Input& input,
+                     const TrackedPoints& points, const Kinematics<double>& kinematics, bool with_rates,
+                     const std::function<void(int v, double change)>& add);
 
 // The derivatives of the law of a torque or load with its inputs, where one of them is `by` further on.
 std::vector<double> drive_law_slopes(const System& system, const Parameters& parameters, const DriveLaw& law,

@@ -1,7 +1,5 @@
 #include "engine/system/law_elements.hpp"
 
-#include "engine/system/point_quantity.hpp"
-
 #include <algorithm>
 
 namespace flyball {
@@ -33,9 +31,13 @@ int tree_coordinate(const Mechanism& m, const System& s, const ResultQuantity& a
 DriveLaw::Input input_of(const Mechanism& m, const System& s, const ResultCall& call) {
   DriveLaw::Input out{find_law_quantity(m, call)};
   if (asks_for_coordinate(call)) out.coordinate = tree_coordinate(m, s, out.quantity);
-  if (call.result == Result::length || is_spring_force(call.result)) {
-    const auto spring = std::ranges::find(s.springs, out.quantity.of[0].part, &PointSpringElement::force);
-    out.spring = static_cast<int>(spring - s.springs.begin());
+  if (call.result >= Result::length && call.result <= Result::couple) {
+    const auto place = [&](const auto& elements, auto force) {
+      const auto found = std::ranges::find(elements, out.quantity.of[0].part, force);
+      return found == elements.end() ? -1 : static_cast<int>(found - elements.begin());
+    };
+    out.spring = place(s.springs, &PointSpringElement::force);
+    out.bearing = place(s.bearings, &BearingElement::force);
   }
   return out;
 }

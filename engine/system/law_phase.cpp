@@ -50,7 +50,7 @@ AtPhase at_phase(const System& system, const Parameters& p, const DriveLaw& law,
                  const Kinematics<double>& k) {
   AtPhase out{0, 0, Eigen::VectorXd::Zero(system.nv)};
   const Result asked = law.inputs[i].quantity.result;
-  if (is_spring_force(asked)) {
+  if (law.inputs[i].spring >= 0 && is_spring_force(asked)) {
     const auto s = static_cast<std::size_t>(law.inputs[i].spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
     out.value = spring.length;
@@ -97,8 +97,9 @@ void refuse_turning_laws(const System& system, const Mechanism& mechanism, const
       const Result result = law.inputs[i].quantity.result;
       const bool armless = result == Result::angle && std::isnan(a.value);
       if (!armless && !p.moving) continue;
-      const double size =
-          is_spring_force(result) ? a.value + p.length : law_input_size(system, p, law, numbers, i, q, here);
+      const double size = law.inputs[i].spring >= 0 && is_spring_force(result)
+                              ? a.value + p.length
+                              : law_input_size(system, p, law, numbers, i, q, here);
       const bool stays = std::ranges::none_of(times, [&](double time) {
         forward<double>(system, p, q, time, later);
         return differ(a, at_phase(system, p, law, numbers, i, q, later), size,

@@ -25,40 +25,8 @@ void fill_screws(const System& system, const Parameters& p, const Kinematics<dou
   out.resize(static_cast<std::size_t>(system.nv));
   for (std::size_t i = 0; i < system.links.size(); ++i) {
     const Link& link = system.links[i];
-    for (int c = 0; c < column_count(link); ++c) {
-      ScrewRates& s = out[static_cast<std::size_t>(link.v + c)];
-      const Column<double>& column = k.columns[static_cast<std::size_t>(link.v + c)];
-      const Vec3& a = column.axis;
-      s.sw = column.angular ? a : Vec3(Vec3::Zero());
-      s.sv = column.angular ? Vec3(Vec3::Zero()) : a;
-      // Own motion about or along a single axis changes nothing here; about three it does.
-      const LinkState<double>& parent = link.type == LinkType::spherical ? k.links[i] : k.at(link.parent);
-      if (!p.moving) {
-        s.dw.setZero();
-        s.dv.setZero();
-        s.ddw.setZero();
-        s.ddv = column.angular ? Vec3(k.ground.dv.cross(a)) : Vec3(Vec3::Zero());
-        continue;
-      }
-      // The parent's motion as a field, at this link's origin.
-      const Vec3 arm = column.o - parent.o;
-      const Vec3 v = parent.v + parent.w.cross(arm);
-      const Vec3 acceleration = parent.dv + parent.dw.cross(arm) + parent.w.cross(parent.w.cross(arm));
-      const Vec3 spatial = acceleration - parent.w.cross(v);
-      if (column.angular) {
-        s.dw = parent.w.cross(a);
-        s.dv = v.cross(a);
-        s.ddw = parent.dw.cross(a);
-        s.ddv = spatial.cross(a);
-      } else {
-        s.dw.setZero();
-        s.dv = parent.w.cross(a);
-        s.ddw.setZero();
-        s.ddv = parent.dw.cross(a);
-      }
-      s.ddw += parent.w.cross(s.dw);
-      s.ddv += parent.w.cross(s.dv) + v.cross(s.dw);
-    }
+    for (int v = link.v; v < link.v + column_count(link); ++v)
+      out[static_cast<std::size_t>(v)] = screw_rates(system, p, k, static_cast<int>(i), v);
   }
 }
 
@@ -306,6 +274,43 @@ void for_speeds(const System& system, const Act& act) {
 }
 
 } // namespace
+
+ScrewRates screw_rates(const System& system, const Parameters& p, const Kinematics<double>& k, int l, int v) {
+  const Link& link = system.links[static_cast<std::size_t>(l)];
+  const Column<double>& column = k.columns[static_cast<std::size_t>(v)];
+  const Vec3& a = column.axis;
+  ScrewRates s;
+  s.sw = column.angular ? a : Vec3(Vec3::Zero());
+  s.sv = column.angular ? Vec3(Vec3::Zero()) : a;
+  // Own motion about or along a single axis changes nothing here; about three it does.
+  const LinkState<double>& parent = k.at(link.type == LinkType::spherical ? l : link.parent);
+  if (!p.moving) {
+    s.dw.setZero();
+    s.dv.setZero();
+    s.ddw.setZero();
+    s.ddv = column.angular ? Vec3(k.ground.dv.cross(a)) : Vec3(Vec3::Zero());
+    return s;
+  }
+  // The parent's motion as a field, at this link's origin.
+  const Vec3 arm = column.o - parent.o;
+  const Vec3 v_here = parent.v + parent.w.cross(arm);
+  const Vec3 acceleration = parent.dv + parent.dw.cross(arm) + parent.w.cross(parent.w.cross(arm));
+  const Vec3 spatial = acceleration - parent.w.cross(v_here);
+  if (column.angular) {
+    s.dw = parent.w.cross(a);
+    s.dv = v_here.cross(a);
+    s.ddw = parent.dw.cross(a);
+    s.ddv = spatial.cross(a);
+  } else {
+    s.dw.setZero();
+    s.dv = parent.w.cross(a);
+    s.ddw.setZero();
+    s.ddv = parent.dw.cross(a);
+  }
+  s.ddw += parent.w.cross(s.dw);
+  s.ddv += parent.w.cross(s.dv) + v_here.cross(s.dw);
+  return s;
+}
 
 void linearize_constraints(const System& system, const Parameters& p, const Kinematics<double>& k,
                            Linearization& out) {

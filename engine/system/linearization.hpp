@@ -32,6 +32,10 @@ struct ScrewRates {
   Vec3 sw, sv, dw, dv, ddw, ddv;
 };
 
+// Of coordinate v of q_R, which belongs to this link.
+ScrewRates screw_rates(const System& system, const Parameters& parameters,
+                       const Kinematics<double>& kinematics, int link, int v);
+
 struct Linearization {
   Eigen::MatrixXd stiffness;  // d f / d q_R at fixed lambda: (nv, nv), rows f
   Eigen::MatrixXd constraint; // Phi_qR: (rows, nv)

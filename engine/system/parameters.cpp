@@ -341,7 +341,7 @@ class Binder {
         const auto s = static_cast<std::size_t>(input.spring);
         const PairEnds& ends = s_.springs[s].ends;
         out.points[i] = {{{ends.a, p_.springs[s].a}, {ends.b, p_.springs[s].b}, {}}};
-      } else if (input.coordinate < 0) {
+      } else if (input.coordinate < 0 && input.bearing < 0) {
         for (std::size_t n = 0; n < static_cast<std::size_t>(input.quantity.count); ++n)
           out.points[i][n] = tracked_point(s_, p_, m_, input.quantity.of[n], read_);
       }

@@ -64,6 +64,7 @@ struct DriveLaw {
     ResultQuantity quantity; // of places and velocities alone
     int coordinate = -1;     // in System::coordinates: whose value or rate it is; -1: it is one of points
     int spring = -1;         // in System::springs: whose points they are
+    int bearing = -1;        // in System::bearings: what exerts it
     bool rate() const { return quantity.result == Result::rate; }
     bool operator==(const Input&) const = default;
   };

@@ -90,8 +90,31 @@ Eigen::VectorXd slope(const Function& f) {
   return ((16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15).template cast<double>();
 }
 
-// Two springs, one with a damper, and joints with springs by numbers and by laws.
+Force bearing(const std::string& name, const std::string& first, const std::string& second, const Vec3& at,
+              const Vec3& axis, const BearingMatrix& stiffness, const BearingMatrix& damping) {
+  Force out;
+  out.name = name;
+  out.type = ForceType::bearing;
+  out.bodies = {first, second};
+  out.at = at;
+  out.axis = axis;
+  out.bearing_stiffness = stiffness;
+  out.bearing_damping = damping;
+  return out;
+}
+
+// Two springs, one with a damper, two bearings with cross terms, one that resists turns as well, and joints
+// with springs by numbers and by laws.
 Mechanism strung(Mechanism m) {
+  m.forces.push_back(bearing("edge", "collar", "arm", {0.2, -0.1, 0.05}, {0.2, 1, 0.1}, {9, 1, -2, 6},
+                             {0.5, 0.2, -0.1, 0.4}));
+  BearingMatrix stiffness, damping;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      stiffness.push_back(i == j ? 1.5 + 0.3 * i : 0.1 * std::sin(1 + 3 * i + 7 * j));
+      damping.push_back(i == j ? 0.2 + 0.02 * i : 0.02 * std::sin(2 + 5 * i + 3 * j));
+    }
+  m.forces.push_back(bearing("seat", "shaft", "bob", {0.3, -0.3, 0.1}, {0.1, 0.3, 1}, stiffness, damping));
   m.forces.push_back(point_spring("string", "shaft", "bob", {0, 0.3, 0}, {0.4, -0.5, 0.1}, 12, 0.3));
   m.forces.back().damping = 0.7;
   m.forces.push_back(point_spring("band", "collar", "arm", {0, 0.2, 0}, {0.3, -0.4, 0.1}, 0, 0.2));
@@ -106,6 +129,10 @@ const std::vector<std::string> by_springs{"1 m * tension(string)",
                                           "2 m * spring(slide)",
                                           "1 N m * sin(spring(hinge)/(1 N m)) + spring(ball.1)",
                                           "0.3 m*tension(string)*tension(band)/(1 N) + 1 m*force_y(string)"};
+
+const std::vector<std::string> by_bearings{
+    "1 m * force_x(edge)", "0.5 m * force(edge)", "0.5 m * force_z(seat) + 0.2 * couple_y(seat)",
+    "0.4 m * force(seat) - 0.3 * couple(seat)", "couple_x(seat)*force_y(edge)/(1 N)"};
 
 // A shaft whose balls swing on arms and joints of their own, with a collar that slides.
 Mechanism swinging(const std::string& law) {
@@ -136,6 +163,14 @@ const std::vector<std::string> all_kinds{"2 N * y(bob)",
                                          "2 N m * angle(bob@tip, ground@top, collar)",
                                          "1 N m s * rate(spin) * sin(y(bob)/(1 m)) + 5 N m * "
                                          "exp(-distance(arm, collar)^2/(1 m^2))*speed(bob)/(1 m/s)"};
+
+// Laws that ask for what springs and bearings exert, too.
+std::vector<std::string> all_laws() {
+  std::vector<std::string> laws = all_kinds;
+  laws.insert(laws.end(), by_springs.begin(), by_springs.end());
+  laws.insert(laws.end(), by_bearings.begin(), by_bearings.end());
+  return laws;
+}
 
 } // namespace
 
@@ -255,9 +290,7 @@ TEST_CASE("laws by velocities of points", "[torque][places]") {
 
 TEST_CASE("how laws by places change with the state, against differences", "[torque][places]") {
   Dice dice(5);
-  std::vector<std::string> laws = all_kinds;
-  laws.insert(laws.end(), by_springs.begin(), by_springs.end());
-  for (const std::string& law : laws) {
+  for (const std::string& law : all_laws()) {
     CAPTURE(law);
     const Mechanism m = strung(swinging(law));
     validate(m);
@@ -294,9 +327,7 @@ TEST_CASE("how laws by places change with the state, against differences", "[tor
 
 TEST_CASE("laws by places: rates with numbers, eigenvalues and motions about the state", "[torque][places]") {
   std::size_t settled = 0;
-  std::vector<std::string> laws = all_kinds;
-  laws.insert(laws.end(), by_springs.begin(), by_springs.end());
-  for (const std::string& law : laws) {
+  for (const std::string& law : all_laws()) {
     CAPTURE(law);
     Mechanism m = strung(swinging("3 N m - 0.6 N m s*rate(spin) + 0.2*(" + law + ")"));
     for (Joint& each : m.joints)
@@ -417,6 +448,55 @@ TEST_CASE("a damper in what a law asks for is felt in motion alone", "[torque][p
   CHECK(model.refusal.empty());
 }
 
+TEST_CASE("a shaft braked by what its bearing bears", "[torque][places][bearings]") {
+  // A mass m on a radial slide, held by a bearing of stiffness k, e off the axis as drawn: k x = m w^2 (e +
+  // x), and friction of the coefficient f at the radius r of what the bearing bears: T = c w + f r k x.
+  const double mass = 2, k = 5000, e = 0.05, drag = 0.3, torque = 8, arm = 0.02;
+  const auto rotor = [&](const std::string& load, double damping) {
+    Mechanism m;
+    m.bodies = {body("shaft", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("mass", mass, {e, 0, 0})};
+    m.joints = {dampened(revolute("spin", "ground", "shaft", {0, 0, 0}, {0, 1, 0}), drag),
+                prismatic("slide", "shaft", "mass", {e, 0, 0}, {1, 0, 0})};
+    m.joints[0] = torque_driven(m.joints[0], 5, "8 N m", load);
+    m.forces = {
+        bearing("held", "shaft", "mass", {e, 0, 0}, {0, 1, 0}, {k, 0, 0, k}, {damping, 0, 0, damping})};
+    validate(m);
+    return m;
+  };
+  for (const std::string load : {"0.02 m*force(held)", "-0.02 m*force_x(held)"}) {
+    CAPTURE(load);
+    const Solution s = Analysis(rotor(load, 0)).solve();
+    REQUIRE(s.status == Status::converged);
+    const double w = speed(s, "spin"), x = mass * w * w * e / (k - mass * w * w);
+    CHECK_THAT(value(s, "slide"), WithinRel(x, 1e-12));
+    CHECK_THAT(drag * w + arm * k * x, WithinRel(torque, 1e-12));
+  }
+  // In motion with what it damps, as by the slide's coordinate and rate.
+  const Mechanism by_force = rotor("-0.02 m*force_x(held)", 40),
+                  by_slide = rotor("0.02 m*(5000 N/m*coordinate(slide) + 40 N s/m*rate(slide))", 40);
+  const Solution a = Analysis(by_force).solve(), b = Analysis(by_slide).solve();
+  CHECK_THAT(speed(a, "spin"), WithinRel(speed(b, "spin"), 1e-12));
+  CHECK(difference(*a.eigenvalues, *b.eigenvalues) < 1e-9 * k);
+  CHECK(difference(*a.eigenvalues,
+                   *Analysis(rotor("0.02 m*5000 N/m*coordinate(slide)", 40)).solve().eigenvalues) > 1e-3);
+  SimulationOptions options;
+  options.duration = 2;
+  options.rate = 4;
+  const Run one = simulate(by_force, options), other = simulate(by_slide, options);
+  for (std::size_t c = 0; c < one.coordinates.size(); ++c)
+    for (std::size_t i = 0; i < one.time.size(); ++i)
+      CHECK(std::abs(one.coordinates[c].value[i] - other.coordinates[c].value[i]) < 1e-6);
+  // Just where it begins to bear something its size has a kink.
+  const Solution still = Analysis([&] {
+                           Mechanism m = rotor("0.02 m*force(held)", 0);
+                           m.bodies[1].position = Vec3::Zero();
+                           m.joints[1].at = m.forces[0].at.emplace(Vec3::Zero());
+                           return m;
+                         }())
+                             .solve();
+  CHECK_THAT(still.message, ContainsSubstring("kink") && ContainsSubstring("force(held)"));
+}
+
 TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]") {
   for (const char* law : {"gain*x(ball1)", "gain*distance(ball1, ground@aside)", "1 N s*vx(ball1)",
                           "gain*z(spindle@aside)", "1 N m*angle(ball1, collar, ground@aside)"}) {
@@ -435,6 +515,17 @@ TEST_CASE("what a law asks for must not turn with the drives", "[torque][places]
     CAPTURE(law);
     CHECK(refusal(governor(law)).empty());
   }
+  // What holds the shaft bears the same at all phases, what holds a ball beside it does not; on the shaft
+  // that turns it does.
+  const auto held = [](const std::string& of, const std::string& by) {
+    Mechanism m = governor("1 m*force_y(seat) - 0.1 m*force(seat)");
+    m.forces.push_back(bearing("seat", by, of, of == "collar" ? Vec3(0, 0.05, 0) : Vec3(0.16, 0.1, 0),
+                               {1, 0, 0}, {10, 0, 0, 10}, {}));
+    return m;
+  };
+  CHECK(refusal(held("collar", "spindle")).empty());
+  CHECK(refusal(held("ball1", "spindle")).empty());
+  CHECK_THAT(refusal(held("ball1", "ground")), ContainsSubstring("force_y(seat), which changes with them"));
   // A shaft that leans turns heights, too.
   Mechanism leaning = governor("gain*y(ball1)");
   for (Joint& joint : leaning.joints)
@@ -476,14 +567,6 @@ TEST_CASE("forces and accelerations are refused in laws", "[torque][places]") {
     CAPTURE(law);
     CHECK_THAT(refusal(governor(law)), ContainsSubstring("follow from the balance"));
   }
-  Mechanism held = governor("1 m*force_y(seat)");
-  held.forces.push_back({});
-  held.forces.back().name = "seat";
-  held.forces.back().type = ForceType::bearing;
-  held.forces.back().bodies = {"spindle", "collar"};
-  held.forces.back().axis = Vec3::UnitY();
-  held.forces.back().bearing_stiffness = {1, 0, 0, 1};
-  CHECK_THAT(refusal(held), ContainsSubstring("what bearings exert is not among them"));
   CHECK_THAT(refusal(governor("1 m*spring(arm1)")), ContainsSubstring("has no spring"));
   CHECK_THAT(refusal(governor("gain*y(collr)")), ContainsSubstring("no body is called \"collr\""));
   CHECK_THAT(refusal(governor("gain*vy(collar)")), ContainsSubstring("expected N m"));
