@@ -3,6 +3,7 @@
 
 #include "app/session/coordinate_words.hpp"
 #include "app/session/session.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/prescribed_speeds.hpp"
@@ -70,9 +71,8 @@ State present(const Session& session, const std::string& drive) {
   return {get_parameter(session.mechanism(), drive), session.answer.solution.coordinates};
 }
 
-CampbellRequest wanted_now(Session& session) {
-  const std::string drive = campbell_drive(session);
-  const std::array<double, 2> range = campbell_range(session);
+CampbellRequest wanted_now(Session& session, const std::string& drive) {
+  const std::array<double, 2> range = campbell_range(session, drive);
   return {drive, range[0], range[1], session.study.modes.campbell.orders,
           session.study.modes.campbell.varied.of(session.document.shared(), {{drive, 0}})};
 }
@@ -94,29 +94,26 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
   return speeds;
 }
 
-std::string campbell_drive(const Session& session) {
-  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
+std::string campbell_drive(const Session& session, const std::vector<std::string>& speeds) {
   if (std::ranges::find(speeds, session.study.modes.campbell.drive) != speeds.end())
     return session.study.modes.campbell.drive;
   return speeds.empty() ? "" : speeds.front();
 }
 
-std::array<double, 2> campbell_range(const Session& session) {
+std::array<double, 2> campbell_range(const Session& session, const std::string& drive) {
   const CampbellState& campbell = session.study.modes.campbell;
   if (campbell.from != campbell.to) return {campbell.from, campbell.to};
-  const std::string drive = campbell_drive(session);
-  for (const ParameterControl& control : session.parameters)
-    if (control.address == drive)
-      return {std::min(control.from, control.to), std::max(control.from, control.to)};
-  return {0, 10};
+  const std::optional<ParameterControl> control = control_of(session, drive);
+  if (!control) return {0, 10};
+  return {std::min(control->from, control->to), std::max(control->from, control->to)};
 }
 
 void follow_campbell(Session& session) {
   CampbellState& campbell = session.study.modes.campbell;
-  const std::string drive = campbell_drive(session);
+  const std::string drive = campbell_drive(session, drive_speeds(session.mechanism()));
   if (drive.empty() || !session.mistakes.empty() || !modes_refusal(session).empty()) return;
   campbell.asked_ticket = session.answer.ticket;
-  campbell.diagram.ask(session.options, wanted_now(session),
+  campbell.diagram.ask(session.options, wanted_now(session, drive),
                        [mechanism = session.document.shared(), state = present(session, drive)](
                            const CampbellRequest& request, const TaskContext<CampbellDiagram>& context) {
                          return follow(*mechanism, request, state, context);
@@ -144,7 +141,7 @@ void update_campbell(Session& session) {
   if (!session.answer.ticket) return;
   if (!modes_refusal(session).empty()) return diagram.stop();
   if (!diagram.asked) return follow_campbell(session);
-  const CampbellRequest wanted = wanted_now(session);
+  const CampbellRequest wanted = wanted_now(session, campbell_drive(session, speeds));
   campbell.current = diagram.is_of(wanted);
   const bool same_axis = diagram.asked->drive == wanted.drive && diagram.asked->from == wanted.from &&
                          diagram.asked->to == wanted.to;

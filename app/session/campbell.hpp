@@ -26,7 +26,7 @@ struct CampbellRequest {
 
 struct CampbellState {
   Study<CampbellRequest, CampbellDiagram> diagram;
-  // As chosen. An empty drive is the first; both ends 0: as the speed's slider.
+  // As chosen. An empty drive is the first; both ends 0: as its slider.
   std::string drive;
   double from = 0, to = 0;
   std::vector<double> orders{1, 2}; // oscillations a turn that something excites
@@ -42,9 +42,10 @@ struct CampbellState {
 // Addresses of the numbers that set the speed of a drive, alone or in an expression, each once; of an
 // expression's speeds first.
 std::vector<std::string> drive_speeds(const Mechanism& mechanism);
-// Drive and range as they were chosen, or as they are at first; no drive: "".
-std::string campbell_drive(const Session& session);
-std::array<double, 2> campbell_range(const Session& session);
+// Which of these is chosen, or the first; "" where there are none.
+std::string campbell_drive(const Session& session, const std::vector<std::string>& drive_speeds);
+// Of that number: as it was chosen, or as its slider has it or would.
+std::array<double, 2> campbell_range(const Session& session, const std::string& drive);
 
 void follow_campbell(Session& session);
 // Takes what was followed; follows anew after changes of anything but the speed where that takes no time to

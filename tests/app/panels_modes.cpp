@@ -4,6 +4,7 @@
 #include "app/session/campbell.hpp"
 #include "app/session/coordinate_words.hpp"
 #include "app/session/modes.hpp"
+#include "app/session/variable_numbers.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/studies/modes/campbell_plot.hpp"
@@ -11,6 +12,7 @@
 #include "app/ui/view_frame.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/formulas.hpp"
+#include "engine/mechanism/text.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -290,7 +292,7 @@ TEST_CASE("over half a drive's speed lines of excitation and critical speeds are
   robot.frames(3);
   robot.key('O');
   robot.frames(5);
-  CHECK(campbell_drive(session) == "parameters.n");
+  CHECK(campbell_drive(session, drive_speeds(session.mechanism())) == "parameters.n");
   const CampbellView& drawn = robot.app.panels->studies.shown().campbell;
   const auto line = std::ranges::find(drawn.plot.curves, "1× speed", &PlotCurve::name);
   REQUIRE(line != drawn.plot.curves.end());
@@ -356,6 +358,54 @@ TEST_CASE("in a low window the diagram has the width, and one chooses between mo
   CHECK(widgets.contains("modes/row/1"));
 }
 
+TEST_CASE("critical speeds have a place in a panel of any height, whatever is said above the diagram") {
+  const int width = GENERATE(700, 820, 1280);
+  ModesRobot robot("rotor_oil_whip", {width, 900});
+  App& app = robot.app;
+  REQUIRE(app.panels->studies.shown().campbell.critical);
+  for (const bool remark : {false, true}) {
+    app.session.study.modes.campbell.on_branch = !remark;
+    for (float share = 0.3f; share < 0.62f; share += 0.02f) {
+      app.sizes.study_chosen = true;
+      app.sizes.study_share = share;
+      robot.frames(3);
+      INFO("share " << share << (remark ? ", with a remark" : ""));
+      CHECK(app.ui.widgets.contains("campbell/critical/1") + app.ui.widgets.contains("modes/show_critical") >=
+            1);
+    }
+  }
+  // In a table that is narrower than its columns they are all there, and a row goes to its speed.
+  app.sizes.study_share = 0.3f;
+  robot.frames(3);
+  if (app.ui.widgets.contains("modes/show_critical")) robot.click("modes/show_critical");
+  robot.frames(2);
+  robot.click("campbell/critical/1");
+  robot.frames(2);
+  CHECK(get_parameter(app.session.mechanism(), "parameters.n") ==
+        Approx((*app.panels->studies.shown().campbell.critical)[0].at));
+}
+
+TEST_CASE("over a number that is no speed the Campbell diagram has the range of its slider") {
+  Mechanism m = shipped("rotor_oil_whip");
+  Body& heavy = *std::ranges::find_if(m.bodies, [](const Body& b) { return b.mass > 0; });
+  const double speed = get_parameter(m, "joints.spin.drive.speed"), mass = heavy.mass;
+  std::ranges::find(m.joints, "spin", &Joint::name)->formulas = {
+      {"drive.speed", short_text(speed / mass, 6) + " * " + heavy.name + ".mass"}};
+  evaluate_formulas(m);
+  Robot robot(wide);
+  Session& session = robot.app.session;
+  open_document(session, Document(m));
+  robot.frames(3);
+  const std::string address = "bodies." + heavy.name + ".mass";
+  REQUIRE(campbell_drive(session, drive_speeds(session.mechanism())) == address);
+  const PlotRange range = campbell_range(session, address);
+  const auto control = control_of(session, address);
+  REQUIRE(control);
+  CHECK(range == PlotRange{control->from, control->to});
+  CHECK(range[0] <= mass);
+  CHECK(range[1] >= mass);
+}
+
 TEST_CASE("only of the branch that is shown is it said where it has no modes") {
   // The arms of the other branch hang straight down, and are without modes at every speed.
   ModesRobot robot("governor");
@@ -382,7 +432,7 @@ TEST_CASE("a click in the Campbell diagram sets the speed") {
   ModesRobot robot("governor");
   App& app = robot.app;
   const std::string speed = "joints.spin.drive.speed";
-  const PlotRange range = campbell_range(app.session);
+  const PlotRange range = campbell_range(app.session, speed);
   const auto followed = app.session.study.modes.campbell.diagram.found;
   const WidgetRect area = robot.widget("plot/campbell/area");
   robot.click(

@@ -103,6 +103,7 @@ struct CampbellView {
     DisplayUnits units;
     bool operator==(const Of&) const = default;
   } of;
+  float head = 0; // pixels that choices and remarks took above the diagram when it was last drawn; 0: never
 };
 
 // A plot over time.

@@ -14,7 +14,8 @@ namespace flyball {
 
 namespace {
 
-constexpr float padding = 4; // points, at either side of a cell
+constexpr float padding = 4;     // points, at either side of a cell
+constexpr float least_mode = 36; // points: "mode 3" where there is too little room for more
 
 struct CriticalColumn {
   const char* title;
@@ -89,16 +90,22 @@ float critical_table_width(const Ui& ui) {
 void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& rows, const ShownUnit& unit,
                     const std::string& address, float height) {
   const UiColors& colors = colors_of(ui);
-  constexpr ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
-                                    ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit;
+  constexpr std::size_t mode = 1; // the column that gives way
+  const float width = std::min(critical_table_width(ui), ImGui::GetContentRegionAvail().x);
+  const float missing = critical_table_width(ui) - width;
+  const float mode_width = std::max(least_mode * ui.scale, columns[mode].width * ui.scale - missing);
+  const bool scrolls = columns[mode].width * ui.scale - mode_width < missing;
+  const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
+                                ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit |
+                                (scrolls ? ImGuiTableFlags_ScrollX : 0);
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {padding * ui.scale, 2 * ui.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors.panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
-  if (ImGui::BeginTable("critical speeds", static_cast<int>(columns.size()), flags,
-                        {critical_table_width(ui), height})) {
+  if (ImGui::BeginTable("critical speeds", static_cast<int>(columns.size()), flags, {width, height})) {
     ImGui::TableSetupScrollFreeze(0, 1);
     for (const CriticalColumn& column : columns)
-      ImGui::TableSetupColumn(column.title, ImGuiTableColumnFlags_WidthFixed, column.width * ui.scale);
+      ImGui::TableSetupColumn(column.title, ImGuiTableColumnFlags_WidthFixed,
+                              &column == &columns[mode] ? mode_width : column.width * ui.scale);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (const CriticalColumn& column : columns) {
       if (!ImGui::TableNextColumn()) continue;

@@ -270,8 +270,7 @@ struct BesideDiagram {
 // Whether there is room for the critical speeds or for the list of modes alone: then one chooses.
 bool one_table(const Session& session, const Ui& ui, const CampbellView& drawn, ImVec2 beside_list) {
   if (!session.study.modes.campbell.diagram.found || !drawn.critical || drawn.critical->empty()) return false;
-  if (ImGui::GetContentRegionAvail().x < critical_table_width(ui)) return false;
-  beside_list.y -= ImGui::GetFrameHeightWithSpacing(); // of the diagram's choices
+  beside_list.y -= drawn.head > 0 ? drawn.head : ImGui::GetFrameHeightWithSpacing();
   const BesideDiagram place(ui, drawn.critical->size(), beside_list);
   return !place.beside && place.below == 0;
 }
@@ -341,10 +340,10 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
 }
 
 // Drive, range and unit, in one line.
-void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::string& drive) {
+void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::vector<std::string>& speeds,
+                      const std::string& drive) {
   CampbellState& campbell = session.study.modes.campbell;
   const float s = ui.scale;
-  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
   constexpr float others = 360; // points, of the range and the units
   const float room = ImGui::GetContentRegionAvail().x;
   const bool narrow = room < (others + 70) * s; // then "from" goes without saying
@@ -366,7 +365,7 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
   }
   ImGui::PopStyleColor();
   help_on_hover("The number along the axis: the speed of a drive, or a number that its expression uses.");
-  const PlotRange range = campbell_range(session);
+  const PlotRange range = campbell_range(session, drive);
   const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
     ImGui::SameLine(0, 10 * s);
@@ -451,7 +450,8 @@ CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn
 void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   CampbellState& campbell = session.study.modes.campbell;
   const UiColors& colors = colors_of(ui);
-  const std::string drive = campbell_drive(session);
+  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
+  const std::string drive = campbell_drive(session, speeds);
   if (drive.empty())
     return paragraph("A Campbell diagram is over the given speed of a drive, or a number that sets it, and "
                      "there is none here.",
@@ -459,7 +459,7 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   if (!modes_refusal(session).empty()) return; // the list says it
   // Then axes without lines would say nothing; the list says why.
   const bool turns = turns_with_drives(session);
-  if (!turns) campbell_choices(session, ui, drawn, drive);
+  if (!turns) campbell_choices(session, ui, drawn, speeds, drive);
   const auto& diagram = campbell.diagram;
   if (const std::string problem = campbell_problem(session); !problem.empty()) {
     paragraph(problem, colors.bad);
@@ -473,6 +473,7 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
+  drawn.head = ImGui::GetCursorPosY();
   const CampbellPlaces places = show_critical(session, ui, drawn, diagram.found->of.drive, told);
   const PlotEvents events = plot_view(session, ui, "campbell", drawn.view, drawn.plot,
                                       {std::max(places.plot.x, 40.f), std::max(places.plot.y, 40.f)});
