@@ -4,15 +4,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string_view>
 
 namespace flyball {
 
 namespace {
 
+constexpr const char* finding_solution = "direct solution"; // the phase before anything is measured
+
 Comparison measure(const CompareRequest& request, const TaskContext<Comparison>& context) {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  context.progress({"direct solution"});
+  context.progress({finding_solution});
   CompareOptions options;
   options.repeats = request.repeats;
   options.time_limit = request.time_limit;
@@ -36,7 +39,15 @@ void begin_comparison(Session& session) {
 }
 
 void update_comparison(Session& session) {
-  session.study.compare.measured.take();
+  auto& measured = session.study.compare.measured;
+  // Stopped before its solution was found it measured nothing.
+  if (measured.take() && measured.found && measured.found->stopped &&
+      measured.found->result.status != Status::converged)
+    measured.found.reset();
+  // Until then, which no limit of time ends, it is of no use for a mechanism that has changed.
+  if (measured.running() && measured.progress().phase == std::string_view(finding_solution) &&
+      !(measured.asked->mechanism == SharedMechanism{session.document.shared()}))
+    measured.stop();
 }
 
 bool comparing(const Session& session) {

@@ -26,7 +26,7 @@ struct CompareState {
 };
 
 void begin_comparison(Session& session);
-// Takes what was measured.
+// Takes what was measured. Stops where the mechanism changes before its solution was found.
 void update_comparison(Session& session);
 bool comparing(const Session& session);
 // Whether the result is of the mechanism as it is now.

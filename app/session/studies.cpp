@@ -15,7 +15,10 @@ void open_study(Session& session, StudyKind study) {
   // The motion goes with its panel.
   if (session.study.open == StudyKind::motion && study != StudyKind::motion) show_motion(session, false);
   // A search goes on behind another study's tab, and what it found is there when one comes back.
-  if (study == StudyKind::none) session.study.states = {};
+  if (study == StudyKind::none) {
+    session.study.states = {};
+    session.study.compare.measured.stop(); // what was measured so far is kept
+  }
   if (study != StudyKind::modes) close_modes(session);
   if (study != StudyKind::map) close_map(session);
   if (study != StudyKind::response) close_response(session);

@@ -17,7 +17,9 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -508,6 +510,39 @@ TEST_CASE("the comparison tells how far it is, and is given up by a button") {
   CHECK_FALSE(measured.found->result.complete);
   CHECK(measured.found->result.message == "Cancelled.");
   CHECK(app.ui.widgets.contains("plot/compare/area"));
+}
+
+TEST_CASE(
+    "while a comparison still looks for its solution a change of the mechanism or a closed panel ends it") {
+  Robot robot(wide);
+  Session& session = robot.app.session;
+  open_study(session, StudyKind::compare);
+  robot.frames(2);
+  session.options.mode = LiveSolver::Mode::background;
+  auto& measured = session.study.compare.measured;
+  for (const bool closed : {false, true}) {
+    // One whose solution takes for ever.
+    measured.ask(session.options, {{session.document.shared()}, 1, 60},
+                 [](const CompareRequest&, const TaskContext<Comparison>& context) {
+                   context.progress({"direct solution"});
+                   while (!context.cancel)
+                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                   Comparison nothing;
+                   nothing.status = Status::not_converged;
+                   return nothing;
+                 });
+    REQUIRE(steps_until([&] { robot.frames(1); },
+                        [&] { return std::string(measured.progress().phase) == "direct solution"; }));
+    robot.frames(3);
+    CHECK(measured.running());
+    if (closed)
+      robot.click("study/close");
+    else
+      change_parameter(session, "joints.spin.drive.speed", 12);
+    CHECK(steps_until([&] { robot.frames(1); }, [&] { return !measured.running(); }));
+    robot.frames(2);
+    CHECK_FALSE(measured.found);
+  }
 }
 
 TEST_CASE("the comparison shows the errors of a measure") {

@@ -122,7 +122,7 @@ void time_field(Session& session, Ui& ui) {
   const char* help =
       "How long it measures at most. Then it keeps what it has; a single run is given up after "
       "a tenth of it. It does not limit the solution before, which may take long for large mechanisms; "
-      "Cancel ends that.";
+      "Cancel, a change of the mechanism and closing the panel end that.";
   const float width = row_label(ui, "Time limit", help);
   quantity_field(session, ui,
                  {.name = "compare/time_limit",
