@@ -170,6 +170,32 @@ TEST_CASE("the legend folds") {
   CHECK(robot.app.ui.widgets.count("legend/0") == 1);
 }
 
+TEST_CASE("the legend leaves the drawn pose in sight, and stays where it is while something moves") {
+  Robot robot({1280, 800});
+  App& app = robot.app;
+  robot.key('C');
+  robot.frames(3);
+  const auto middle = [&](const char* widget) {
+    const WidgetRect at = app.ui.widgets.at(widget);
+    return (at.from.y + at.to.y) / 2;
+  };
+  CHECK(middle("legend") < middle("view"));
+  // One ball of the drawn pose goes under it.
+  const WidgetRect legend = robot.widget("legend frame");
+  const auto& m = app.session.mechanism();
+  const Vec3 ball = m.bodies[static_cast<std::size_t>(body_index(m, "ball2"))].position;
+  const ImVec2 from = robot.pixel(ball);
+  robot.drag(from, {(legend.from.x + legend.to.x) / 2 - 20, (legend.from.y + legend.to.y) / 2}, 1);
+  robot.frames(3);
+  CHECK(middle("legend") > middle("view"));
+  const float low = middle("legend");
+  robot.key(' ');
+  for (int i = 0; i < 20; ++i) {
+    robot.frames(1, 0.03);
+    CHECK(middle("legend") == low);
+  }
+}
+
 TEST_CASE("in a narrow view the legend is folded where it would lie over the tools") {
   Robot robot({640, 480});
   App& app = robot.app;

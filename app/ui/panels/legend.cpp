@@ -1,5 +1,6 @@
 #include "app/ui/panels/legend.hpp"
 
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/choices.hpp"
 #include "app/ui/panels/load_legend.hpp"
 #include "app/ui/widgets/widgets.hpp"
@@ -94,11 +95,12 @@ namespace {
 
 constexpr float largest_share = 0.2f; // of the view, that an open legend takes unasked
 
-// How much of the loads' arrows and of the drawn pose's outline lies in a part of the view: fifths of an
-// arrow, and solids.
+// How much of the loads' arrows, of the drawn pose's outline and, where there are no arrows over them, of the
+// bodies lies in a part of the view: fifths of an arrow, and solids.
 int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
   const ShownScene& shown = state.scene;
-  if (!shown.scene || !shown.source.loads) return 0;
+  constexpr std::size_t many = 3000; // solids, to be looked at in every frame
+  if (!shown.scene) return 0;
   const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
   const auto is_within = [&](const Vec3& point) {
     const auto at = state.camera.project(point, size);
@@ -110,7 +112,7 @@ int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImV
   for (const LoadArrow& arrow : shown.scene->arrows.arrows)
     for (const double part : {0.2, 0.4, 0.6, 0.8, 1.})
       within += is_within(arrow.from + part * (arrow.to - arrow.from)) ? 1 : 0;
-  for (const Instance& solid : shown.scene->drawn) {
+  const auto add_solid = [&](const Instance& solid) {
     const Bounds bounds = instance_bounds(solid);
     bool touched = is_within(solid.position);
     for (int corner = 0; corner < 8 && !touched; ++corner)
@@ -118,15 +120,22 @@ int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImV
                            (corner & 2 ? bounds.upper : bounds.lower).y(),
                            (corner & 4 ? bounds.upper : bounds.lower).z()});
     within += touched ? 1 : 0;
-  }
+  };
+  if (shown.scene->drawn.size() + shown.scene->solid.instances.size() > many) return within;
+  std::ranges::for_each(shown.scene->drawn, add_solid);
+  if (!shown.source.loads)
+    for (const Instance& solid : shown.scene->solid.instances)
+      if (solid.part.kind == PartKind::body) add_solid(solid);
   return within;
 }
 
 } // namespace
 
-// The corner of the view in which a legend of this size hides the fewest arrows, the upper one where that is
-// all the same. It does not jump while the view is turned.
-float Legend::top(const Ui& ui, const ViewState& state, const PanelRect& view, ImVec2 size) {
+// The corner of the view in which a legend of this size hides the least, the upper one where that is all the
+// same. It does not jump while the view is turned or something moves in it.
+float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size) {
+  const Ui& ui = context.ui;
+  const ViewState& state = context.view;
   const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
   const auto explored = ui.widgets.find("explored"); // a chip at the bottom, as the status is
   const float bottom =
@@ -135,7 +144,8 @@ float Legend::top(const Ui& ui, const ViewState& state, const PanelRect& view, I
   const auto hidden = [&](float top) {
     return shown_within(state, view, {left, top}, {left + size.x, top + size.y});
   };
-  if (!ImGui::IsAnyMouseDown() && state.legend) low_ = lower > upper && hidden(lower) < hidden(upper);
+  if (!ImGui::IsAnyMouseDown() && !in_motion(context.session, state) && state.legend)
+    low_ = lower > upper && hidden(lower) < hidden(upper);
   return low_ ? lower : upper;
 }
 
@@ -170,9 +180,8 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
   const bool open = !folds || (crowded ? anyway_ : context.view.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
-  ImGui::SetNextWindowPos(
-      {std::round(view.x + view.width - 10 * s), std::round(top(context.ui, context.view, view, size))},
-      ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(top(context, view, size))},
+                          ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);

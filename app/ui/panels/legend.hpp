@@ -27,16 +27,16 @@ struct LegendRow {
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(const ViewContext& context);
 
-// A small window in a right corner of the view, the upper one unless it hides loads' arrows or the drawn
-// pose there, which a click on its title folds.
+// A small window in a right corner of the view, the upper one unless it hides more there of bodies, of the
+// drawn pose or of loads' arrows. A click on its title folds it.
 class Legend {
  public:
   void draw(const ViewContext& context, const PanelRect& view, bool folds = true);
 
  private:
-  float top(const Ui& ui, const ViewState& state, const PanelRect& view, ImVec2 size);
+  float top(const ViewContext& context, const PanelRect& view, ImVec2 size);
 
-  bool low_ = false;    // in the lower corner, where it hides fewer arrows
+  bool low_ = false;    // in the lower corner, where it hides less
   bool anyway_ = false; // open also where it covers much of the view
 };
 
