@@ -185,7 +185,8 @@ void motion_rows(Session& session, Ui& ui, const PeriodicState& state, const std
           shown_unit("W", session.units));
   }
   if (session.options.numbers.run_times)
-    row(ui, "Run time", duration_text(state.run_time_s, session.options.numbers), "");
+    row(ui, "Time to find it", duration_text(state.run_time_s, session.options.numbers), "",
+        "Of the search for this motion.");
   if (text_button(ui, prefix + "/motion", "Show in the motion's plots")) show_periodic_motion(session, state);
   help_on_hover("The motion begins in this one, at the drawn phase, and lasts for two periods.");
   if (!state.springs.empty() && section(ui, prefix + "/springs", "Springs over a period", open.springs))

@@ -24,11 +24,13 @@ void solver_results(const Session& session, Ui& ui) {
   const Solution& solution = session.answer.solution;
   const NumberStyle& numbers = session.options.numbers;
   if (solution.history.empty() && solution.iterations == 0) return;
-  heading(ui, "How it was found");
+  // Beside a periodic motion these would be read as its numbers.
+  heading(ui, solution.status == Status::converged ? "How it was found" : "How a steady state was sought");
   const std::string time = duration_text(solution.run_time_s, numbers);
   const auto space = time.find(' ');
   row(ui, "Time", time.substr(0, space), time.c_str() + space + 1,
-      "From the start to the accepted answer, its stability included.");
+      solution.status == Status::converged ? "From the start to the accepted answer, its stability included."
+                                           : "From the start to the last attempt.");
   note_widget(ui.widgets, "results/time");
   row(ui, "Iterations", std::to_string(solution.iterations), "");
   // Where none was found one that is at rounding would read as if there were one.
