@@ -293,9 +293,17 @@ class Diagram {
   }
 
   // Newton-Raphson may have stopped at another state than the answer that solving gives, which has its
-  // branch, too.
+  // branch, too. Where torques drive that may be the one which the motion from the start comes to.
   void from_answer(const Eigen::VectorXd& start) {
-    const auto z = steady_state(follower_.problem_at(from_), start, false);
+    const Problem problem = follower_.problem_at(from_);
+    std::optional<Unknowns> z;
+    if (problem.system.torques.empty()) {
+      z = steady_state(problem, start, false);
+    } else {
+      SteadyState answer;
+      answer.find(problem, start, start, {.seconds = SolveOptions{}.search});
+      if (answer.holds) z = std::move(answer.found.z);
+    }
     if (!z) return;
     const auto first = follower_.begin(*z, from_, true);
     if (!first || known(*first)) return;

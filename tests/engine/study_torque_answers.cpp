@@ -419,6 +419,34 @@ Mechanism coupled_drives(std::uint32_t seed) {
 
 } // namespace
 
+TEST_CASE("a branch begins at the answer that solving gives, not where Newton-Raphson goes past it",
+          "[torque][branches]") {
+  // A ball on an arm of 0.3 m, hinged 0.05 m beside the shaft, whose torque falls as the arm rises:
+  // w^2 (e + L sin q) cos q = g sin q and 5 - gain q = 0.3 w + 0.01 w^2. The law counts whole turns of the
+  // arm, and Newton-Raphson goes several of them back.
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("t", 2, {0, 0, 0}, {0.4, 0.4, 0.4}), body("ball", 1.2, {0.05, -0.3, 0})};
+  m.joints = {torque_driven(revolute("m", "ground", "t", {0, 0, 0}, {0, 1, 0}), 7,
+                            "5 N m - 3 N m * coordinate(p)",
+                            "0.3 N m s * rate(m) + 0.01 N m s^2 * rate(m)^2"),
+              dampened(revolute("p", "t", "ball", {0.05, 0, 0}, {0, 0, 1}), 0.08)};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  const double w = speed(s, "m"), q = value(s, "p");
+  CHECK_THAT(w * w * (0.05 + 0.3 * std::sin(q)) * std::cos(q), WithinRel(9.80665 * std::sin(q), 1e-9));
+  CHECK_THAT(5 - 3 * q, WithinRel(0.3 * w + 0.01 * w * w, 1e-9));
+  const ResponseDiagram d = follow_branches(m, "joints.p.damping", 0.08, 0.04);
+  const auto begins_there = [&](const ResponseBranch& branch) {
+    return branch.connected &&
+           std::ranges::any_of(branch.points.front().coordinates, [&](const CoordinateSolution& c) {
+             return c.joint == "p" && std::abs(c.value - q) < 1e-9;
+           });
+  };
+  CHECK(std::ranges::any_of(d.branches, begins_there));
+}
+
 TEST_CASE("random mechanisms with three coupled drives end where solving says", "[torque][random]") {
   int followed = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
