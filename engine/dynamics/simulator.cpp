@@ -520,13 +520,23 @@ struct Simulator::State {
       const StepOutcome outcome = stepper->step(end);
       if (outcome.kind == StepOutcome::failed) {
         torn = interrupt();
-        if (!torn && free && take_back(end)) continue; // friction may turn round just there
+        // Friction may turn round just there, or it was to end on a singular position.
+        if (!torn && (free || is_singular_at(outcome.time)) && take_back(end)) continue;
         return torn ? false : diverge(outcome.time, reason_of(outcome));
       }
+      if (equations->independence() < 1e-9 * best_independence && take_back(outcome.time)) continue;
       stepped_to = outcome.time;
       pending = outcome;
     }
     return true;
+  }
+
+  // Of where a step failed: at once, or where it was well last.
+  bool is_singular_at(double t) {
+    stepper->state_at(t, y);
+    ode->unpack(y.data(), q, s);
+    return !equations->project(t, q, s) || !equations->evaluate(t, q, s) ||
+           equations->independence() < 0.01 * best_independence;
   }
 
   // Why a step failed, from where it was well last.
@@ -547,7 +557,12 @@ struct Simulator::State {
 
   bool record(double t) {
     double shift = 0;
-    if (!settle(t, &shift)) return diverge(t, "the equations of motion have no solution there");
+    if (!settle(t, &shift)) {
+      // Right on a singular position the equations leave forces open: the sample is that of a little later.
+      if (!bridge || t >= started_at) return diverge(t, "the equations of motion have no solution there");
+      t = std::min(t + 1e-3 * (started_at - bridge->time), started_at);
+      if (!settle(t, &shift)) return diverge(t, "the equations of motion have no solution there");
+    }
     recorder->record(t, ode->energies(y), shift);
     if (options.progress) options.progress(t);
     return true;

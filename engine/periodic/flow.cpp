@@ -2,6 +2,7 @@
 
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 
@@ -88,6 +89,10 @@ std::optional<Passage> Flow::pass(const FlowState& from, double duration, double
     if (!well) {
       trouble_ = run.message;
       if (run.statistics.steps >= options.max_steps) evaluations_ = std::max(evaluations_, most_);
+      return {};
+    }
+    if (run.time.back() > begin + duration * (1 + 1e-12)) {
+      trouble_ = "At t = " + rounded_text(begin + duration, 6) + " s the loops are in a singular position.";
       return {};
     }
     method_ = run.method;

@@ -27,17 +27,26 @@ int first_samples(const Orbit& orbit, double rate) {
   return n;
 }
 
-// A period of the orbit, segment by segment, for an unstable one would be left.
-Run recorded(Flow& flow, const Orbit& orbit, int wanted, double tolerance) {
+// A period of the orbit, segment by segment, for an unstable one would be left. It begins `lead` (s) after
+// the nodes.
+Run recorded(Flow& flow, const Orbit& orbit, int wanted, double tolerance, double lead) {
   const auto m = static_cast<int>(orbit.nodes.size());
   const int each = 2 * ((wanted + 2 * m - 1) / (2 * m)); // even, so that every second one counts as well
   Run whole;
   for (const StateChart& node : orbit.nodes) {
-    const Run part = flow.record(node.base(), orbit.period / m, each, tolerance);
+    const auto led = lead > 0 ? flow.pass(node.base(), lead, tolerance) : std::nullopt;
+    const Run part = flow.record(led ? led->to : node.base(), orbit.period / m, each, tolerance);
     if (part.time.empty()) return {};
     whole = whole.time.empty() ? part : joined(whole, whole.time.size() - 1, part);
   }
   return whole;
+}
+
+// What goes on is told less its advance since the first node: so of a run that begins `lead` after it.
+void count_from_nodes(double lead, double period, PeriodicState& told) {
+  for (PeriodicCoordinate& c : told.coordinates)
+    for (double* value : {&c.range.mean, &c.range.least, &c.range.most})
+      *value -= c.advance * lead / period;
 }
 
 // The largest error of the rates' ranges that the samples leave, as a part of the fastest.
@@ -67,14 +76,21 @@ bool measure_orbit(Flow& flow, const Orbit& orbit, const ShootingOptions& how, d
   PeriodicState told;
   double unsure = std::numeric_limits<double>::infinity();
   int count = first_samples(orbit, rate);
+  double lead = 0;
   for (;; count *= 2) { // what moves faster than the drives takes more
-    run = std::make_shared<Run>(recorded(flow, orbit, count, how.tolerance));
+    run = std::make_shared<Run>(recorded(flow, orbit, count, how.tolerance, lead));
+    if (run->statistics.singular_positions > 0 && lead == 0) {
+      // Samples are to fall beside singular positions, which are passed at even parts of a turn as a rule.
+      lead = 0.382 * orbit.period / count;
+      run = std::make_shared<Run>(recorded(flow, orbit, count, how.tolerance, lead));
+    }
     if (run->time.empty()) return false;
     told = {};
     fill_ranges(*run, told);
     const double before = std::exchange(unsure, uncertainty(told, length));
     if (unsure <= fine_enough || unsure > before / gains || 2 * count > most_samples) break;
   }
+  count_from_nodes(lead, orbit.period, told);
   out.coordinates = std::move(told.coordinates);
   out.drive_torques = std::move(told.drive_torques);
   out.reactions = std::move(told.reactions);
@@ -87,9 +103,10 @@ bool measure_orbit(Flow& flow, const Orbit& orbit, const ShootingOptions& how, d
   PeriodicState beside;
   if (other) {
     out.period_error = std::abs(other->period - orbit.period);
-    const Run also = recorded(flow, *other, count, coarse_steps * how.tolerance);
+    const Run also = recorded(flow, *other, count, coarse_steps * how.tolerance, lead);
     if (!also.time.empty()) {
       fill_ranges(also, beside);
+      count_from_nodes(lead, other->period, beside);
       fill_unique_sizes(also, out, beside);
     }
   }

@@ -200,6 +200,51 @@ TEST_CASE("A slider-crank's pins and slide bear what accelerates its piston") {
   CHECK(turning.error < 1e-5 * turning.most);
 }
 
+TEST_CASE("A crank as long as its rod moves its piston through change points that samples would fall on") {
+  // Cardan's straight line: rod and crank mirror each other, and the piston goes as 2 r cos(wt). Where both
+  // stand upright the loop is singular, a quarter of a turn from the drawn pose.
+  const double r = 0.1, speed = 1, mass = 1;
+  Mechanism m;
+  m.bodies = {body("crank", 1, {0, 0, 0}, {0.01, 0.01, 0.01}), body("rod", 0),
+              body("piston", mass, {2 * r, 0, 0})};
+  m.joints = {driven(revolute("crankshaft", "ground", "crank", {0, 0, 0}), speed),
+              revolute("crankpin", "crank", "rod", {r, 0, 0}),
+              revolute("wristpin", "rod", "piston", {2 * r, 0, 0}),
+              prismatic("slide", "ground", "piston", {2 * r, 0, 0}, {1, 0, 0})};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.motion->statistics.singular_positions > 0);
+  const auto coordinate = [&](const std::string& joint) {
+    const auto found = std::ranges::find(s.coordinates, joint, &PeriodicCoordinate::joint);
+    REQUIRE(found != s.coordinates.end());
+    return *found;
+  };
+  const PeriodicCoordinate slide = coordinate("slide"), pin = coordinate("crankpin");
+  CHECK(slide.range.error < 1e-9);
+  CHECK_THAT(slide.range.mean, WithinAbs(-2 * r, 1e-10));
+  CHECK_THAT(slide.range.least, WithinAbs(-4 * r, 1e-10));
+  CHECK_THAT(slide.range.most, WithinAbs(0, 1e-10));
+  CHECK_THAT(pin.advance, WithinAbs(-4 * pi, 1e-9));
+  CHECK_THAT(pin.range.least, WithinAbs(0, 1e-9)); // counted from the drawn phase
+  CHECK_THAT(pin.range.most, WithinAbs(0, 1e-9));
+  // What the piston takes goes through the massless rod, at the angle -wt.
+  const auto thrust = [&](double a) { return -mass * 2 * r * speed * speed * std::cos(a); };
+  check_range(load(s.reactions, "slide").force.component[1],
+              exact([&](double a) { return thrust(a) * std::tan(a); }), 2 * r, 1e-6, 1e-5);
+  // Also where a sample falls right on it a motion goes on.
+  SimulationOptions options;
+  options.duration = 2 * pi / speed;
+  for (const int samples : {64, 100, 256}) {
+    CAPTURE(samples);
+    options.rate = samples / options.duration;
+    const Run run = simulate(m, options);
+    CAPTURE(run.message);
+    CHECK(run.status == RunStatus::completed);
+    CHECK(run.time.size() == static_cast<std::size_t>(samples) + 1);
+  }
+}
+
 TEST_CASE("Springs and dampers over a period are those of a forced oscillator") {
   // On a slide, by its own spring and damper and by those between two points: half of each.
   const double mass = 2, e = 0.01, speed = 9, stiffness = 150, damping = 8;
