@@ -5,6 +5,7 @@
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/search/most_turned.hpp"
+#include "engine/solve/singular_loops.hpp"
 #include "engine/solve/unbounded.hpp"
 #include "engine/system/implied_rates.hpp"
 
@@ -246,7 +247,19 @@ std::string message(const AllSolutions& all) {
 
 namespace {
 
-std::string open_loop_message(const ReportInput& in) {
+// Whether loops that stay closed at one phase only are drawn where they leave rates open, which are found by
+// them elsewhere.
+bool drawn_at_change_point(const ReportInput& in, Workspace& w) {
+  evaluate(in.problem, in.found.z, 0, w);
+  factor_constraints(in.problem, w);
+  return at_singular_loops(in.problem, in.found.z, w);
+}
+
+std::string open_loop_message(const ReportInput& in, Workspace& w) {
+  if (drawn_at_change_point(in, w))
+    return "No steady state was found: the loop of \"" + cut_name(in, in.existence.worst_cut) +
+           "\" is drawn at a change point, where its linkage could part into branches and does not tell at "
+           "which rates it turns. Drawn with the drives turned on a little it may have a steady state.";
   const bool turns = loops_turn_with_drives(in.problem.system, in.problem.parameters);
   std::string text = turns ? "No steady state was found" : "No steady state";
   text += ": as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
@@ -284,7 +297,7 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
            "\" stays open however the other coordinates are chosen.";
   if (in.found.status == Status::not_converged) return message(in.found, in.problem);
-  if (in.existence.loops_open) return open_loop_message(in);
+  if (in.existence.loops_open) return open_loop_message(in, w);
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   if (in.existence.rubs >= 0) return rubbing_message(in);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +

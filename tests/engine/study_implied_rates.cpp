@@ -565,7 +565,22 @@ TEST_CASE("a parallelogram's crank turns the rocker", "[implied]") {
   SECTION("no parallelogram, no steady state") {
     m.bodies[2].position.x() = 1.05;
     m.joints[2].at.x() = 1.1;
-    CHECK(Analysis(m).solve().status == Status::no_steady_state);
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message, !ContainsSubstring("change point"));
+  }
+  SECTION("drawn flat it is told to stand at a change point") {
+    // There the coupler's rate does not follow from the loop: it could as well go over to an
+    // antiparallelogram.
+    m.bodies[0].position = {0.15, 0, 0};
+    m.bodies[1].position = {0.8, 0, 0};
+    m.bodies[2].position = {1.15, 0, 0};
+    m.joints[1].at = {0.3, 0, 0};
+    m.joints[3].at = {1.3, 0, 0};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::no_steady_state);
+    CHECK_THAT(s.message, Catch::Matchers::StartsWith("No steady state was found: the loop of"));
+    CHECK_THAT(s.message, ContainsSubstring("is drawn at a change point"));
   }
   SECTION("beside what falls there is no equilibrium, and no drive that lacks anything") {
     m.gravity = {0, -standard_gravity, 0};
