@@ -391,6 +391,9 @@ std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, cons
   }
   if (lacking.name.empty()) return {};
   lacking.value = 1;
+  std::string alone = text;
+  std::erase(alone, ' ');
+  if (alone == lacking.name) lacking.value = expressed_value(mechanism, address);
   std::vector<std::string> units(usual.begin(), usual.end());
   units.insert(units.begin(), unit_at(mechanism, address));
   for (const std::string& unit : units) {

@@ -24,7 +24,8 @@ double expressed_value(const Mechanism& mechanism, const std::string& address);
 // there.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
 // The parameter that set_expression() would lack alone: of the value 1, in the first of the usual units with
-// which the expression can be. Nothing where it lacks something else.
+// which the expression can be; where the expression is nothing else, of the number's value. Nothing where it
+// lacks something else.
 std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, const std::string& address,
                                                 const std::string& text);
 // It is by itself this value (SI units, radians) from now on.

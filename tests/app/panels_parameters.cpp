@@ -73,6 +73,67 @@ TEST_CASE("the parameter that an expression lacks is made where it is said to la
   CHECK(d.app.session.document.position() == steps + 1);
 }
 
+TEST_CASE("a parameter that is made for a number alone begins with the number's value") {
+  Desk d;
+  d.build();
+  d.pick(PartKind::joint, "slide");
+  const double stiffness = get_parameter(d.m(), "joints.slide.spring.stiffness");
+  REQUIRE(stiffness != 1);
+  d.frames(60);
+  d.click("inspector/spring/stiffness");
+  d.type("= k");
+  d.key(key_enter, true);
+  d.frames(2);
+  CHECK(formula_at(d.m(), "joints.slide.spring.stiffness") == "k");
+  CHECK(get_parameter(d.m(), "parameters.k") == stiffness);
+  CHECK(get_parameter(d.m(), "joints.slide.spring.stiffness") == stiffness);
+  CHECK_THAT(d.app.session.notice, ContainsSubstring("k is a parameter of the scene now, 1000 N/m at first"));
+}
+
+TEST_CASE("the name that a number was given is typed over at once") {
+  Desk d;
+  d.build();
+  d.pick(PartKind::joint, "slide");
+  const std::string field = "inspector/spring/stiffness";
+  const auto name_it = [&] {
+    d.click(ImVec2(d.widget(field).from.x + 10, d.widget(field).from.y + 8), 1);
+    d.frames(2);
+    d.click(field + "/name it");
+    d.frames(2);
+  };
+  name_it();
+  CHECK(d.app.ui.fields.typing.name == field + "/name");
+  CHECK(d.app.ui.fields.typing.text == "stiffness");
+  SECTION("Enter takes another") {
+    d.type("k");
+    d.key(key_enter);
+    d.frames(2);
+    CHECK(formula_at(d.m(), "joints.slide.spring.stiffness") == "k");
+    CHECK(d.app.ui.fields.typing.name.empty());
+    CHECK(d.widget(field).to.x > d.widget(field).from.x); // the number's own field again
+  }
+  SECTION("Escape leaves the one that was suggested") {
+    d.type("k");
+    d.key(key_escape);
+    d.frames(2);
+    CHECK(formula_at(d.m(), "joints.slide.spring.stiffness") == "stiffness");
+    CHECK(d.app.ui.fields.typing.name.empty());
+  }
+  SECTION("one that is taken is refused") {
+    d.key(key_enter);
+    d.frames(2);
+    d.pick(PartKind::joint, "slide");
+    d.click(ImVec2(d.widget("inspector/damping").from.x + 10, d.widget("inspector/damping").from.y + 8), 1);
+    d.frames(2);
+    d.click("inspector/damping/name it");
+    d.frames(2);
+    d.type("stiffness");
+    d.key(key_enter);
+    d.frames(2);
+    CHECK_FALSE(d.app.ui.fields.typing.mistake.empty());
+  }
+}
+
 TEST_CASE("of another mistake no parameter is offered") {
   Desk d("governor_engine");
   d.build();

@@ -5,17 +5,18 @@
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/named_points.hpp"
+#include "app/ui/widgets/number_menu.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace flyball {
 
 namespace {
-
-using Rename = void (*)(Mechanism&, const std::string&, const std::string&);
 
 std::string used_by(const Mechanism& mechanism, const std::string& name) {
   const std::vector<std::string> users = users_of(mechanism, name);
@@ -26,24 +27,8 @@ std::string used_by(const Mechanism& mechanism, const std::string& name) {
 // The name, in which it is given another one.
 void named_field(Session& session, Ui& ui, const std::string& widget, const std::string& name, float width,
                  Rename rename) {
-  const TextField field{.name = widget,
-                        .text = name,
-                        .check =
-                            [&session, name, rename](const std::string& typed) {
-                              try {
-                                Mechanism copy = session.document.stored();
-                                rename(copy, name, typed);
-                                return std::string();
-                              } catch (const SceneError& error) {
-                                return error.expected();
-                              }
-                            },
-                        .take =
-                            [&session, name, rename](const std::string& typed) {
-                              edit(session, "Rename " + name + " to " + typed,
-                                   [&](Mechanism& mechanism, Selection&) { rename(mechanism, name, typed); });
-                            }};
-  if (!text_field(session, ui, field, width)) help_on_hover(used_by(session.mechanism(), name).c_str());
+  if (!text_field(session, ui, name_field(session, widget, name, rename), width))
+    help_on_hover(used_by(session.mechanism(), name).c_str());
 }
 
 void edit_parameter_of_name(Session& session, Ui& ui, const std::string& step, const std::string& name,

@@ -3,7 +3,6 @@
 #include "app/document/formula_edits.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
-#include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
 #include <cctype>
@@ -29,7 +28,8 @@ bool entry(Ui& ui, const QuantityField& field, const char* text, const std::stri
   return chosen;
 }
 
-void name_it(Session& session, const std::string& place, const std::vector<std::string>& also) {
+void name_it(Session& session, Ui& ui, const std::string& field, const std::string& place,
+             const std::vector<std::string>& also) {
   const std::string name = suggested_name(session.document.stored(), place),
                     phrase = parameter_phrase(place) + and_more(also.size());
   edit(session, "Name " + phrase, [&](Mechanism& mechanism, Selection&) {
@@ -37,10 +37,11 @@ void name_it(Session& session, const std::string& place, const std::vector<std::
     for (const std::string& other : also)
       set_expression(mechanism, other, name);
   });
-  if (parameter_index(session.mechanism(), name) >= 0)
-    session.notice =
-        "The " + phrase + " is the parameter " + name +
-        " now, with a slider. It is renamed in the scene's inspector, where nothing is selected.";
+  if (parameter_index(session.mechanism(), name) < 0) return;
+  session.notice = "The " + phrase + " is the parameter " + name +
+                   " now, with a slider. Type another name, or later in the scene's inspector, where "
+                   "nothing is selected.";
+  start_typing(session, ui, naming_field(field), name);
 }
 
 void name_the_point(Session& session, const std::string& vector) {
@@ -110,6 +111,30 @@ std::optional<std::string> formula_of(const Session& session, const QuantityFiel
   return expression_at(session.mechanism(), place_of(field));
 }
 
+std::string naming_field(const std::string& field) {
+  return field + "/name";
+}
+
+TextField name_field(Session& session, const std::string& widget, const std::string& name, Rename rename) {
+  return {.name = widget,
+          .text = name,
+          .check =
+              [&session, name, rename](const std::string& typed) {
+                try {
+                  Mechanism copy = session.document.stored();
+                  rename(copy, name, typed);
+                  return std::string();
+                } catch (const SceneError& error) {
+                  return error.expected();
+                }
+              },
+          .take =
+              [&session, name, rename](const std::string& typed) {
+                edit(session, "Rename " + name + " to " + typed,
+                     [&](Mechanism& mechanism, Selection&) { rename(mechanism, name, typed); });
+              }};
+}
+
 void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked) {
   const std::string& place = place_of(field);
   if (place.empty() || !field.various.empty() || !field.law.empty() || field.name.starts_with("parameters/"))
@@ -118,7 +143,9 @@ void number_menu(Session& session, Ui& ui, const QuantityField& field, bool aske
   if (asked || takes_menu_key(ui, field.name)) ImGui::OpenPopup("number");
   if (ImGui::BeginPopup("number")) {
     if (!place.starts_with("parameters.") && entry(ui, field, "Name this number", "name it"))
-      later(ui, [&session, place, also = field.also] { name_it(session, place, also); });
+      later(ui, [&session, &ui, name = field.name, place, also = field.also] {
+        name_it(session, ui, name, place, also);
+      });
     if (formula_of(session, field) && entry(ui, field, "Leave the value without its expression", "take off"))
       later(ui, [&session, place, also = field.also] {
         edit(session, "Take the expression off " + parameter_phrase(place) + and_more(also.size()),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/ui/widgets/quantity_field.hpp"
+#include "app/ui/widgets/typed_field.hpp"
 
 namespace flyball {
 
@@ -11,6 +12,12 @@ const std::string& place_of(const QuantityField& field);
 std::string vector_of(const QuantityField& field);
 // The expression that gives the number, or nothing.
 std::optional<std::string> formula_of(const Session& session, const QuantityField& field);
+
+// The field's place for the name that its number was just given, in which another is typed.
+std::string naming_field(const std::string& field);
+// The field of a name, in which it is given another one.
+using Rename = void (*)(Mechanism&, const std::string& name, const std::string& to);
+TextField name_field(Session& session, const std::string& widget, const std::string& name, Rename rename);
 
 // `asked` for by the right button, or by the menu key.
 void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked);

@@ -268,8 +268,10 @@ FieldOffer add_parameter(Session& session, const QuantityField& field, const std
   if (!lacking) return {};
   return {"Add the parameter " + lacking->name, [&session, field, typed, lacking] {
             take_typed(session, field, typed, lacking);
+            const ShownUnit unit = shown_unit(lacking->unit, session.units);
             session.notice = lacking->name + " is a parameter of the scene now, " +
-                             with_unit("1", lacking->unit) + " at first, with a slider.";
+                             with_unit(number_text(unit.shown(lacking->value)), unit.text) +
+                             " at first, with a slider.";
           }};
 }
 
@@ -514,6 +516,11 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
   const float height = ImGui::GetFrameHeight(), padding = field_padding(ui);
   const ShownNumber shown(session, field);
   const std::optional<std::string> formula = formula_of(session, field);
+  if (const std::string naming = naming_field(field.name); formula && typing_in(ui, naming)) {
+    text_field(session, ui, name_field(session, naming, *formula, rename_parameter), width);
+    note_widget(ui.widgets, naming);
+    return;
+  }
   Stepping stepping{field, shown, ui.fields.typing};
   TextField text{
       .name = field.name,
