@@ -33,6 +33,28 @@ double turns_of(const Problem& problem, const Link& link) {
   return std::min(turns, most);
 }
 
+// How far from zero the force of a law changes its direction, or begins: the furthest such deflection (m)
+// below and above zero, to within the next sample; zero where there is none. Samples lie in every order of
+// magnitude from 1e-4 to 1e6 of `reach`. Of a law that goes to and fro without end the first few count.
+SearchRange zeros_of_law(const BoundLaw& law, double reach) {
+  constexpr int a_decade = 32, decades = 10, near = 4, most = 8;
+  const auto furthest = [&](double side) {
+    double out = 0, before = law.value(0.);
+    for (int i = 0, zeros = 0; i <= a_decade * decades && zeros < most; ++i) {
+      const double x = side * reach * std::pow(10, static_cast<double>(i) / a_decade - near);
+      const double force = law.value(x);
+      if (!std::isfinite(force)) break;
+      if (before * force < 0 || (before == 0 && force != 0 && i > 0)) {
+        out = x;
+        ++zeros;
+      }
+      before = force;
+    }
+    return out;
+  };
+  return {furthest(-1), furthest(1)};
+}
+
 // The next number of which no root of a smaller one is a multiple: a prime.
 unsigned prime_after(unsigned n) {
   for (++n;; ++n) {
@@ -74,7 +96,13 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
       SearchRange range{value - around, value + around};
       const CoordinateForce& f = lp.force[0];
       if (f.has_spring()) {
-        range = {std::min(range.lower, f.slack() - reach), std::max(range.upper, f.slack() + reach)};
+        const SearchRange zeros = f.laws && f.laws->spring
+                                      ? zeros_of_law(f.laws->spring, problem.parameters.length)
+                                      : SearchRange{};
+        range = {std::min(range.lower, f.slack() + zeros.lower - reach),
+                 std::max(range.upper, f.slack() + zeros.upper + reach)};
+        // Else few starts would be left for what lies near.
+        if (zeros.upper - zeros.lower > reach) range.even = std::abs(value) + around;
       }
       // A stop gives way by what its stiffness allows.
       if (f.has_lower) range.lower = std::max(range.lower, f.lower - 0.5 * reach);

@@ -17,9 +17,9 @@ struct SearchRange {
 
 // By coordinate in System::coordinates. Angles: one turn about zero, or about the drawn value where that lies
 // outside; slides: twice the mechanism's reach around the drawn value (four times, what floats) and the
-// spring's free one, as far as stops let them go. Driven coordinates from and to their value at the drawn
-// phase; where a torque drives, speeds (rad/s or m/s) from rest to three times that at which the search for
-// them begins.
+// spring's free one, or the places where its law changes its direction, as far as stops let them go. Driven
+// coordinates from and to their value at the drawn phase; where a torque drives, speeds (rad/s or m/s) from
+// rest to three times that at which the search for them begins.
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
 
 // Widens those of speeds that are found to `times` as much, and `either_way` or as they go, with starts of

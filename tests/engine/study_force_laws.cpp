@@ -224,6 +224,34 @@ TEST_CASE("the equilibria of a slide of micrometres drawn at the origin are told
   CHECK_THAT(found[2], WithinRel(a, 1e-12));
 }
 
+TEST_CASE("where a law's force vanishes far away its equilibria are looked for there, too", "[laws]") {
+  const auto places = [](double middle, double far) {
+    const std::string a = std::to_string(middle), b = std::to_string(far);
+    Mechanism m = sliding(1, by_law(slide_along_x(), "1 N/m^3*deflection*(deflection - " + a +
+                                                         " m)*(deflection - " + b + " m)"));
+    m.joints[0].coordinates[0].drawn = 0.05;
+    std::vector<double> out;
+    for (const Solution& s : Analysis(m).solve_all().equilibria)
+      out.push_back(s.coordinates[0].value);
+    std::ranges::sort(out);
+    return out;
+  };
+  for (const auto& [middle, far] : {std::pair{100., 300.}, {1., 3.}, {-3., 1.}, {-4000., -20.}}) {
+    CAPTURE(middle, far);
+    std::vector<double> exact{0, middle, far};
+    std::ranges::sort(exact);
+    const std::vector<double> found = places(middle, far);
+    REQUIRE(found.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i)
+      CHECK_THAT(found[i], Catch::Matchers::WithinAbs(exact[i], 1e-9 * (1 + std::abs(exact[i]))));
+  }
+  // A contact that begins far away: a mass on its way to it has nowhere else to be.
+  Mechanism m = sliding(1, by_law(slide_along_x(), "50 N/m*max(0 m, deflection - 100 m) - 1 N"));
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 1);
+  CHECK_THAT(all.equilibria[0].coordinates[0].value, WithinRel(100.02, 1e-12));
+}
+
 TEST_CASE("an undamped motion on springs by laws keeps its energy", "[laws]") {
   Mechanism m = sliding(0.7, by_law(slide_along_x(), "table(deflection, [-50 mm, -90 N], [0 mm, 0 N], "
                                                      "[20 mm, 10 N], [60 mm, 90 N])"));
