@@ -205,3 +205,22 @@ TEST_CASE("from the spread to the band around the response, which is switched of
   CHECK(robot.app.panels->studies.shown().response.plot.bands.empty());
   CHECK_FALSE(robot.app.session.study.band.computed.found);
 }
+
+TEST_CASE("the unit in which a tolerance could be told keeps clear of the button beside it") {
+  SpreadRobot d("pendulum");
+  Session& session = d.app.session;
+  std::size_t told = 0;
+  for (const std::string& address : numbers_without_tolerance(session)) {
+    add_tolerance(session, address);
+    d.frames(2);
+    const auto unit = d.app.ui.widgets.find("spread/" + address + "/unit"),
+               cross = d.app.ui.widgets.find("spread/" + address + "/remove");
+    if (unit == d.app.ui.widgets.end() || cross == d.app.ui.widgets.end()) continue; // below the panel
+    ++told;
+    INFO(address);
+    CHECK(unit->second.to.x <= cross->second.from.x + 4); // the cross stands in the middle of its button
+    std::erase_if(session.study.spread.choice.tolerances,
+                  [&](const ChosenTolerance& each) { return each.address == address; });
+  }
+  CHECK(told > 10);
+}

@@ -125,7 +125,9 @@ void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& ro
       ImGui::PopID();
       ImGui::SameLine(0, 0);
       ImGui::TextUnformatted(row.order.c_str());
-      for (const std::string& cell : {row.mode, row.whirl, std::string(row.unbalance ? icon::check : "")})
+      if (ImGui::TableNextColumn())
+        ImGui::TextUnformatted(cut_to(row.mode, ImGui::GetContentRegionAvail().x).c_str());
+      for (const std::string& cell : {row.whirl, std::string(row.unbalance ? icon::check : "")})
         if (ImGui::TableNextColumn()) ImGui::TextUnformatted(cell.c_str());
       if (ImGui::TableNextColumn()) right_digits(ui, row.speed, colors.text);
     });

@@ -228,7 +228,7 @@ std::string without_modes(const Session& session) {
 }
 
 float table_line(const Ui& ui) {
-  return ImGui::GetTextLineHeight() + 4 * ui.scale;
+  return std::max(ImGui::GetTextLineHeight(), ui.fonts.digits->FontSize) + 4 * ui.scale;
 }
 
 // How high the table of critical speeds is below a list of so many modes, where the diagram then has all the

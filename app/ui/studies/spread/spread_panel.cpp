@@ -75,11 +75,14 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
                   .at_once = true},
                  76 * s);
   ImGui::SameLine(0, gap);
-  const std::string other = chosen.percent ? (shown.empty() ? "plain" : "in " + shown) : "in %";
+  const float remove = start + (spread_choices_width - 34) * s;
+  const float room = remove - ImGui::GetCursorPosX() - 2 * ImGui::GetStyle().FramePadding.x;
+  std::string other = chosen.percent ? (shown.empty() ? "plain" : "in " + shown) : "in %";
+  if (ImGui::CalcTextSize(other.c_str()).x > room) other = cut_to(shown, room); // "N m/rad"
   if (text_button(ui, name + "/unit", other.c_str())) tell_in_percent(session, i, !chosen.percent);
   help_on_hover("Tells the width so; it stays what it is.");
   ImGui::SameLine(0, 0);
-  ImGui::SetCursorPosX(start + (spread_choices_width - 34) * s);
+  ImGui::SetCursorPosX(remove);
   if (margin_button(ui, name + "/remove", icon::close, "No tolerance."))
     later(ui, [&session, address = chosen.address] {
       std::erase_if(session.study.spread.choice.tolerances,
