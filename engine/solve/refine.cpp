@@ -1,6 +1,5 @@
 #include "engine/solve/refine.hpp"
 
-#include "engine/solve/factored_state.hpp"
 #include "engine/solve/singular_loops.hpp"
 
 #include <bit>
@@ -373,6 +372,21 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
       error[link.v + k] += 2 * std::numeric_limits<double>::epsilon() * value;
     }
   }
+}
+
+bool is_pushed_where_soft(const FactoredState& at) {
+  constexpr double of_data = 64 * std::numeric_limits<double>::epsilon();
+  const DenseKkt* dense = at.w.matrices(at.problem);
+  if (!dense || !at.problem.symmetric() || !dense->singular()) return false;
+  const Eigen::VectorXd& scale = at.problem.scaling.column;
+  Workspace& w = at.w.elsewhere();
+  evaluate_rounded(at.problem, at.z, w);
+  const Eigen::MatrixXd soft =
+      scale.asDiagonal() * (dense->constraints().basis() * dense->hessian().null_basis());
+  for (Eigen::Index c = 0; c < soft.cols(); ++c)
+    if (std::abs(soft.col(c).dot(w.residual.f)) > of_data * soft.col(c).cwiseAbs().dot(at.w.magnitudes.force))
+      return true;
+  return false;
 }
 
 } // namespace flyball

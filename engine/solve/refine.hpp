@@ -1,7 +1,7 @@
 // The last digits of a solution, and how far they can be believed.
 #pragma once
 
-#include "engine/solve/newton.hpp"
+#include "engine/solve/factored_state.hpp"
 
 namespace flyball {
 
@@ -31,5 +31,11 @@ void evaluate_extended(const Problem& problem, Workspace& w);
 // no more than was corrected, and evaluated nowhere.
 void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, Workspace& w,
             ErrorEstimate& error);
+
+// Whether in a state without stiffness along some direction, factored, extended precision sees a force there
+// that no rounding of the scene's numbers explains: what acts is lost beside what it is the difference of,
+// and the state need be none. Of a symmetric dense problem; false of others. The workspace's residual is
+// changed.
+bool is_pushed_where_soft(const FactoredState& at);
 
 } // namespace flyball

@@ -394,6 +394,31 @@ TEST_CASE("all equilibria of a ball on a string, those above its anchor as well"
   CHECK(all.equilibria.size() == count);
 }
 
+TEST_CASE("equilibria whose digits are lost beside a large inertia are listed once, and no others") {
+  // The inertia of a ball is the same about all axes and changes none; what it takes to turn it so cancels.
+  const double speed = 5, tip = 0.1, down = 0.69;
+  for (const double inertia : {1e6, 1e10, 1e11, 1e12}) {
+    CAPTURE(inertia);
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("hub", 1, {0, 0, 0}), body("ball", 1, {tip, -down, 0}, Vec3::Constant(inertia))};
+    m.joints = {driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), speed),
+                revolute("swing", "hub", "ball", {0, 0, 0}, {0, 0, 1})};
+    const AllSolutions all = Analysis(m).solve_all();
+    CHECK(all.equilibria.size() == 4);
+    const double length = std::hypot(tip, down), drawn = std::atan2(tip, down);
+    const double steep = std::acos(standard_gravity / (speed * speed * length)), pi = std::numbers::pi;
+    for (const double angle : {0., pi, steep, -steep}) { // from the vertical
+      CAPTURE(angle);
+      CHECK(std::ranges::any_of(all.equilibria, [&](const Solution& s) {
+        const CoordinateSolution& swing = s.coordinates.back();
+        return s.neutral.empty() &&
+               std::abs(std::remainder(swing.value - (angle - drawn), 2 * pi)) < swing.error + 1e-14;
+      }));
+    }
+  }
+}
+
 TEST_CASE("Watt's governor balances where its potential is stationary") {
   for (const double speed : {5., 8., 11.}) {
     const Mechanism m = shipped("watt_governor", {{"joints.spin.drive.speed", speed}});
