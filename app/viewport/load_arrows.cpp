@@ -78,6 +78,10 @@ double LoadScales::length(bool moment, double size) const {
   return longest_ * (lengths_ == LoadLengths::in_proportion ? share : std::cbrt(share));
 }
 
+double LoadScales::length(const Load& load) const {
+  return length(load.moment, load.vector.stableNorm());
+}
+
 double LoadScales::size(bool moment, double length) const {
   if (!(longest_ > 0)) return 0;
   const double share = length / longest_;

@@ -24,7 +24,7 @@ class LoadScales {
 
   // m; zero for what is rounding beside the other loads.
   double length(bool moment, double size) const;
-  double length(const Load& load) const { return length(load.moment, load.vector.stableNorm()); }
+  double length(const Load& load) const;
   // The size (N, N m) that an arrow as long as that (m) stands for; zero where there are none.
   double size(bool moment, double length) const;
   // The largest of its kind; zero where there is none, or it is rounding.

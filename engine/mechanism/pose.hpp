@@ -15,30 +15,13 @@ struct Pose {
 };
 
 // The poses the mechanism is drawn in, in the order of its bodies.
-inline std::vector<Pose> drawn_poses(const Mechanism& mechanism) {
-  std::vector<Pose> poses;
-  poses.reserve(mechanism.bodies.size());
-  for (const Body& b : mechanism.bodies)
-    poses.push_back({b.position, b.rotation.normalized()});
-  return poses;
-}
+std::vector<Pose> drawn_poses(const Mechanism& mechanism);
 
 // Where a point fixed in `body` (-1: ground), given in world coordinates of the drawn pose, is when the
 // bodies stand in `poses` (m, world).
-inline Vec3 carried_point(const Mechanism& mechanism, std::span<const Pose> poses, int body,
-                          const Vec3& drawn) {
-  if (body < 0) return drawn;
-  const auto i = static_cast<std::size_t>(body);
-  const Body& b = mechanism.bodies[i];
-  return poses[i].position + poses[i].rotation * (b.rotation.normalized().conjugate() * (drawn - b.position));
-}
+Vec3 carried_point(const Mechanism& mechanism, std::span<const Pose> poses, int body, const Vec3& drawn);
 
 // The same for a direction.
-inline Vec3 carried_vector(const Mechanism& mechanism, std::span<const Pose> poses, int body,
-                           const Vec3& drawn) {
-  if (body < 0) return drawn;
-  const auto i = static_cast<std::size_t>(body);
-  return poses[i].rotation * (mechanism.bodies[i].rotation.normalized().conjugate() * drawn);
-}
+Vec3 carried_vector(const Mechanism& mechanism, std::span<const Pose> poses, int body, const Vec3& drawn);
 
 } // namespace flyball

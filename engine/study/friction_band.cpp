@@ -7,6 +7,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
+#include "engine/study/steady_map.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,13 @@
 // box: at a corner where every rate points outwards, or within at a root of a rate.
 #pragma once
 
-#include "engine/study/steady_map.hpp"
+#include "engine/mechanism/mechanism.hpp"
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace flyball {
 

@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/study/goal_state.hpp"
 #include "engine/study/least_change.hpp"
 
 #include <algorithm>

@@ -11,9 +11,16 @@
 // of wanted and first value.
 #pragma once
 
-#include "engine/study/steady_map.hpp"
+#include "engine/mechanism/mechanism.hpp"
+#include "engine/solve/solution.hpp"
+#include "engine/study/free_number.hpp"
 
+#include <atomic>
+#include <optional>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace flyball {
 
@@ -63,13 +70,5 @@ GoalAnswer seek_goals(const Mechanism& mechanism, std::span<const FreeNumber> fr
 GoalAnswer minimize(const Mechanism& mechanism, std::span<const FreeNumber> free,
                     const std::string& objective, std::span<const Goal> goals,
                     const GoalOptions& options = {});
-
-// What ends a message: which numbers stand at an end of their range, where goals are not reached or something
-// was minimised, and that the state is unstable.
-std::string closing_words(const GoalAnswer& answer);
-
-// Of a state: numbers, goals, which the map knows in this order, and solution.
-void tell_state(SteadyMap& map, const SteadyMap::State& state, std::span<const FreeNumber> free,
-                std::span<const Goal> goals, bool details, GoalAnswer& out);
 
 } // namespace flyball

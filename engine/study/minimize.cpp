@@ -2,7 +2,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/study/goals.hpp"
+#include "engine/study/goal_state.hpp"
 
 #include <nlopt.h>
 

@@ -11,21 +11,13 @@
 #include "engine/report/analysis.hpp"
 #include "engine/report/measures.hpp"
 #include "engine/search/phase_search.hpp"
+#include "engine/study/free_number.hpp"
 #include "engine/study/wanted.hpp"
 
 #include <optional>
 #include <span>
 
 namespace flyball {
-
-// A number that may be moved, by its address, in its unit; from < to.
-struct FreeNumber {
-  std::string address;
-  double from = 0, to = 0;
-  // Where change is counted from; as a rule the mechanism's own.
-  std::optional<double> reference{};
-  bool operator==(const FreeNumber&) const = default;
-};
 
 // The steady state nearest to a start (as of SolveOptions), or where that is empty what a solve answers.
 // Where there is none near it the answer if that stands turned against the drawn pose: such are near no

@@ -8,6 +8,8 @@
 #include "slider_crank.hpp"
 #include "tests/catch.hpp"
 
+#include <algorithm>
+
 using namespace flyball;
 using namespace flyball::test;
 

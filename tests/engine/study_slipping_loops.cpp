@@ -9,6 +9,8 @@
 #include "tests/support/parts.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 

@@ -3,6 +3,7 @@
 #include "app/ui/plots/plot_parts.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
