@@ -322,6 +322,10 @@ class CrossingFinder {
       bracket.take(value, f);
     }
     if (!last || !last->oscillates()) return;
+    // It jumps over the order's line, as where a coordinate comes to its stop: nothing swings in time with
+    // it.
+    constexpr double meets = 1e-3; // of the frequency
+    if (std::abs(off(*last, value)) > meets * last->natural_frequency) return;
     // Beside a double root the chord from there is the flatter one, half as steep as the line at the
     // crossing.
     double slope = std::numeric_limits<double>::infinity();

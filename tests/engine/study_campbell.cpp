@@ -90,6 +90,25 @@ TEST_CASE("critical speeds are where the closed forms have them", "[campbell]") 
   CHECK(d.critical[2].line == 2);
 }
 
+TEST_CASE("a mode that jumps over an order's line at a stop has no critical speed there", "[campbell]") {
+  // A shoe on a spring along the radius of a hub comes to its stop where m w^2 (r + s) = k s.
+  constexpr double m = 8, r = 0.3, k = 1000, s = 0.1, stiff = 1e5;
+  Mechanism clutch;
+  clutch.bodies = {spindle(), body("shoe", m, {r, 0, 0})};
+  clutch.joints = {spin(1, {0, 0, 1}),
+                   sprung(prismatic("guide", "spindle", "shoe", {r, 0, 0}, {1, 0, 0}), k)};
+  clutch.joints[1].coordinates[0].stop = Stop{-s, s, stiff};
+  const double contact = std::sqrt(k * s / (m * (r + s)));
+  const CampbellDiagram d = diagram_of(clutch, 0.5, 12, {1, 2});
+  // sqrt(k / m - w^2) = 2 w before it comes there; then it swings at more than 100 rad/s.
+  const double twice = std::sqrt(k / m / 5);
+  REQUIRE(twice < contact);
+  REQUIRE(std::sqrt(k / m - contact * contact) < 2 * contact);
+  REQUIRE(d.critical.size() == 1);
+  CHECK(std::abs(d.critical[0].speed - twice) < 1e-9);
+  CHECK(d.critical[0].frequency == Approx(2 * twice).epsilon(1e-9));
+}
+
 namespace {
 
 const std::string speed = "parameters.w";
