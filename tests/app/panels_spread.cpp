@@ -2,6 +2,7 @@
 // response.
 #include "robot.hpp"
 
+#include "app/document/rename.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
@@ -223,4 +224,14 @@ TEST_CASE("the unit in which a tolerance could be told keeps clear of the button
                   [&](const ChosenTolerance& each) { return each.address == address; });
   }
   CHECK(told > 10);
+}
+
+TEST_CASE("the name of what scatters keeps clear of the plot however long it is") {
+  SpreadRobot robot("conical_pendulum");
+  edit(robot.app.session, "Long", [](Mechanism& m, Selection&) {
+    rename_part(m, {PartKind::joint, "swing"}, std::string(90, 'w'));
+  });
+  robot.frames(3);
+  REQUIRE(robot.state().samples.found);
+  CHECK(robot.widget("spread/of").to.x <= robot.widget("plot/spread/area").from.x);
 }

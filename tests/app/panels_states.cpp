@@ -2,6 +2,7 @@
 #include "robot.hpp"
 #include "session_wait.hpp"
 
+#include "app/document/rename.hpp"
 #include "app/session/states.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "engine/mechanism/address.hpp"
@@ -161,4 +162,20 @@ TEST_CASE("every shipped scene's list can be shown, in both themes and in a narr
         break;
       }
   }
+}
+
+TEST_CASE("a long name leaves its column's numbers in sight") {
+  Robot robot(wide);
+  Mechanism m = shipped("conical_pendulum");
+  const std::string name(90, 'w');
+  rename_part(m, {PartKind::joint, "swing"}, name);
+  open_document(robot.app.session, Document(m));
+  robot.frames(3);
+  robot.key('E');
+  robot.frames(3);
+  REQUIRE(robot.app.session.study.states.found);
+  REQUIRE_FALSE(robot.app.session.study.states.found->result.equilibria.empty());
+  const WidgetRect title = robot.widget("states/column/3");
+  CHECK(title.to.x - title.from.x > 60);
+  CHECK(title.to.x < 900);
 }

@@ -197,7 +197,13 @@ void statistics_rows(const Session& session, Ui& ui, const SpreadOutput& output)
   const auto plain = [&](const char* label, double value, double error, const char* help) {
     row(ui, label, value_text(value * unit.factor, error * unit.factor, numbers), unit.text.c_str(), help);
   };
-  heading(ui, label_words(session.mechanism(), output.name).c_str());
+  ImGui::PushFont(ui.fonts.strong);
+  const std::string name = label_words(session.mechanism(), output.name),
+                    cut = cut_to(name, ImGui::GetContentRegionAvail().x);
+  ImGui::PopFont();
+  heading(ui, cut.c_str());
+  note_widget(ui.widgets, "spread/of", KeyUse::none);
+  if (cut != name) help_on_hover(name.c_str());
   plain("Nominal", output.nominal, s.mean_error > 0 ? s.mean_error / 10 : 0, "The state that is shown.");
   if (s.count > 1) {
     estimated_row(session, ui, "Mean", s.mean, s.mean_error, unit,

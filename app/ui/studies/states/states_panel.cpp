@@ -16,6 +16,7 @@ namespace flyball {
 namespace {
 
 constexpr float states_words_width = 292; // points
+constexpr float most_title = 170;         // points, of a coordinate's name above its column
 constexpr std::size_t most_numbers = 58;  // columns; Dear ImGui takes 64
 constexpr ImGuiTableFlags states_table_flags =
     ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
@@ -179,7 +180,7 @@ const char* friction_of(const Solution& solution) {
   return std::ranges::any_of(solution.frictions, &FrictionForce::slips) ? "slips" : "held";
 }
 
-void header(const Ui& ui, const std::vector<Column>& columns) {
+void header(Ui& ui, const std::vector<Column>& columns) {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
@@ -190,6 +191,7 @@ void header(const Ui& ui, const std::vector<Column>& columns) {
           std::max(0.f, ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(columns[i].title.c_str()).x));
     ImGui::PushStyleColor(ImGuiCol_Text, colors_of(ui).dim);
     ImGui::TextUnformatted(columns[i].title.c_str());
+    note_widget(ui.widgets, "states/column/" + std::to_string(i), KeyUse::none);
     ImGui::PopStyleColor();
     if (!columns[i].help.empty()) help_on_hover(columns[i].help.c_str());
   }
@@ -253,7 +255,10 @@ std::vector<Column> columns_of(const Session& session, const Ui& ui, const std::
        0}};
   for (const StateNumber& n : numbers) {
     const std::string unit = shown_unit(n.unit, session.units).text;
-    columns.push_back({unit.empty() ? n.name : n.name + " [" + unit + "]", "", 0});
+    const std::string bracket = unit.empty() ? "" : " [" + unit + "]";
+    // A longer name would take its numbers, at the right end of the column, out of sight.
+    const std::string name = cut_to(n.name, most_title * s - ImGui::CalcTextSize(bracket.c_str()).x);
+    columns.push_back({name + bracket, name == n.name ? "" : n.name, 0});
   }
   for (std::size_t i = 2; i < columns.size(); ++i) {
     float& width = columns[i].width;
