@@ -428,6 +428,15 @@ TEST_CASE("why there is no Campbell diagram is said in the units and names that 
   CHECK(campbell_problem(robot.app.session).starts_with("At n = 47.7465 rpm: No steady state"));
 }
 
+TEST_CASE("where the balance turns with the drives the modes' panel leads to the response") {
+  ModesRobot robot("horizontal_rotor");
+  robot.click("modes/response");
+  robot.frames(2);
+  CHECK(robot.app.session.study.open == StudyKind::response);
+  ModesRobot steady("governor");
+  CHECK_FALSE(steady.app.ui.widgets.contains("modes/response"));
+}
+
 TEST_CASE("a click in the Campbell diagram sets the speed") {
   ModesRobot robot("governor");
   App& app = robot.app;

@@ -224,7 +224,7 @@ std::string without_modes(const Session& session) {
   return none +
          ": the balance turns with the drives, by weight or by a mass centre beside the axis. With mass "
          "centres on it, and gravity along it or turned off, there is one; its modes and critical speeds "
-         "are those that unbalance excites. How far it swings with it, Response shows over the speed.";
+         "are those that unbalance excites. How far it swings as it is, the response shows.";
 }
 
 float table_line(const Ui& ui) {
@@ -297,6 +297,8 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
   }
   if (!converged(session)) {
     paragraph(without_modes(session), colors.dim);
+    if (turns_with_drives(session) && text_button(ui, "modes/response", "Response over the speed", true))
+      later(ui, [&session] { open_study(session, StudyKind::response); });
     return false;
   }
   const bool finding = search.running();

@@ -73,7 +73,7 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
                           if (each.address == address) each.width = typed;
                       },
                   .at_once = true},
-                 76 * s);
+                 70 * s);
   ImGui::SameLine(0, gap);
   const float remove = start + (spread_choices_width - 34) * s;
   const float room = remove - ImGui::GetCursorPosX() - 2 * ImGui::GetStyle().FramePadding.x;
