@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <unordered_map>
@@ -371,15 +372,41 @@ void set_expression(Mechanism& mechanism, const std::string& address, const std:
   });
 }
 
+namespace {
+
+// The value of the last parameter, now 1, with which an expression that is linear in it gives the number this
+// value; 1 where there is none above zero.
+double value_that_keeps(const Mechanism& with_one, const std::string& address, double wanted) {
+  const auto given = [&](double value) {
+    Mechanism tried = with_one;
+    tried.parameters.back().value = value;
+    evaluate_formulas(tried);
+    return expressed_value(tried, address);
+  };
+  try {
+    const double one = given(1), two = given(2), slope = two - one;
+    if (!(std::abs(given(3) - two - slope) <= 1e-9 * std::abs(slope))) return 1;
+    const double value = std::strtod(short_text(1 + (wanted - one) / slope, 12).c_str(), nullptr);
+    return std::isfinite(value) && value > 0 ? value : 1;
+  } catch (const SceneError&) { // it is not to be 2, or 3
+    return 1;
+  }
+}
+
+} // namespace
+
 std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, const std::string& address,
                                                 const std::string& text) {
   constexpr std::array usual{"",    "m",   "kg",    "s",     "rad/s",  "m/s",    "N",
                              "N m", "N/m", "N s/m", "N m s", "kg m^2", "kg/m^3", "1/m"};
   constexpr std::array variables{spring_variable, damper_variable, air_variable};
   NamedParameter lacking;
+  bool law = false; // of the state: it has no value yet
   try {
     const Expression expression(text, Expression::Results::allowed);
+    law = !expression.results().empty();
     for (const std::string& name : expression.names()) {
+      law = law || std::ranges::find(variables, name) != variables.end();
       if (!is_expression_name(name) || free_name(mechanism, name) != name ||
           std::ranges::find(variables, name) != variables.end())
         continue;
@@ -390,10 +417,10 @@ std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, cons
     return {};
   }
   if (lacking.name.empty()) return {};
-  lacking.value = 1;
   std::string alone = text;
   std::erase(alone, ' ');
-  if (alone == lacking.name) lacking.value = expressed_value(mechanism, address);
+  const double present = expressed_value(mechanism, address);
+  lacking.value = alone == lacking.name ? present : 1;
   std::vector<std::string> units(usual.begin(), usual.end());
   units.insert(units.begin(), unit_at(mechanism, address));
   for (const std::string& unit : units) {
@@ -402,6 +429,7 @@ std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, cons
       Mechanism tried = mechanism;
       tried.parameters.push_back(lacking);
       set_expression(tried, address, text);
+      if (!law && alone != lacking.name) lacking.value = value_that_keeps(tried, address, present);
       return lacking;
     } catch (const SceneError&) { // of another dimension
     }

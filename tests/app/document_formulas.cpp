@@ -114,6 +114,17 @@ TEST_CASE("the parameter that an expression lacks has the unit that it needs the
   CHECK(unit("bodies.collar.mass", "m*factor") == "factor ");
   CHECK(unit("bodies.collar.mass", "m + rho*L^3") == "rho kg/m^3");
   CHECK(unit("joints.slide.spring.stiffness", "10 N*tanh(deflection/length)") == "length m");
+  // The number stays what it is where it can.
+  const double mass = get_parameter(m, "bodies.collar.mass"), ball = get_parameter(m, "parameters.m");
+  const auto value = [&](const char* text) {
+    return lacking_parameter(m, "bodies.collar.mass", text)->value;
+  };
+  REQUIRE(mass != 1);
+  CHECK(value("m0") == mass);
+  CHECK(value("4*m0") == Approx(mass / 4).epsilon(1e-11));
+  CHECK(value("m*factor") == Approx(mass / ball).epsilon(1e-11));
+  CHECK(value("m + m0 + 1 t") == 1); // it would be below zero
+  CHECK(value("m0*tanh(m0/(1 kg))") == 1);
   CHECK(unit("bodies.collar.mass", "a*b") == "none");
   CHECK(unit("bodies.collar.mass", "m") == "none");
   CHECK(unit("bodies.collar.mass", "L + m0") == "none");
