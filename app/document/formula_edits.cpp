@@ -386,7 +386,7 @@ double value_that_keeps(const Mechanism& with_one, const std::string& address, d
   try {
     const double one = given(1), two = given(2), slope = two - one;
     if (!(std::abs(given(3) - two - slope) <= 1e-9 * std::abs(slope))) return 1;
-    const double value = std::strtod(short_text(1 + (wanted - one) / slope, 12).c_str(), nullptr);
+    const double value = std::strtod(rounded_text(1 + (wanted - one) / slope, 12).c_str(), nullptr);
     return std::isfinite(value) && value > 0 ? value : 1;
   } catch (const SceneError&) { // it is not to be 2, or 3
     return 1;
