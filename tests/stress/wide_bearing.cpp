@@ -13,4 +13,8 @@ template void add_bearings<stress::OtherExtended>(const System&, const Parameter
                                                   const Kinematics<stress::OtherExtended>&,
                                                   Configuration<stress::OtherExtended>&);
 
+template stress::OtherExtended bearing_force<stress::OtherExtended>(Result, const BearingElement&,
+                                                                    const BearingParameters&,
+                                                                    const Kinematics<stress::OtherExtended>&);
+
 } // namespace flyball
