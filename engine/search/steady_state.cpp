@@ -13,6 +13,9 @@
 namespace flyball {
 namespace {
 
+constexpr double half_a_turn = 3;            // scaled, about: or the reach
+constexpr double search_beside_answer = 0.3; // s, of what a search costs where there is an answer already
+
 // What is found from afar, or far away, and known no better than this is no answer.
 bool is_known(const Problem& problem, const Eigen::VectorXd& q, const Eigen::VectorXd& drawn,
               const Eigen::VectorXd& error) {
@@ -34,9 +37,9 @@ double way_between(const Problem& problem, const Eigen::VectorXd& a, const Eigen
 // Whether Newton-Raphson went so far from a to b that it may have passed by what a motion from a comes to:
 // about half a turn or the reach, or less while a speed became another altogether.
 bool went_far(const Problem& problem, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  constexpr double far = 3, far_with_speeds = 0.5; // scaled
+  constexpr double far_with_speeds = 0.5; // scaled
   const double way = way_between(problem, a, b);
-  return way > far ||
+  return way > half_a_turn ||
          (way > far_with_speeds && std::ranges::any_of(problem.system.links, [&](const Link& link) {
             return finds_speed(link) &&
                    std::abs(b[link.q] - a[link.q]) > 0.5 * std::max(std::abs(a[link.q]), std::abs(b[link.q]));
@@ -110,17 +113,7 @@ void SteadyState::find(const Problem& problem, const Eigen::VectorXd& from, cons
   if (!unstable_) {
     if (options.warm || problem.system.nv > largest_for_answer_search || !went_far(problem, start, found.z.q))
       return;
-    Found candidate;
-    candidate.z = {start, Eigen::VectorXd::Zero(problem.system.rows)};
-    candidate.newton = follow_slow_motion(problem, candidate.z, balance_.elsewhere(), nullptr);
-    if (problem.cancelled() || !candidate.newton.converged ||
-        !same_assembly_mode(problem, balance_.elsewhere().kinematics) ||
-        !(way_between(problem, start, candidate.z.q) < 0.8 * way_between(problem, start, found.z.q)))
-      return;
-    candidate.status = Status::converged;
-    candidate.fallback = Fallback::slow_motion;
-    candidate.iterations = found.iterations + candidate.newton.iterations;
-    take_if_stable(problem, drawn, std::move(candidate));
+    leave_far(problem, drawn, options);
     return;
   }
   if (options.warm) {
@@ -265,6 +258,43 @@ void SteadyState::judge(const Problem& problem) {
               !sign_is_open(matrices, found.z, error.solution, *stability, balance_.elsewhere());
 }
 
+// Puts the stable state that the slow motion from the start comes to in the place of this one, to which
+// Newton-Raphson went past it.
+void SteadyState::leave_far(const Problem& problem, const Eigen::VectorXd& drawn,
+                            const SteadyStateOptions& options) {
+  Found candidate;
+  candidate.z = {start, Eigen::VectorXd::Zero(problem.system.rows)};
+  candidate.newton = follow_slow_motion(problem, candidate.z, balance_.elsewhere(), nullptr);
+  if (problem.cancelled() || !candidate.newton.converged ||
+      !same_assembly_mode(problem, balance_.elsewhere().kinematics) || !is_nearer(problem, candidate.z))
+    return;
+  candidate.status = Status::converged;
+  candidate.fallback = Fallback::slow_motion;
+  candidate.iterations = found.iterations + candidate.newton.iterations;
+  if (!take_if_stable(problem, drawn, std::move(candidate))) search_nearer(problem, drawn, options);
+}
+
+// Where the state beside the start hunts, one turns away from it is no more of an answer than the nearest
+// stable one that a search finds, which is put in its place.
+void SteadyState::search_nearer(const Problem& problem, const Eigen::VectorXd& drawn,
+                                const SteadyStateOptions& options) {
+  if (!(options.seconds > 0) || problem.system.nv > largest_for_answer_search ||
+      !(way_between(problem, start, found.z.q) > half_a_turn))
+    return;
+  const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
+  AnswerSearch other =
+      search_answer(dense, start, std::min(options.seconds, search_beside_answer), balance_.elsewhere());
+  if (problem.cancelled() || !other.answer || !is_nearer(problem, other.answer->z)) return;
+  other.answer->remark = found.remark;
+  other.answer->candidates = other.others.steady;
+  other.answer->iterations += found.iterations;
+  take_if_stable(problem, drawn, std::move(*other.answer));
+}
+
+bool SteadyState::is_nearer(const Problem& problem, const Unknowns& z) const {
+  return way_between(problem, start, z.q) < 0.8 * way_between(problem, start, found.z.q);
+}
+
 // Puts one that is not unstable in the place of this state, which is, where the slow motion leads to one:
 // from the start, or from either side of this state; or else where a search finds one.
 void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& drawn,
@@ -289,15 +319,16 @@ void SteadyState::leave_unstable(const Problem& problem, const Eigen::VectorXd& 
     if (!candidate.newton.converged || !same_assembly_mode(problem, w.kinematics)) continue;
     candidate.status = Status::converged;
     candidate.fallback = Fallback::slow_motion;
-    if (take(std::move(candidate))) return;
+    if (!take(std::move(candidate))) continue;
+    if (side != 0) search_nearer(problem, drawn, options);
+    return;
   }
   // What grows in swings alone is not left for another state but hunts about this one.
   const auto swings = [](std::complex<double> s) { return !(s.real() > 0) || s.imag() != 0; };
   if (stability && stability->eigenvalues && std::ranges::all_of(*stability->eigenvalues, swings)) return;
   if (!(options.seconds > 0) || problem.system.nv > largest_for_answer_search) return;
-  constexpr double at_most = 0.3; // of what a search costs: an unstable state is an answer, too
   const Problem dense{problem.system, problem.parameters, problem.scaling, problem.cancel};
-  AnswerSearch other = search_answer(dense, start, std::min(options.seconds, at_most), w);
+  AnswerSearch other = search_answer(dense, start, std::min(options.seconds, search_beside_answer), w);
   if (!other.answer || problem.cancelled()) return;
   other.answer->candidates = other.others.steady;
   take(std::move(*other.answer));

@@ -99,6 +99,9 @@ class SteadyState {
   void find_once(const Problem& problem, const Eigen::VectorXd& from, const Eigen::VectorXd& drawn,
                  const SteadyStateOptions& options);
   void judge(const Problem& problem);
+  void leave_far(const Problem& problem, const Eigen::VectorXd& drawn, const SteadyStateOptions& options);
+  void search_nearer(const Problem& problem, const Eigen::VectorXd& drawn, const SteadyStateOptions& options);
+  bool is_nearer(const Problem& problem, const Unknowns& z) const;
   void leave_unstable(const Problem& problem, const Eigen::VectorXd& drawn,
                       const SteadyStateOptions& options);
   bool take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate);

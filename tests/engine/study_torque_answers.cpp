@@ -46,6 +46,21 @@ Mechanism sprung_slide(const std::string& force) {
   return m;
 }
 
+// A ball on an arm of 0.3 m, hinged 0.05 m beside a shaft whose torque falls as the arm rises:
+// w^2 (e + L sin q) cos q = g sin q and 5 - gain q = 0.3 w + 0.01 w^2. The law counts whole turns of the arm,
+// and Newton-Raphson goes several of them back.
+Mechanism arm_on_a_shaft(const std::string& gain) {
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("t", 2, {0, 0, 0}, {0.4, 0.4, 0.4}), body("ball", 1.2, {0.05, -0.3, 0})};
+  m.joints = {torque_driven(revolute("m", "ground", "t", {0, 0, 0}, {0, 1, 0}), 7,
+                            "5 N m - " + gain + " * coordinate(p)",
+                            "0.3 N m s * rate(m) + 0.01 N m s^2 * rate(m)^2"),
+              dampened(revolute("p", "t", "ball", {0.05, 0, 0}, {0, 0, 1}), 0.08)};
+  validate(m);
+  return m;
+}
+
 } // namespace
 
 TEST_CASE("kinks of torques are told, and stability is where both sides prove it", "[torque][kinks]") {
@@ -421,17 +436,7 @@ Mechanism coupled_drives(std::uint32_t seed) {
 
 TEST_CASE("a branch begins at the answer that solving gives, not where Newton-Raphson goes past it",
           "[torque][branches]") {
-  // A ball on an arm of 0.3 m, hinged 0.05 m beside the shaft, whose torque falls as the arm rises:
-  // w^2 (e + L sin q) cos q = g sin q and 5 - gain q = 0.3 w + 0.01 w^2. The law counts whole turns of the
-  // arm, and Newton-Raphson goes several of them back.
-  Mechanism m;
-  m.gravity = {0, -9.80665, 0};
-  m.bodies = {body("t", 2, {0, 0, 0}, {0.4, 0.4, 0.4}), body("ball", 1.2, {0.05, -0.3, 0})};
-  m.joints = {torque_driven(revolute("m", "ground", "t", {0, 0, 0}, {0, 1, 0}), 7,
-                            "5 N m - 3 N m * coordinate(p)",
-                            "0.3 N m s * rate(m) + 0.01 N m s^2 * rate(m)^2"),
-              dampened(revolute("p", "t", "ball", {0.05, 0, 0}, {0, 0, 1}), 0.08)};
-  validate(m);
+  const Mechanism m = arm_on_a_shaft("3 N m");
   const Solution s = Analysis(m).solve();
   REQUIRE(s.status == Status::converged);
   const double w = speed(s, "m"), q = value(s, "p");
@@ -445,6 +450,17 @@ TEST_CASE("a branch begins at the answer that solving gives, not where Newton-Ra
            });
   };
   CHECK(std::ranges::any_of(d.branches, begins_there));
+}
+
+TEST_CASE("a far state is left for the nearest stable one where the state that it went past hunts",
+          "[torque]") {
+  const Mechanism m = arm_on_a_shaft("3.1 N m"); // beyond the Hopf point at 3.012 N m
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK(std::abs(value(s, "p")) < 2);
+  expect_same_motion(m, s, "m", 100, 1);
 }
 
 TEST_CASE("random mechanisms with three coupled drives end where solving says", "[torque][random]") {
