@@ -1,6 +1,7 @@
 #include "engine/search/all_equilibria.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/search/find_equilibrium.hpp"
 
 #include <algorithm>
@@ -30,6 +31,8 @@ class Searcher {
 
   EquilibriumList run() {
     report_.ranges = search_ranges(p_, drawn_);
+    for (const DriveTorqueElement& torque : p_.system.torques)
+      if (torque.keeps_momentum && finds_speed(link_of(torque))) kept_.push_back(torque.link);
     take_answer();
     arrive(drawn_);
     deflate_from(drawn_, 8);
@@ -56,6 +59,53 @@ class Searcher {
     }
   }
 
+  const Link& link_of(const DriveTorqueElement& torque) const {
+    return p_.system.links[static_cast<std::size_t>(torque.link)];
+  }
+
+  // The speeds at which drives have the momentum that they keep, the rest standing as in `q`: the rows of the
+  // balance, in which they are linear, vanish.
+  void set_kept_speeds(Eigen::VectorXd& q) {
+    const auto count = static_cast<Eigen::Index>(kept_.size());
+    if (count == 0) return;
+    const auto link = [&](Eigen::Index i) -> const Link& {
+      return p_.system.links[static_cast<std::size_t>(kept_[static_cast<std::size_t>(i)])];
+    };
+    Unknowns z{q, Eigen::VectorXd::Zero(p_.system.rows)};
+    Eigen::VectorXd left(count), there(count);
+    const auto evaluate_into = [&](Eigen::VectorXd& rows) {
+      evaluate(p_, z, 0, w_);
+      for (Eigen::Index i = 0; i < count; ++i)
+        rows[i] = w_.residual.f[link(i).v];
+    };
+    for (Eigen::Index i = 0; i < count; ++i)
+      z.q[link(i).q] = 0;
+    evaluate_into(left);
+    Eigen::MatrixXd inertia(count, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      z.q[link(i).q] = p_.scaling.column[link(i).v];
+      evaluate_into(there);
+      z.q[link(i).q] = 0;
+      inertia.col(i) = there - left;
+    }
+    const auto speeds = least_squares(inertia, -left);
+    if (!speeds || !speeds->allFinite()) return;
+    for (Eigen::Index i = 0; i < count; ++i)
+      q[link(i).q] = (*speeds)[i] * p_.scaling.column[link(i).v];
+    reach_kept_speeds(q);
+  }
+
+  // They follow from where the rest stands: no range bounds them.
+  void reach_kept_speeds(const Eigen::VectorXd& q) {
+    for (std::size_t i = 0; i < report_.ranges.size() && !kept_.empty(); ++i) {
+      const int l = p_.system.coordinates[i].link;
+      if (std::ranges::find(kept_, l) == kept_.end()) continue;
+      const double speed = q[p_.system.links[static_cast<std::size_t>(l)].q];
+      SearchRange& range = report_.ranges[i];
+      range = {std::min(range.lower, speed), std::max(range.upper, speed)};
+    }
+  }
+
   void look_in_ranges() {
     SearchStarts starts(p_, report_.ranges, options_.seed);
     Eigen::VectorXd q = drawn_;
@@ -67,7 +117,8 @@ class Searcher {
       }
       starts.next(q);
       ++spread_;
-      spend(closing);
+      set_kept_speeds(q);
+      spend(closing + static_cast<double>(kept_.size()));
       if (assemble(p_, q, 0, w_)) {
         if (arrive(q)) ++report_.arrivals;
         deflate_from(q, 2);
@@ -82,6 +133,7 @@ class Searcher {
     constexpr double times = 1000;
     const std::size_t most = list_.states.size() + 50;
     const bool none = list_.states.empty();
+    if (kept_.size() == p_.system.torques.size()) return;
     if (ended() || !widen_speeds(p_, times, none, report_.ranges)) return;
     SearchStarts starts(p_, report_.ranges, options_.seed);
     Eigen::VectorXd q = drawn_;
@@ -89,7 +141,8 @@ class Searcher {
     std::size_t known = list_.states.size();
     for (int vain = 0; vain < enough && known < most && !ended(); ++vain) {
       starts.next(q);
-      spend(closing);
+      set_kept_speeds(q);
+      spend(closing + static_cast<double>(kept_.size()));
       if (!assemble(p_, q, 0, w_)) continue;
       if (arrive(q)) ++report_.arrivals;
       deflate_from(q, 1);
@@ -148,6 +201,7 @@ class Searcher {
   // The equilibrium that a run arrived at, evaluated last, if it is one that is looked for: known or new.
   bool keep(Unknowns z, NewtonOutcome outcome) {
     if (!same_assembly_mode(p_, w_.kinematics)) return false;
+    reach_kept_speeds(z.q);
     const Placement placement = bring_within(p_, report_.ranges, z.q);
     if (placement == Placement::outside) return false;
     if (placement == Placement::turned) {
@@ -329,6 +383,7 @@ class Searcher {
   SearchReport report_;
   EquilibriumList list_;
   std::vector<Family> families_; // by state of the list
+  std::vector<int> kept_;        // links whose drives keep a momentum
 };
 
 } // namespace

@@ -19,7 +19,8 @@ struct SearchRange {
 // outside; slides: twice the mechanism's reach around the drawn value (four times, what floats) and the
 // spring's free one, or the places where its law changes its direction, as far as stops let them go. Driven
 // coordinates from and to their value at the drawn phase; where a torque drives, speeds (rad/s or m/s) from
-// rest to three times that at which the search for them begins.
+// rest to three times that at which the search for them begins; of drives that keep a momentum whatever that
+// makes of it at the starts.
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
 
 // Widens those of speeds that are found to `times` as much, and `either_way` or as they go, with starts of

@@ -242,6 +242,58 @@ TEST_CASE("a heavy top left to itself: steady precession with both momenta kept"
   CHECK_THAT(std::abs(s.eigenvalues->back().imag()), WithinRel(std::sqrt(curvature / across), 1e-5));
 }
 
+TEST_CASE("all states of a top in a heavy yoke that keep its momenta are found, whichever way they turn it",
+          "[momentum]") {
+  // Routh's potential V(a) = m g l cos a + (p_phi - p_psi cos a)^2 / (2 (J + I1 sin^2 a)) on a circle: its
+  // stationary places are those of the mechanism, upright and hanging among them, and even in number.
+  const double mass = 2, length = 0.15, inertia = 0.02, across = 0.015 + mass * length * length;
+  for (const auto& [yoke, spin] : {std::pair{0.01, 180.}, {0.01, -180.}, {1e-3, 180.}, {1e-3, 18.}}) {
+    CAPTURE(yoke, spin);
+    Mechanism m;
+    m.gravity = {0, 0, -standard_gravity};
+    m.bodies = {body("yoke", 0, {0, 0, 0}, {0, 0, yoke}), body("ring", 0),
+                body("top", mass, {0, -length * std::sin(0.6), length * std::cos(0.6)})};
+    m.bodies[2].rotation = Quat(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+    m.bodies[2].inertia = {0.015, 0.015, inertia};
+    m.joints = {
+        left_to_itself(revolute("precession", "ground", "yoke", {0, 0, 0}, {0, 0, 1}), 1.5),
+        dampened(revolute("nutation", "yoke", "ring", {0, 0, 0}, {1, 0, 0}), 0.01),
+        left_to_itself(revolute("spin", "ring", "top", {0, 0, 0}, {0, -std::sin(0.6), std::cos(0.6)}), spin)};
+    m.joints[1].coordinates[0].drawn = 0.6;
+    validate(m);
+    const double of_spin = inertia * (spin + 1.5 * std::cos(0.6));
+    const double of_precession = (yoke + across * std::pow(std::sin(0.6), 2)) * 1.5 + of_spin * std::cos(0.6);
+    const auto precession = [&](double a) {
+      return (of_precession - of_spin * std::cos(a)) / (yoke + across * std::pow(std::sin(a), 2));
+    };
+    const auto slope = [&](double a) {
+      const double p = precession(a);
+      return std::sin(a) * (-mass * standard_gravity * length + of_spin * p - across * p * p * std::cos(a));
+    };
+    const std::vector<Solution> found = Analysis(m).solve_all().equilibria;
+    constexpr int steps = 20000;
+    std::size_t count = 0;
+    for (int i = 0; i < steps; ++i) {
+      double from = -3.1 + 2 * std::numbers::pi * i / steps,
+             to = -3.1 + 2 * std::numbers::pi * (i + 1) / steps;
+      if (slope(from) * slope(to) > 0) continue;
+      for (int k = 0; k < 60; ++k) {
+        const double middle = (from + to) / 2;
+        (slope(from) * slope(middle) > 0 ? from : to) = middle;
+      }
+      ++count;
+      CAPTURE(from, precession(from));
+      CHECK(std::ranges::any_of(found, [&](const Solution& s) {
+        return std::abs(std::remainder(value(s, "nutation") - from, 2 * std::numbers::pi)) < 1e-9 &&
+               std::abs(found_speed(s, "precession") - precession(from)) <
+                   1e-8 * (1 + std::abs(precession(from)));
+      }));
+    }
+    CHECK(count >= 4);
+    CHECK(found.size() == count);
+  }
+}
+
 TEST_CASE("a top left to itself is as stable however it lies in space", "[momentum]") {
   Mechanism m;
   m.bodies = {body("yoke", 0), body("ring", 0), body("top", 1, {0.5, 0, 0}, {0.01, 0.01, 0.02})};
