@@ -2,6 +2,7 @@
 
 #include "app/render/imgui_compat.hpp"
 
+#include <array>
 #include <cstddef>
 
 namespace flyball {
@@ -43,13 +44,17 @@ void ImGuiRenderer::upload_fonts() {
   unsigned char* pixels = nullptr;
   int width = 0, height = 0;
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  atlas.GetTexDataAsRGBA32(&pixels, &width, &height);
+  atlas.GetTexDataAsAlpha8(&pixels, &width, &height);
   fonts_ = make_texture();
   glBindTexture(GL_TEXTURE_2D, fonts_.get());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  // White, as opaque as the glyphs: a quarter of the memory that four channels take.
+  constexpr std::array<GLint, 4> white{GL_ONE, GL_ONE, GL_ONE, GL_RED};
+  glTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_RGBA, white.data());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, pixels);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
   check_gl("sending the fonts");
   atlas.SetTexID(imgui_texture(fonts_.get()));
 }

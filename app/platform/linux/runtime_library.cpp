@@ -5,7 +5,8 @@
 namespace flyball {
 
 RuntimeLibrary::RuntimeLibrary(std::initializer_list<const char*> names, Which which) {
-  const int how = RTLD_NOW | RTLD_LOCAL | (which == Which::loaded ? RTLD_NOLOAD : 0);
+  // It stays when this goes: to load libOSMesa with LLVM again takes longer than to make a context by it.
+  const int how = RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | (which == Which::loaded ? RTLD_NOLOAD : 0);
   for (const char* name : names)
     if (!handle_) handle_ = ::dlopen(name, how);
 }
