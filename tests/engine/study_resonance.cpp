@@ -127,10 +127,11 @@ TEST_CASE("A resonance curve that is cancelled keeps what it has, and bounds end
 
 TEST_CASE("A resonance curve that was stopped goes on with the points that are there") {
   ResonanceOptions usual;
-  usual.coarse = 9;
-  usual.tolerance = 0.03;
+  usual.coarse = 5;
+  usual.tolerance = 0.1;
   const ResonanceCurve whole = resonance_curve(resonant_rotor(), rotor_speed, 10, 100, usual);
-  for (const std::size_t after : {4u, 12u}) { // among those in order, and among those between
+  REQUIRE(whole.points.size() > 7);
+  for (const std::size_t after : {2u, 7u}) { // among those in order, and among those between
     CAPTURE(after);
     ResonanceOptions options = usual;
     std::atomic<bool> cancel = false;
