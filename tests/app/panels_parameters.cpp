@@ -81,7 +81,7 @@ TEST_CASE("a parameter that is made for a number alone begins with the number's 
   REQUIRE(stiffness != 1);
   d.frames(60);
   d.click("inspector/spring/stiffness");
-  d.type("= k");
+  d.type("=k");
   d.key(key_enter, true);
   d.frames(2);
   CHECK(formula_at(d.m(), "joints.slide.spring.stiffness") == "k");

@@ -258,7 +258,7 @@ struct BesideDiagram {
     beside = room.x >= critical_table_width(ui) + gap + least_width * ui.scale;
     if (beside) return;
     // As many rows as leave the diagram its height; its circles tell the others.
-    const float space = room.y - least_height * ui.scale - ImGui::GetStyle().ItemSpacing.y;
+    const float space = room.y - least_height * ui.scale - gap; // the same in whatever style it is asked
     for (std::size_t count = std::min(rows, most_below); count >= fewest; --count)
       if (const float height = table_line(ui) * static_cast<float>(1 + count); height <= space) {
         below = height;
@@ -494,7 +494,8 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
 void modes_panel(Session& session, Ui& ui, CampbellView& drawn, const CommandRunner& commands) {
   const float s = ui.scale;
   const float width = std::min(list_width * s, std::floor(0.48f * ImGui::GetContentRegionAvail().x));
-  const ImVec2 room = ImGui::GetContentRegionAvail(), beside(room.x - width - 14 * s, room.y);
+  const ImVec2 room = ImGui::GetContentRegionAvail(),
+               beside(std::floor(room.x - width - 14 * s), std::floor(room.y)); // as a child window's
   ImGui::BeginChild("modes", {width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 4 * s});
   const bool told = modes_list(session, ui, drawn, beside, commands);
