@@ -1,18 +1,21 @@
 #include "engine/kkt/speeds_kkt.hpp"
 
+#include "engine/kkt/speed_time.hpp"
+
 #include <algorithm>
 
 namespace flyball {
 namespace {
 
-// Of each shaft, scaled.
-void find_inertia(MotionProducts& products, const std::vector<int>& speeds, Eigen::VectorXd& out) {
+// Of each shaft, scaled: what a speed gains counts by this time (speed_time.hpp).
+void find_inertia(MotionProducts& products, const std::vector<int>& speeds, double time,
+                  Eigen::VectorXd& out) {
   Eigen::VectorXd product;
   out.resize(static_cast<Eigen::Index>(speeds.size()));
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const int v = speeds[static_cast<std::size_t>(i)];
     products.inertia(Eigen::VectorXd::Unit(products.coordinates(), v), product);
-    out[i] = product[v];
+    out[i] = time * product[v];
   }
 }
 
@@ -33,7 +36,7 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   columns_.resize(size_, count);
   resists_.resize(count, count);
-  inertia_.resize(0); // until it is asked for
+  find_inertia(products_, speeds_, speed_time(problem), inertia_);
   for (Eigen::Index i = 0; i < count; ++i) {
     work_ = Eigen::VectorXd::Unit(size_, speeds_[static_cast<std::size_t>(i)]);
     products_.velocity(work_, product_);
@@ -71,10 +74,7 @@ void SpeedsKkt::factor(double shift) {
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   response_.resize(size_, count);
   Eigen::MatrixXd border = resists_;
-  if (shift != 0) {
-    if (inertia_.size() == 0) find_inertia(products_, speeds_, inertia_);
-    border.diagonal() += shift * inertia_;
-  }
+  if (shift != 0) border.diagonal() += shift * inertia_;
   Eigen::VectorXd noise(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     tree_.solve(columns_.col(i), answer_);
@@ -126,7 +126,6 @@ double SpeedsKkt::with_speeds(const Eigen::VectorXd& x, double square, Eigen::Ve
 }
 
 double SpeedsKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
-  if (inertia_.size() == 0) find_inertia(products_, speeds_, inertia_);
   return with_speeds(x, tree_.metric(x, product), product);
 }
 

@@ -12,8 +12,7 @@ namespace {
 class SlowMotion {
  public:
   SlowMotion(const Problem& problem, Unknowns& z, Workspace& w) : p_(problem), z_(z), w_(w) {
-    // Trees take speeds as they are: a second.
-    const double unit = p_.form == KktForm::dense ? speed_time(p_) : 1;
+    const double unit = speed_time(p_);
     weight_.setOnes(p_.system.nv);
     for (const Link& link : p_.system.links)
       if (link.v >= 0 && finds_speed(link)) weight_[link.v] = unit;

@@ -10,8 +10,7 @@
 // that, -f^T x >= x^T W x / (2 h).
 //
 // What a speed gains counts by the time of a radian at its unit (kkt/speed_time.hpp), and so do the first
-// step and its bounds: the way is the same in another unit of time. Of trees beyond the dense matrices it is
-// a second.
+// step and its bounds: the way is the same in another unit of time.
 #pragma once
 
 #include "engine/solve/newton.hpp"

@@ -6,6 +6,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/solve/drive_cuts.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/design.hpp"
 #include "engine/study/hopf_curve.hpp"
@@ -323,6 +324,41 @@ TEST_CASE("where the slow motion leads does not depend on the unit of time", "[t
     CHECK_THAT(std::cos(s.coordinates[1].value), WithinRel(standard_gravity / 18, 1e-12));
     if (!iterations) iterations = s.iterations;
     CHECK(s.iterations == *iterations);
+  }
+}
+
+TEST_CASE("where the slow motion of many links leads does not depend on the unit of time", "[torque]") {
+  // A chain hung on a shaft beside its axis: beyond the dense matrices.
+  constexpr int links = 12;
+  std::optional<int> iterations;
+  std::vector<double> angles;
+  for (const double second : {1., 1e-6, 1e-3, 1e2, 1e5}) {
+    CAPTURE(second);
+    const double square = second * second;
+    Mechanism m;
+    m.gravity = {0, -standard_gravity / square, 0};
+    m.bodies = {body("hub", 1, Vec3::Zero(), {0.1, 0.1, 0.1})};
+    m.joints = {torque_driven(revolute("spin", "ground", "hub", Vec3::Zero(), Vec3::UnitY()), 1 / second,
+                              number_text(60 / square) + " N m - " + number_text(20 / second) +
+                                  " N m s * rate(spin)")};
+    for (int i = 0; i < links; ++i) {
+      const std::string name = "link" + std::to_string(i), before = i ? m.bodies.back().name : "hub";
+      m.bodies.push_back(body(name, 0.1, {0, -0.2 * i - 0.2, 0}, {1e-4, 1e-4, 1e-4}));
+      m.joints.push_back(
+          dampened(revolute("hinge" + std::to_string(i), before, name, {0, -0.2 * i, 0}), 0.1 / second));
+    }
+    REQUIRE(compile_for_drives(m).kkt_form == KktForm::tree);
+    const Solution s = Analysis(m).solve();
+    CAPTURE(s.message);
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.fallback == Fallback::slow_motion);
+    if (!iterations) iterations = s.iterations;
+    CHECK(s.iterations == *iterations);
+    for (int i = 0; i < links; ++i) {
+      const double angle = s.coordinates[static_cast<std::size_t>(i) + 1].value;
+      if (angles.size() < links) angles.push_back(angle);
+      CHECK_THAT(angle, Catch::Matchers::WithinAbs(angles[static_cast<std::size_t>(i)], 1e-9));
+    }
   }
 }
 
