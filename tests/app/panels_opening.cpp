@@ -113,31 +113,32 @@ TEST_CASE("the gallery shows pictures of the examples and opens one") {
   CHECK_FALSE(pictures.contains(0));
   CHECK_FALSE(app.panels->gallery.drawing);
 
-  SECTION("with the mouse") {
-    robot.click("gallery/" + cards[1].file.filename().string());
-    CHECK_FALSE(app.dialog.showing);
-    CHECK(app.session.document.file() == app.panels->gallery.cards()[1].file);
-    CHECK(app.session.answer.solution.status == Status::converged);
-  }
-  SECTION("with the keys") {
-    robot.key(key_right);
-    robot.key(key_right);
-    robot.key(key_enter);
-    CHECK_FALSE(app.dialog.showing);
-    CHECK(app.session.document.file() == app.panels->gallery.cards()[2].file);
-  }
-  SECTION("asking first") {
-    robot.key(key_escape);
-    robot.set_speed(5);
-    app.commands.run("file.examples");
-    robot.frames(2);
-    robot.click("gallery/" + cards[0].file.filename().string());
-    robot.frames(2);
-    REQUIRE(robot.shows("unsaved/discard"));
-    CHECK(robot.speed_now() == 5);
-    robot.click("unsaved/discard");
-    CHECK(app.session.document.file() == app.panels->gallery.cards()[0].file);
-  }
+  // With the mouse.
+  robot.click("gallery/" + cards[1].file.filename().string());
+  CHECK_FALSE(app.dialog.showing);
+  CHECK(app.session.document.file() == app.panels->gallery.cards()[1].file);
+  CHECK(app.session.answer.solution.status == Status::converged);
+
+  // With the keys.
+  app.commands.run("file.examples");
+  robot.frames(2);
+  robot.key(key_right);
+  robot.key(key_right);
+  robot.key(key_enter);
+  CHECK_FALSE(app.dialog.showing);
+  CHECK(app.session.document.file() == app.panels->gallery.cards()[2].file);
+
+  // Unsaved work is asked about first.
+  robot.open(shipped_file("governor"));
+  robot.set_speed(5);
+  app.commands.run("file.examples");
+  robot.frames(2);
+  robot.click("gallery/" + cards[0].file.filename().string());
+  robot.frames(2);
+  REQUIRE(robot.shows("unsaved/discard"));
+  CHECK(robot.speed_now() == 5);
+  robot.click("unsaved/discard");
+  CHECK(app.session.document.file() == app.panels->gallery.cards()[0].file);
 }
 
 namespace {
@@ -148,6 +149,11 @@ struct GalleryRobot : FileRobot {
     imgui_compat::map_key(ImGuiKey_UpArrow, key_up);
     imgui_compat::map_key(ImGuiKey_LeftArrow, key_left);
     imgui_compat::map_key(ImGuiKey_Backspace, key_backspace);
+    open_gallery();
+  }
+  // Again and again by one robot: its pictures, which are kept, take most of the time.
+  void open_gallery() {
+    if (app.dialog.showing) key(key_escape);
     app.commands.run("file.examples");
     frames(3);
     REQUIRE(app.dialog.showing);
@@ -222,57 +228,46 @@ TEST_CASE("the gallery finds examples by their titles, descriptions and parts as
   const Names all = robot.shown();
   REQUIRE(all.size() == robot.cards().size());
 
-  SECTION("a title") {
-    CHECK(robot.search("PORTER") == Names{"governor_porter", "governor_proell", "governor_friction"});
-    CHECK(robot.search(" fric") == Names{"governor_friction"});
-  }
-  SECTION("a word of the description, not the inside of one") {
-    CHECK(robot.search("striking") == Names{"fan_governor"}); // "The fly of a striking clock"
-    CHECK(robot.search("x").empty());
-  }
-  SECTION("the inside of a word is not found") {
-    CHECK(robot.search("top ").size() < all.size() / 2); // not every stop
-  }
-  SECTION("a part that is in no title and no description") {
-    CHECK(robot.search("pulley") == Names{"fan_governor"});
-  }
-  SECTION("a group") {
-    CHECK(robot.search("linkages") == Names{"ball_on_string", "chain20", "fourbar_turntable"});
-  }
-  SECTION("the first that is found is chosen, and Enter opens it") {
-    robot.search("gear backlash");
-    CHECK(robot.shown() == Names{"gear_train"});
-    robot.key(key_enter);
-    CHECK_FALSE(robot.app.dialog.showing);
-    CHECK(robot.opened() == "gear_train");
-  }
-  SECTION("arrows go through what is found, down into the next group") {
-    robot.search("belts"); // by the group, by the belt
-    const Names found = robot.shown();
-    REQUIRE(found == Names{"gear_train", "differential", "fan_governor"});
-    robot.key(key_down);
-    robot.key(key_enter);
-    CHECK(robot.opened() == "fan_governor");
-  }
-  SECTION("nothing is found: it is told, and Enter opens nothing") {
-    CHECK(robot.search("zeppelin").empty());
-    robot.key(key_enter);
-    CHECK(robot.app.dialog.showing);
-    for (int i = 0; i < 8; ++i)
-      robot.key(GalleryRobot::key_backspace);
-    CHECK(robot.shown() == all);
-    robot.search("windmill");
-    robot.key(key_enter);
-    CHECK(robot.opened() == "windmill");
-  }
-  SECTION("what was searched for is forgotten when it opens again") {
-    robot.search("windmill");
-    robot.key(key_escape);
-    CHECK_FALSE(robot.app.dialog.showing);
-    robot.app.commands.run("file.examples");
-    robot.frames(3);
-    CHECK(robot.shown() == all);
-  }
+  const auto found = [&](const std::string& text) {
+    robot.open_gallery();
+    return robot.search(text);
+  };
+
+  CHECK(found("PORTER") == Names{"governor_porter", "governor_proell", "governor_friction"}); // of titles
+  CHECK(robot.search(" fric") == Names{"governor_friction"});
+  CHECK(found("striking") == Names{"fan_governor"}); // of its description: "The fly of a striking clock"
+  CHECK(robot.search("x").empty());                  // the inside of a word is not found
+  CHECK(found("top ").size() < all.size() / 2);      // not every stop
+  CHECK(found("pulley") == Names{"fan_governor"});   // a part, in no title and no description
+  CHECK(found("linkages") == Names{"ball_on_string", "chain20", "fourbar_turntable"}); // a group
+
+  // The first that is found is chosen, and Enter opens it.
+  CHECK(found("gear backlash") == Names{"gear_train"});
+  robot.key(key_enter);
+  CHECK_FALSE(robot.app.dialog.showing);
+  CHECK(robot.opened() == "gear_train");
+
+  // Arrows go through what is found, down into the next group.
+  REQUIRE(found("belts") == Names{"gear_train", "differential", "fan_governor"}); // by the group, by the belt
+  robot.key(key_down);
+  robot.key(key_enter);
+  CHECK(robot.opened() == "fan_governor");
+
+  // Nothing is found: it is told, and Enter opens nothing.
+  CHECK(found("zeppelin").empty());
+  robot.key(key_enter);
+  CHECK(robot.app.dialog.showing);
+  for (int i = 0; i < 8; ++i)
+    robot.key(GalleryRobot::key_backspace);
+  CHECK(robot.shown() == all);
+  robot.search("windmill");
+  robot.key(key_enter);
+  CHECK(robot.opened() == "windmill");
+
+  // What was searched for is forgotten when it opens again.
+  CHECK(found("windmill") == Names{"windmill"});
+  robot.open_gallery();
+  CHECK(robot.shown() == all);
 }
 
 TEST_CASE("the gallery's arrows keep the column from group to group, and the chosen card comes into sight") {
@@ -285,33 +280,36 @@ TEST_CASE("the gallery's arrows keep the column from group to group, and the cho
   const auto count = robot.cards().size();
   // Three in the first group, so in one row: the middle one, one row down, and back.
   REQUIRE(robot.cards()[3].group != robot.cards()[0].group);
-  REQUIRE(rect(0).from.y == rect(2).from.y);
+  const auto go_to_fifth = [&] {
+    REQUIRE(rect(0).from.y == rect(2).from.y);
+    robot.key(key_right);
+    robot.key(key_down);
+    robot.key(GalleryRobot::key_up);
+    robot.key(key_down);
+  };
+  go_to_fifth();
+  CHECK(rect(4).from.x == rect(1).from.x);
+  robot.key(key_enter);
+  CHECK(robot.opened() == robot.cards()[4].file.stem());
+
+  robot.open_gallery();
+  go_to_fifth();
+  for (std::size_t i = 0; i < count; ++i)
+    robot.key(key_down);
   robot.key(key_right);
-  robot.key(key_down);
-  robot.key(GalleryRobot::key_up);
-  robot.key(key_down);
-  SECTION("one down") {
-    CHECK(rect(4).from.x == rect(1).from.x);
-    robot.key(key_enter);
-    CHECK(robot.opened() == robot.cards()[4].file.stem());
-  }
-  SECTION("to the last one") {
-    for (std::size_t i = 0; i < count; ++i)
-      robot.key(key_down);
-    robot.key(key_right);
-    robot.key(key_right);
-    robot.frames(2);
-    CHECK(rect(count - 1).to.y < static_cast<float>(robot.size.height));
-    CHECK(rect(count - 1).to.y - rect(count - 1).from.y > 150);
-    robot.key(key_enter);
-    CHECK(robot.opened() == robot.cards()[count - 1].file.stem());
-  }
-  SECTION("by the mouse") {
-    robot.wheel("gallery/" + robot.cards()[0].file.filename().string(), -3);
-    CHECK(rect(5).to.y < static_cast<float>(robot.size.height));
-    robot.click("gallery/" + robot.cards()[5].file.filename().string());
-    CHECK(robot.opened() == robot.cards()[5].file.stem());
-  }
+  robot.key(key_right);
+  robot.frames(2);
+  CHECK(rect(count - 1).to.y < static_cast<float>(robot.size.height));
+  CHECK(rect(count - 1).to.y - rect(count - 1).from.y > 150);
+  robot.key(key_enter);
+  CHECK(robot.opened() == robot.cards()[count - 1].file.stem());
+
+  robot.open_gallery(); // by the mouse
+  go_to_fifth();
+  robot.wheel("gallery/" + robot.cards()[0].file.filename().string(), -3);
+  CHECK(rect(5).to.y < static_cast<float>(robot.size.height));
+  robot.click("gallery/" + robot.cards()[5].file.filename().string());
+  CHECK(robot.opened() == robot.cards()[5].file.stem());
 }
 
 TEST_CASE("the gallery's search has the keys again after a click beside it, and Tab goes on to the buttons") {

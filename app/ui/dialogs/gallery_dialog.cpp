@@ -175,7 +175,7 @@ float full_height(const Ui& ui, const std::vector<CardRow>& rows) {
 void GalleryDialog::open(const Session& session, DialogState& dialog) {
   cards_ = read_cards(session.options.scenes);
   search_.clear();
-  chosen_ = 0;
+  chosen_ = -1; // the first then, which comes into sight
   dialog.wanted = Dialog::gallery;
 }
 
