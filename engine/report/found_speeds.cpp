@@ -136,6 +136,7 @@ std::string missing_speed_message(const Mechanism& mechanism, const Problem& pro
   const Solution there = Analysis(at_constant_speeds(mechanism, system, q)).solve();
   if (there.status != Status::converged)
     return there.status == Status::not_converged ? "" : "At the speed it begins with: " + there.message;
+  if (there.stable == false) return {}; // what the torque is there tells nothing of where the motion goes
   set_start(system, problem.parameters, places_of_free(there.coordinates), q);
   forward<double>(system, problem.parameters, q, 0, w.kinematics);
   std::string text;

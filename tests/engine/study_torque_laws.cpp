@@ -93,6 +93,18 @@ TEST_CASE("torques that no speed balances are refused with the reason", "[torque
     CHECK(s.status == Status::not_converged);
     CHECK_THAT(s.message, ContainsSubstring("Nothing determines the speed of shaft"));
   }
+  SECTION("without a word of torques at a pose that the motion does not come to") {
+    // A slide whose spring is softer than m w^2 = 225 N/m: at 15 rad/s it balances at -112.5 m alone,
+    // unstable.
+    m.bodies.push_back(body("block", 1, {0.1, 0, 0}));
+    m.joints = {torque_driven(shaft, 15, "8 N m + 5 N*coordinate(slide)", "0.5 N m s*rate(shaft)"),
+                dampened(joint(JointType::prismatic, "slide", "rotor", "block", {0.1, 0, 0}, {1, 0, 0}), 5)};
+    m.joints[1].coordinates[0].spring = CoordinateSpring{224.8, 0, "", 0};
+    const Solution s = Analysis(m).solve();
+    CHECK(s.status == Status::not_converged);
+    CHECK_FALSE(s.message.empty());
+    CHECK(s.message.find("shaft gives") == std::string::npos);
+  }
   SECTION("what turns with the drive") {
     const Mechanism governor = shipped("governor_engine", {{"gravity.0", 1.}, {"bodies.ball1.mass", 1.2}});
     const Solution s = Analysis(governor).solve();
