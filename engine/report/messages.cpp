@@ -7,6 +7,7 @@
 #include "engine/search/most_turned.hpp"
 #include "engine/solve/singular_loops.hpp"
 #include "engine/solve/unbounded.hpp"
+#include "engine/stability/neutral_directions.hpp"
 #include "engine/system/implied_rates.hpp"
 
 #include <algorithm>
@@ -304,7 +305,49 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
          " turns with the drives, so the balance holds at one moment only.";
 }
 
-std::string solution_message(const ReportInput& in, int rank, const Solution& out) {
+namespace {
+
+// The one direction that nothing resists where it turns a ball alone; else how many there are, where they are
+// fewer than what takes part in them. Empty where each coordinate is free by itself, or that is not known.
+std::string directions_in_words(const ReportInput& in, std::size_t joints, Workspace& w) {
+  const System& system = in.problem.system;
+  if (system.nv > largest_for_eigenvalues) return {};
+  const FactoredState at = factor_at({system, in.problem.parameters, in.problem.scaling, in.problem.cancel},
+                                     in.found.z, w.elsewhere());
+  const DenseKkt& dense = at.w.dense;
+  const NeutralDirections neutral =
+      neutral_directions(at, dense.constraints().basis() * dense.hessian().null_basis());
+  const std::vector<int>& parts = neutral.coordinates;
+  if (parts != in.stability.neutral) return {};
+  const bool one = neutral.count == 1;
+  const auto ball = std::ranges::find_if(system.links, [&](const Link& link) {
+    return link.type == LinkType::spherical && link.v >= 0 && parts.front() >= link.v &&
+           parts.back() < link.v + 3;
+  });
+  if (one && ball != system.links.end()) {
+    Vec3 axis = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+      axis += neutral.directions(ball->v + i, 0) * in.problem.scaling.column[ball->v + i] *
+              at.w.kinematics.columns[static_cast<std::size_t>(ball->v + i)].axis;
+    axis.normalize();
+    Eigen::Index largest_entry = 0;
+    axis.cwiseAbs().maxCoeff(&largest_entry);
+    if (axis[largest_entry] < 0) axis = -axis;
+    std::string text;
+    for (const double x : axis)
+      text += (text.empty() ? "" : ", ") + rounded_text(std::abs(x) < 1e-9 ? 0 : x, 4);
+    return " turning about [" + text + "]; the angle of that turn is arbitrary";
+  }
+  if (static_cast<std::size_t>(neutral.count) == parts.size()) return {};
+  return (one ? " along one direction" : " along " + std::to_string(neutral.count) + " directions") +
+         std::string(joints > 1 ? " together; where they stand" : "; where it stands") +
+         (one ? " along it" : " along these") + " is arbitrary";
+}
+
+} // namespace
+
+std::string solution_message(const ReportInput& in, int rank, const Solution& out, bool details,
+                             Workspace& w) {
   const System& system = in.problem.system;
   std::string text = message(in.found, in.problem);
   if (text.empty()) text = "Converged.";
@@ -318,7 +361,11 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
     for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
       text += (i ? ", " : " ") + out.neutral[i];
     if (out.neutral.size() > named) text += " and " + std::to_string(out.neutral.size() - named) + " more";
-    text += out.neutral.size() == 1 ? "; its value is arbitrary" : "; their values are arbitrary";
+    const std::string along = details ? directions_in_words(in, out.neutral.size(), w) : std::string();
+    if (!along.empty())
+      text += along;
+    else
+      text += out.neutral.size() == 1 ? "; its value is arbitrary" : "; their values are arbitrary";
     text += any_has_stop(in.mechanism, out.neutral) ? " between stops." : ".";
   }
   if (in.stability.angles_leave_open)

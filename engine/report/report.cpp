@@ -110,7 +110,6 @@ std::optional<RateWithError> constant_rate(const System& system, const Parameter
                                            const Eigen::VectorXd& q, const Eigen::VectorXd& error,
                                            const ReportedCoordinate& of) {
   const auto c = static_cast<std::size_t>(of.cut);
-  if (is_rotation_vector(system.cuts[c].type, of.index)) return {};
   const double unit = of.angle ? 1 : p.length;
   Kinematics<double> k;
   const auto rate_at = [&](const Eigen::VectorXd& there, double t) {
@@ -120,6 +119,9 @@ std::optional<RateWithError> constant_rate(const System& system, const Parameter
   };
   RateWithError out{rate_at(q, 0), 0};
   const double fastest = fastest_drive(system, p, k);
+  // Of a rotation vector only one that stands goes on at the same rate.
+  if (is_rotation_vector(system.cuts[c].type, of.index) && !(std::abs(out.value) <= 1e-9 * fastest * unit))
+    return {};
   const std::vector<DriveRate> rates = drive_rates(system, p, q);
   for (const double time : phase_times(rates))
     if (!(std::abs(rate_at(q, time) - out.value) <=
@@ -291,7 +293,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     if (in.measures)
       in.measures->mark_nonunique(in.mechanism, out.reactions, out.drive_torques, out.measures);
   }
-  out.message = solution_message(in, rank, out);
+  out.message = solution_message(in, rank, out, details, w);
   if (const std::string kinks = kink_message(system, in.mechanism, in.stability); !kinks.empty())
     out.message += " " + kinks;
 }

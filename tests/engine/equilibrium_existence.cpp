@@ -1,4 +1,5 @@
 // When there is a steady state, when there is none, and what the messages blame.
+#include "engine/mechanism/text.hpp"
 #include "tests/engine/equilibrium_mechanisms.hpp"
 
 #include "engine/mechanism/error.hpp"
@@ -332,8 +333,27 @@ TEST_CASE("directions that nothing resists are said to be neutral") {
     CHECK(s.neutral == std::vector<std::string>{"socket"});
     CHECK_FALSE(s.stable.has_value());
     CHECK(s.stability_reason == StabilityReason::neutral);
-    CHECK_THAT(s.message, ContainsSubstring("Nothing resists socket"));
+    CHECK_THAT(s.message, ContainsSubstring("Nothing resists socket turning about [0, 1, 0]; the angle"));
     CHECK(std::abs(s.poses[0].position.y() + m.bodies[0].position.norm()) < 1e-12);
+  }
+  SECTION("a ball on a string turned about it") {
+    const Solution s = solve(shipped("ball_on_string"));
+    CHECK(s.neutral == std::vector<std::string>{"ball.free"});
+    const Vec3 string = (s.poses[1].position - Vec3(0.25, 0.9, 0)).normalized();
+    const Vec3 axis =
+        std::abs(string.x()) > std::abs(string.y()) ? string : Vec3(-string); // to the larger one
+    CHECK_THAT(s.message, ContainsSubstring("Nothing resists ball.free turning about [" +
+                                            rounded_text(axis.x(), 4) + ", " + rounded_text(axis.y(), 4)));
+  }
+  SECTION("two that are geared to each other") {
+    Mechanism m;
+    m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {1, 0, 0}, {0.1, 0.1, 0.1})};
+    m.joints = {revolute("p", "ground", "a", {0, 0, 0}, {0, 0, 1}),
+                revolute("q", "ground", "b", {1, 0, 0}, {0, 0, 1}), gear("mesh", "p", "q", -2)};
+    const Solution s = solve(m);
+    CHECK_THAT(s.message,
+               ContainsSubstring("Nothing resists p, q along one direction together; where they stand "
+                                 "along it is arbitrary"));
   }
   SECTION("a wheel that spins freely beside a pendulum") {
     Mechanism m = conical(0.5, 0.1, 5, 0.2);

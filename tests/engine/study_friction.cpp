@@ -465,3 +465,31 @@ TEST_CASE("a block that friction alone holds") {
   CHECK_THAT(report.drawn.takes.value(), WithinRel(3 * 10 * 0.6 / (0.9 * 24), 1e-12));
   CHECK_FALSE(report.band.found);
 }
+
+TEST_CASE("a ball joint that closes a loop stands where friction holds the rest") {
+  const Mechanism m = read_scene(R"({"flyball": 2, "name": "Spatial loop", "gravity": [3, -9, 1],
+    "bodies": [{"name": "table", "mass": 1, "position": [-0.1, 0, 0], "inertia": [1, 1, 1]},
+      {"name": "crank", "mass": 1, "position": [0.05, 0.06, 0], "inertia": [0.001, 0.002, 0.0025]},
+      {"name": "coupler", "mass": 2, "position": [0.225, 0.205, 0.11], "inertia": [0.01, 0.012, 0.02]},
+      {"name": "rocker", "mass": 1.5, "position": [0.425, 0.125, 0.15], "inertia": [0.005, 0.004, 0.003]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "table"], "at": [-0.1, 0, 0],
+        "axis": [0, 1, 0], "drive": {"speed": 2}},
+      {"name": "j1", "type": "revolute", "bodies": ["table", "crank"], "at": [0, 0, 0], "axis": [0, 0, 1],
+        "spring": {"stiffness": 12, "free": 0.5}, "damping": 0.5, "friction": {"limit": 5}},
+      {"name": "u", "type": "universal", "bodies": ["crank", "coupler"], "at": [0.1, 0.12, 0.02],
+        "axes": [[0, 1, 1], [0.2, 1, -1]], "friction": [{"limit": 2}, {"limit": 2.5}]},
+      {"name": "s", "type": "spherical", "bodies": ["coupler", "rocker"], "at": [0.35, 0.25, 0.2]},
+      {"name": "j4", "type": "revolute", "bodies": ["table", "rocker"], "at": [0.5, 0, 0.1],
+        "axis": [0.3, 0.1, 1], "friction": {"limit": 4}}]})");
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  REQUIRE_FALSE(s.frictions.empty());
+  for (int i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    const CoordinateSolution& turn = coordinate(s, "s", i);
+    CHECK_FALSE(turn.driven);
+    CHECK_FALSE(turn.speed);
+    CHECK_THAT(turn.value, WithinAbs(0, turn.error + 1e-12));
+  }
+}
