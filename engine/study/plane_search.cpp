@@ -5,13 +5,18 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
+#include "engine/report/analysis.hpp"
 #include "engine/report/friction_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
+#include "engine/solve/solution_difference.hpp"
+#include "engine/study/friction_branches.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
 namespace flyball {
 
@@ -75,8 +80,39 @@ ResponseDiagram PlaneSearch::branches(const Line& line, bool eigenvalues) {
   follow.cancel = options_.cancel;
   follow.progress = along_line();
   ResponseDiagram out = follow_branches(on(line), along.address, along.from, along.to, follow);
+  if (!out.turned) add_present(line, follow, out);
   heard(out.status, out.message);
   return out;
+}
+
+// The branch of what solving answers with at the present values, on the line that goes through these: at the
+// beginning of the line it may answer with a state of another.
+void PlaneSearch::add_present(const Line& line, const BranchOptions& follow, ResponseDiagram& diagram) const {
+  const double x = get_parameter(mechanism_, x_.address);
+  if (line.varied != 0 || line.value != get_parameter(mechanism_, y_.address) ||
+      !(x >= x_.from && x <= x_.to))
+    return;
+  SolveOptions solve;
+  solve.friction = solve.explain = false;
+  solve.cancel = options_.cancel;
+  const Solution now = Analysis(mechanism_).solve(solve);
+  if (now.status != Status::converged || now.turned) return;
+  const ResponsePoint present = response_point(now, x);
+  const auto is_beside = [&](const ResponsePoint& point) {
+    return std::abs(point.parameter - x) <= 2 * follow.largest_step * (x_.to - x_.from) &&
+           scaled_distance(point.coordinates, present.coordinates) <= 2 * follow.largest_step;
+  };
+  for (const ResponseBranch& branch : diagram.branches)
+    if (std::ranges::any_of(branch.points, is_beside)) return;
+  auto through = follow_branches_through(mechanism_, x_.address, x_.from, x_.to, present, follow);
+  if (!through) return;
+  const int before = static_cast<int>(diagram.branches.size());
+  diagram.status = Status::converged;
+  std::ranges::move(through->branches, std::back_inserter(diagram.branches));
+  for (SpecialPoint& special : through->special) {
+    special.branch += before;
+    diagram.special.push_back(std::move(special));
+  }
 }
 
 ExtendedBalance PlaneSearch::balance(std::vector<Condition> conditions, bool unfolded,

@@ -64,6 +64,7 @@ class PlaneSearch {
  private:
   double part_before() const { return static_cast<double>(line_) / static_cast<double>(lines_.size()); }
   Mechanism at_corner() const;
+  void add_present(const Line& line, const BranchOptions& follow, ResponseDiagram& diagram) const;
 
   const Mechanism& mechanism_;
   const PlaneAxis &x_, &y_;

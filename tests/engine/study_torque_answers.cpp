@@ -9,6 +9,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/study/hopf_curve.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/torque_parts.hpp"
 #include "tests/support/mechanisms.hpp"
@@ -461,6 +462,19 @@ TEST_CASE("a far state is left for the nearest stable one where the state that i
   CHECK(s.stable == true);
   CHECK(std::abs(value(s, "p")) < 2);
   expect_same_motion(m, s, "m", 100, 1);
+}
+
+TEST_CASE("curves of hunting go through the branch of the present state, too", "[torque][hopf]") {
+  // Where the range begins the state hunts, and solving answers with another.
+  Mechanism m = arm_on_a_shaft("3 N m");
+  m.joints[1].coordinates[0].damping = 0.09;
+  const PlaneCurves found = hopf_curves(m, {"joints.p.damping", 0.002, 0.3}, {"bodies.ball.mass", 1.1, 1.3});
+  INFO(found.message);
+  REQUIRE(found.curves.size() == 1);
+  // By the characteristic polynomial of the three equations of motion, in extended precision.
+  CHECK(std::ranges::any_of(found.curves[0].points, [](const PlanePoint& p) {
+    return std::abs(p.y - 1.2) < 1e-12 && std::abs(p.x - 0.07927815972081996) < 1e-9;
+  }));
 }
 
 TEST_CASE("random mechanisms with three coupled drives end where solving says", "[torque][random]") {
