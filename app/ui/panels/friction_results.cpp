@@ -52,8 +52,11 @@ void drawn_rows(const Session& session, Ui& ui, const Holding& drawn) {
     if (joint.force)
       help += ", needed " + short_text(unit.shown(*joint.force), extent_digits) + " " + unit.text;
   }
-  row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs", percent_words(*drawn.takes),
-      "% of friction", help.c_str());
+  constexpr double many = 10; // times: "165 × the friction" is understood sooner than 16528 %
+  const bool times = *drawn.takes >= many && std::isfinite(*drawn.takes);
+  row(ui, *drawn.takes <= 1 ? "Drawn pose holds, by" : "Drawn pose slips, needs",
+      times ? short_text(*drawn.takes, 3) : percent_words(*drawn.takes),
+      times ? "× the friction" : "% of friction", help.c_str());
   note_widget(ui.widgets, "results/friction/drawn");
 }
 
