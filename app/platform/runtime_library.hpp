@@ -1,4 +1,4 @@
-// A library of the system's, loaded at run time.
+// A library of the system's, loaded at run time and kept until the process ends.
 #pragma once
 
 #include <initializer_list>
