@@ -385,6 +385,24 @@ TEST_CASE("critical speeds have a place in a panel of any height, whatever is sa
         Approx((*app.panels->studies.shown().campbell.critical)[0].at));
 }
 
+TEST_CASE("where no speed of the range is critical one click follows on to one that may be") {
+  ModesRobot robot("rotor_oil_whip");
+  Session& session = robot.app.session;
+  CHECK_FALSE(robot.app.ui.widgets.contains("campbell/farther"));
+  change_parameter(session, "parameters.n", 3);
+  session.study.modes.campbell.from = 1;
+  session.study.modes.campbell.to = 5;
+  robot.frames(5);
+  robot.widget("campbell/no_critical");
+  robot.click("campbell/farther");
+  robot.frames(5);
+  CHECK(session.study.modes.campbell.from == 1);
+  CHECK(session.study.modes.campbell.to > 68.2320470519); // the unbalance's
+  REQUIRE(robot.app.panels->studies.shown().campbell.critical);
+  CHECK_FALSE(robot.app.panels->studies.shown().campbell.critical->empty());
+  CHECK_FALSE(robot.app.ui.widgets.contains("campbell/farther"));
+}
+
 TEST_CASE("over a number that is no speed the Campbell diagram has the range of its slider") {
   Mechanism m = shipped("rotor_oil_whip");
   const double speed = get_parameter(m, "joints.spin.drive.speed");

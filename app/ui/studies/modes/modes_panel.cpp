@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 
@@ -425,7 +426,23 @@ struct CampbellPlaces {
   float below = 0; // pixels, of the table; 0: none there
 };
 
-CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn, const std::string& drive,
+// Beyond the range, a round speed before which the slowest mode may well be excited once a turn; none where
+// the axis is no speed or goes that far.
+std::optional<double> farther_end(const Session& session, const std::string& drive, double end) {
+  const auto& list = session.study.modes.list.found;
+  if (!list || parameter_unit(session.mechanism(), drive) != "rad/s") return {};
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const VibrationMode& mode : list->result.modes)
+    if (mode.oscillates()) slowest = std::min(slowest, mode.frequency);
+  constexpr double margin = 1.25; // frequencies move with the speed
+  if (!std::isfinite(slowest) || margin * slowest <= end) return {};
+  const double decade = std::pow(10, std::floor(std::log10(margin * slowest)));
+  for (const double times : {1., 2., 5.})
+    if (times * decade >= margin * slowest) return times * decade;
+  return 10 * decade;
+}
+
+CampbellPlaces show_critical(Session& session, Ui& ui, CampbellView& drawn, const std::string& drive,
                              bool told) {
   const ImVec2 before = ImGui::GetContentRegionAvail();
   if (!drawn.critical || told) return {before};
@@ -433,6 +450,18 @@ CampbellPlaces show_critical(Session& session, Ui& ui, const CampbellView& drawn
   if (rows.empty()) {
     paragraph("No critical speed in this range.", colors_of(ui).dim);
     note_widget(ui.widgets, "campbell/no_critical");
+    const PlotRange range = campbell_range(session, drive);
+    if (const auto end = farther_end(session, drive, range[1])) {
+      const ShownUnit unit = shown_unit("rad/s", session.units);
+      ImGui::SameLine(0, 10 * ui.scale);
+      if (text_button(ui, "campbell/farther",
+                      ("Follow to " + short_text(unit.shown(*end), 4) + " " + unit.text).c_str()))
+        later(ui, [&session, &drawn, from = range[0], to = *end] {
+          session.study.modes.campbell.from = from;
+          session.study.modes.campbell.to = to;
+          fit_plot(drawn.view);
+        });
+    }
     return {ImGui::GetContentRegionAvail()};
   }
   const float width = critical_table_width(ui), gap = 10 * ui.scale;
