@@ -107,7 +107,7 @@ std::string diagram_csv(const Mechanism& m, const std::string& address, const Re
   const std::vector<ValueColumn> values = value_columns(m);
   std::string out = "branch," + csv_field(address);
   for (const ValueColumn& value : values)
-    out += "," + csv_field(value.name);
+    out += "," + csv_field(column_name(value.name));
   out += ",stable,special";
   if (!ribbons.empty()) out += ",rests_on_friction";
   if (!ribbons.empty())
@@ -132,7 +132,7 @@ std::vector<Column> BranchColumns::columns() const {
     out.push_back({variation.address});
   out.insert(out.end(), {{"status", CellKind::word}, {"branch"}, {address}});
   for (const ValueColumn& value : values)
-    out.push_back({value.name});
+    out.push_back({column_name(value.name)});
   out.insert(out.end(),
              {{"stable", CellKind::verdict}, {"special", CellKind::word}, {"note", CellKind::text}});
   if (bands) out.push_back({"rests_on_friction", CellKind::word});

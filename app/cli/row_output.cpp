@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -91,6 +93,13 @@ class TableOutput final : public RowOutput {
 };
 
 } // namespace
+
+std::string column_name(const std::string& name) {
+  constexpr std::array<std::string_view, 13> own{
+      "t",        "branch", "fate", "status",  "equilibria", "equilibrium", "rests_on_friction",
+      "period_s", "stable", "note", "special", "residual",   "run_time_s"};
+  return std::ranges::find(own, name) == own.end() ? name : name + "_";
+}
 
 std::string csv_head(const std::vector<Column>& columns) {
   std::string out;

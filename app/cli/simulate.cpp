@@ -3,6 +3,7 @@
 #include "app/cli/output.hpp"
 #include "app/cli/picture.hpp"
 #include "app/cli/progress.hpp"
+#include "app/cli/row_output.hpp"
 #include "app/cli/scene_argument.hpp"
 #include "app/cli/solution_json.hpp"
 #include "app/cli/solution_text.hpp"
@@ -84,7 +85,7 @@ std::vector<RunColumn> columns_of(const Run& run) {
   };
   add("t", run.time);
   for (const CoordinateTrack& c : run.coordinates)
-    add(coordinate_label(c), c.value);
+    add(column_name(coordinate_label(c)), c.value);
   for (const CoordinateTrack& c : run.coordinates)
     add(coordinate_label(c) + ".rate", c.rate);
   for (const DriveTrack& d : run.drives)
@@ -99,7 +100,7 @@ std::vector<RunColumn> columns_of(const Run& run) {
            {"energy.balance", &e.balance}})
     if (values->size() == run.time.size()) add(name, *values);
   for (const MeasureTrack& m : run.measures)
-    add(m.name, m.value);
+    add(column_name(m.name), m.value);
   for (const PointTrack& p : run.points)
     for (const auto& [prefix, track] :
          std::initializer_list<std::pair<const char*, const std::vector<Vec3>*>>{

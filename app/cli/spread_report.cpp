@@ -130,7 +130,7 @@ StudyPart sample_part(const Mechanism& mechanism, const SpreadReport& report, st
   columns.push_back({"fate", CellKind::word});
   for (const SpreadOutput& o : report.answer.outputs) {
     outputs.push_back({o.name, o.unit, o.nominal, o.linear_deviation, o.linear_shares});
-    columns.push_back({o.name});
+    columns.push_back({column_name(o.name)});
   }
   StudyPart part =
       part_of("spread", mechanism, {{"tolerances", tolerances}, {"seed", report.seed}, {"samples", samples}},

@@ -140,7 +140,7 @@ std::vector<Column> SweepColumns::columns() const {
   if (friction) out.push_back({"rests_on_friction", CellKind::word});
   if (periodic) out.push_back({"period_s"});
   for (const ValueColumn& value : values) {
-    out.push_back({value.name});
+    out.push_back({column_name(value.name)});
     if (periodic) out.insert(out.end(), {{value.name + ".min"}, {value.name + ".max"}});
   }
   out.insert(out.end(), {{"stable", CellKind::verdict}, {"residual"}});

@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
 FLYBALL, CASES, SCENE = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
 SPEED = "joints.spin.drive.speed"
@@ -139,6 +140,30 @@ def tables(folder):
     check("no infinity in a table", not re.search("inf|nan", out.decode().lower()))
     _, out, error = run("sweep", CASES / "infinite_residual.json", "--vary", "gravity.1=0:1e-300:7")
     check("none on the screen either", not re.search(r"\b(inf|nan)\b", (out.decode() + error).lower()))
+
+
+def names_of_columns(folder):
+    """Joints may be called as columns that every table has; no two columns are."""
+    governor = json.loads(pathlib.Path(SCENE).read_text())
+    text = json.dumps(governor)
+    for joint, name in (("arm1", "status"), ("arm2", "stable"), ("slide", "t"), ("link1", "residual")):
+        text = text.replace(f'"{joint}"', f'"{name}"').replace(f"joints.{joint}.", f"joints.{name}.")
+    file = folder / "columns.json"
+    file.write_text(text)
+    for form in (["sweep", "--vary", f"{SPEED}=5:10:3"], ["branch", "--vary", f"{SPEED}=5:10"],
+                 ["branch", "--vary", f"{SPEED}=5:10", "--over", "bodies.collar.mass=1:2:2"],
+                 ["spread", "--tolerance", f"{SPEED}=normal:0.1", "--samples", "20"], ["simulate", "--duration", "0.1"]):
+        code, out, error = run(form[0], file, *form[1:], "--csv", "-")
+        rows = list(csv.reader(io.StringIO(out.decode(), newline="")))
+        check(f"{form} works: {error}", code == 0 and len(rows) > 2)
+        check(f"{form} has a name for each column: {rows[0]}", len(set(rows[0])) == len(rows[0]))
+        check(f"{form} tells joints from its own: {rows[0]}", {"status_", "stable_", "t_"} <= set(rows[0]))
+    code, _, error = run("sweep", file, "--vary", f"{SPEED}=5:10:3", "--npz", folder / "columns.npz")
+    check(f"columns for NumPy: {error}", code == 0)
+    with zipfile.ZipFile(folder / "columns.npz") as archive:
+        names = archive.namelist()
+    check(f"the same names: {names}", len(set(names)) == len(names) and
+          {"status.npy", "status_.npy", "stable.npy", "stable_.npy", "t_.npy", "residual.npy"} <= set(names))
 
 
 def own_scene(folder):
@@ -451,7 +476,8 @@ def parts(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for part in (reasons, periodic, slipping, control_characters, tables, own_scene, limits, repetitions, reports, resonance,
+    for part in (reasons, periodic, slipping, control_characters, tables,
+                 names_of_columns, own_scene, limits, repetitions, reports, resonance,
                  units_of_ranges, modes_over_other_numbers, critical_speeds_over_an_expression, what_turns_in_a_sweep,
                  hunting, loads, parts):
         home = pathlib.Path(name) / part.__name__
