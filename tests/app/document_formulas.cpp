@@ -115,9 +115,9 @@ TEST_CASE("the parameter that an expression lacks has the unit that it needs the
   CHECK(unit("bodies.collar.mass", "m + rho*L^3") == "rho kg/m^3");
   CHECK(unit("joints.slide.spring.stiffness", "10 N*tanh(deflection/length)") == "length m");
   // The number stays what it is where it can.
-  const double mass = get_parameter(m, "bodies.collar.mass"), ball = get_parameter(m, "parameters.m");
+  const double mass = get_parameter(m, "bodies.spindle.mass"), ball = get_parameter(m, "parameters.m");
   const auto value = [&](const char* text) {
-    return lacking_parameter(m, "bodies.collar.mass", text)->value;
+    return lacking_parameter(m, "bodies.spindle.mass", text)->value;
   };
   REQUIRE(mass != 1);
   CHECK(value("m0") == mass);
