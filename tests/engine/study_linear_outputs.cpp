@@ -53,7 +53,7 @@ std::vector<int> entries_of(const MotionModel& model, const LinearModel& linear,
 
 TEST_CASE("A, B, C and D are the derivatives of the motion's accelerations and measures", "[linear-model]") {
   int compared = 0, by_speed = 0, by_mass = 0, seen = 0;
-  const std::uint32_t seeds = few_or_all(24u, 60u);
+  const std::uint32_t seeds = few_or_all(15u, 60u);
   for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     CAPTURE(seed);
     reference::RandomOptions o;
