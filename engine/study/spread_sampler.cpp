@@ -65,10 +65,6 @@ SpreadSampler::SpreadSampler(const Mechanism& mechanism, std::span<const Toleran
   if (!nominal_ || !map_.find_rates(*nominal_)) return;
   regular_ = true;
   rates_ = map_.rates();
-  arbitrary_ = map_.arbitrary();
-  for (std::size_t k = 0; k < arbitrary_.size(); ++k)
-    if (arbitrary_[k])
-      rates_.row(static_cast<Eigen::Index>(k)).setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
 SampleFate SpreadSampler::make(std::size_t i, std::span<double> values) {
@@ -78,8 +74,7 @@ SampleFate SpreadSampler::make(std::size_t i, std::span<double> values) {
   if (SteadyMap::State state = *nominal_; map_.walk_to(state, p)) {
     const Solution solution = map_.solution(state, false);
     if (solution.status == Status::converged) {
-      for (std::size_t k = 0; k < values.size(); ++k)
-        if (!arbitrary_[k]) values[k] = state.values[static_cast<Eigen::Index>(k)];
+      std::ranges::copy(state.values, values.begin());
       return solution.stable == false ? SampleFate::unstable : SampleFate::followed;
     }
   }
@@ -107,7 +102,6 @@ SampleFate SpreadSampler::solve(const std::vector<double>& numbers, std::span<do
   if (solution.status == Status::infeasible) return SampleFate::no_mechanism;
   if (solution.status != Status::converged) return SampleFate::none;
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
-    if (arbitrary_[k]) continue;
     for (const CoordinateSolution& c : solution.coordinates)
       if (const auto found = found_number(c); found && found->name == outputs_[k].name)
         values[k] = found->value;

@@ -28,8 +28,7 @@ class SpreadSampler {
   const std::optional<SteadyMap::State>& nominal() const { return nominal_; }
   // Whether its branch can be followed to samples, which make() needs.
   bool regular() const { return regular_; }
-  // Of the outputs with the numbers, (outputs, numbers); not numbers in the rows of coordinates that nothing
-  // resists.
+  // Of the outputs with the numbers, (outputs, numbers).
   const Eigen::MatrixXd& rates() const { return rates_; }
 
   // Leaves the values of the outputs, not a number where there is none.
@@ -47,7 +46,6 @@ class SpreadSampler {
   Solution first_;
   std::optional<SteadyMap::State> nominal_;
   bool regular_ = false;
-  std::vector<bool> arbitrary_; // outputs whose value is: it does not scatter
   Eigen::MatrixXd rates_;
 };
 

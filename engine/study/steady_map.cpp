@@ -17,7 +17,6 @@
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/solve/sensitivity.hpp"
-#include "engine/stability/neutral_directions.hpp"
 
 #include <algorithm>
 
@@ -185,30 +184,12 @@ bool SteadyMap::correct(Unknowns& z) {
   return outcome.converged && outcome.largest_step < longest_correction;
 }
 
-bool SteadyMap::find_arbitrary(const FactoredState& at) {
-  arbitrary_.assign(wanted_.size(), false);
-  if (!at.kkt().singular()) return true;
-  const DenseKkt* dense = at.w.matrices(at.problem);
-  if (!dense) return false;
-  const Eigen::MatrixXd null_space = dense->constraints().basis() * dense->hessian().null_basis();
-  const NeutralDirections neutral = neutral_directions(at, null_space);
-  if (neutral.count < null_space.cols()) return false;
-  const Eigen::MatrixXd moves = scaling_.column.asDiagonal() * neutral.directions;
-  for (std::size_t i = 0; i < wanted_.size(); ++i)
-    if (wanted_[i].coordinate)
-      arbitrary_[i] = largest_size(moves.transpose() *
-                                   found_gradient(system_, parameters_, at.z.q, *wanted_[i].coordinate)) >
-                      tolerance::takes_part * found_scale(system_, parameters_, *wanted_[i].coordinate);
-  return true;
-}
-
 bool SteadyMap::find_rates(const State& state) try {
   if (state_rates_.cols() > 0 && state.p == rated_p_ && state.z.q == rated_q_)
     return state_rates_.allFinite();
   state_rates_.resize(0, 0);
   set(state);
   if (state.turned) {
-    arbitrary_.assign(wanted_.size(), false);
     if (!find_turned_rates(state)) return false;
     rated_p_ = state.p;
     rated_q_ = state.z.q;
@@ -218,9 +199,7 @@ bool SteadyMap::find_rates(const State& state) try {
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
-  if (!find_arbitrary(factored)) return false;
-  const std::vector<Eigen::VectorXd> found =
-      sensitivities(factored, varied_, *numbers_, NullDirections::kept_still);
+  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, *numbers_);
   if (found.empty() ||
       !std::ranges::all_of(found, [&](const Eigen::VectorXd& rate) { return rate.size() == system_.nv; }))
     return false;

@@ -50,11 +50,9 @@ class SteadyMap {
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
   // where the state is singular, or at an end of what mechanisms can be made of. By the balance's exact rates
-  // in the numbers (sensitivity.hpp). Along what nothing resists it does not go.
+  // in the numbers (sensitivity.hpp).
   bool find_rates(const State& state);
   const Eigen::MatrixXd& rates() const { return rates_; }
-  // By what is asked for: whether it is a coordinate that nothing resists there, whose value is arbitrary.
-  const std::vector<bool>& arbitrary() const { return arbitrary_; }
   // How far the state would go with a step of the numbers: the largest coordinate, in rad or reaches.
   double way(const Eigen::VectorXd& step) const;
 
@@ -91,8 +89,6 @@ class SteadyMap {
   std::optional<State> begin_turned();
   std::optional<State> step_to_turned(const State& from, const Eigen::VectorXd& p);
   bool find_turned_rates(const State& state);
-  // Whether nothing resists what the balance, factored at a state, has no stiffness for; and what moves so.
-  bool find_arbitrary(const FactoredState& at);
   void find_values(State& state);
   bool correct(Unknowns& z);
 
@@ -107,7 +103,6 @@ class SteadyMap {
   Eigen::VectorXd lower_, upper_, range_, p_;
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
-  std::vector<bool> arbitrary_;
   std::optional<Analysis> analysis_;  // of states that are told
   int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,
   Eigen::VectorXd rated_p_, rated_q_; // which is this one, and the scale of its coordinates

@@ -87,65 +87,6 @@ TEST_CASE("the lean of a conical pendulum scatters with its speed as its rate sa
   }
 }
 
-TEST_CASE("what nothing resists does not scatter, and the rest does by its rates") {
-  // A ball on a string may turn about it at any angle.
-  const Mechanism m = shipped("ball_on_string");
-  const std::vector<Tolerance> tolerances{{speed, Distribution::uniform, 0.02},
-                                          {"joints.string.length", Distribution::normal, 1e-3},
-                                          {"gravity.1", Distribution::normal, 0.01}};
-  const SpreadAnswer answer = spread_by(m, tolerances, 200);
-  INFO(answer.message);
-  REQUIRE(answer.status == Status::converged);
-  CHECK(count(answer, SampleFate::followed) == 200);
-  const Vec3 place = solve(m).poses[1].position;
-  std::vector<Vec3> by; // times the standard deviation
-  for (const Tolerance& tolerance : tolerances) {
-    constexpr double h = 1e-5;
-    Mechanism less = m, more = m;
-    const double at = get_parameter(m, tolerance.address);
-    set_parameter(less, tolerance.address, at - h);
-    set_parameter(more, tolerance.address, at + h);
-    by.push_back(tolerance.deviation() * (solve(more).poses[1].position - solve(less).poses[1].position) /
-                 (2 * h));
-  }
-  int told = 0;
-  for (std::size_t k = 0; k < answer.outputs.size(); ++k) {
-    const SpreadOutput& output = answer.outputs[k];
-    CAPTURE(output.name);
-    const auto i = output.name == "ball.free.0" ? 0 : output.name == "ball.free.1" ? 1 : -1;
-    if (i >= 0) { // x and y, from where it is drawn
-      ++told;
-      double variance = 0;
-      for (const Vec3& each : by)
-        variance += each[i] * each[i];
-      CHECK(output.linear_deviation == Approx(std::sqrt(variance)).epsilon(1e-6));
-      CHECK(output.followed.count == 200);
-      CHECK(output.followed.deviation == Approx(std::sqrt(variance)).epsilon(0.2));
-    }
-    if (output.name == "ball.free.3" || output.name == "ball.free.4") { // of the turn
-      ++told;
-      CHECK(output.linear_shares.empty());
-      CHECK(output.followed.count == 0);
-    }
-  }
-  CHECK(told == 4);
-  // Each by a solve of its own.
-  for (std::size_t sample = 0; sample < 20; ++sample) {
-    const std::vector<double> numbers = sampled_numbers(answer.nominal, tolerances, 1, sample);
-    Mechanism there = m;
-    for (std::size_t k = 0; k < numbers.size(); ++k)
-      set_parameter(there, tolerances[k].address, numbers[k]);
-    const Vec3 moved = solve(there).poses[1].position - place;
-    for (std::size_t k = 0; k < answer.outputs.size(); ++k) {
-      const auto i = answer.outputs[k].name == "ball.free.0"   ? 0
-                     : answer.outputs[k].name == "ball.free.1" ? 1
-                                                               : -1;
-      if (i >= 0)
-        CHECK(answer.values[k][sample] - answer.outputs[k].nominal == Approx(moved[i]).margin(1e-10));
-    }
-  }
-}
-
 TEST_CASE("shares of several tolerances agree by rates and by samples; threads change no bit") {
   const Mechanism m = shipped("governor_parametric");
   const std::vector<Tolerance> tolerances{{"parameters.w", Distribution::uniform, 0.05},
