@@ -37,8 +37,7 @@ std::string refusal(const ResultCall& call) {
   return std::string(result_function(call.result).name) +
          "(): a torque or load is one of coordinates, rates, places and velocities of points, distances, "
          "angles, lengths, what springs and bearings exert and parameters; reactions and accelerations "
-         "follow "
-         "from the balance that it is part of";
+         "follow from the balance that it is part of";
 }
 
 // What a measure asks for that a law may not.

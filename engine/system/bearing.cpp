@@ -5,6 +5,8 @@
 #include "engine/system/pair_hessian.hpp"
 #include "engine/system/rotation_vector.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -148,6 +150,17 @@ void bearing_force_rates(const System& system, const Parameters& p, Result resul
     const PairPart j = pair_part(c, k);
     add(c.v, along.dot(with_rates ? bearing.change_by_rate(moment, j)
                                   : bearing.change(moment, j, screw_rates(system, p, k, c.link, c.v))));
+  }
+  if (with_rates || axis == 3) return;
+  // What carries both bodies turns what acts between them.
+  const Vec3 turned = (moment ? bearing.s.moment : bearing.s.force).cross(along);
+  for (int l = bearing.e.ends.a; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
+    const Link& link = system.links[static_cast<std::size_t>(l)];
+    if (link.v < 0 ||
+        std::ranges::find(bearing.e.ends.support, l, &SupportColumn::link) != bearing.e.ends.support.end())
+      continue;
+    for (int v = link.v; v < link.v + (link.type == LinkType::spherical ? 3 : 1); ++v)
+      add(v, turned.dot(k.columns[static_cast<std::size_t>(v)].turn()));
   }
 }
 

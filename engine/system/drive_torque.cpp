@@ -154,8 +154,8 @@ struct LawState {
       if (input.coordinate < 0) {
         const double change = factor * slope(law, numbers, i);
         // On the kink of an angle at 0 and pi there is no rate; see kinks.hpp.
-        add_input_rates(system, p, input, numbers.points[i], k, rates,
-                        [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); });
+        const auto act = [&](int v, double rate) { add(row, v, std::isfinite(rate) ? change * rate : 0); };
+        add_input_rates(system, p, input, numbers.points[i], k, rates, std::cref(act)); // allocates nothing
         continue;
       }
       if (input.rate() != rates) continue;

@@ -7,6 +7,7 @@
 #include "engine/system/residual.hpp"
 
 #include <array>
+#include <functional>
 
 namespace flyball {
 
@@ -59,24 +60,24 @@ inline Vec3 direction(const Vec3& v) {
 template <class Add>
 void add_coordinate_rates(const System& system, const PointQuantityRates& of, const TrackedPoints& points,
                           const Kinematics<double>& k, const Add& add) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!of.place[i].isZero(0))
-      visit_point_rates(system, k, points[i],
-                        [&](int v, const PointRates& rates) { add(v, of.place[i].dot(rates.position)); });
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!of.velocity[i].isZero(0))
-      visit_point_rates(system, k, points[i],
-                        [&](int v, const PointRates& rates) { add(v, of.velocity[i].dot(rates.velocity)); });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto act = [&](int v, const PointRates& rates) { add(v, of.place[i].dot(rates.position)); };
+    if (!of.place[i].isZero(0)) visit_point_rates(system, k, points[i], std::cref(act));
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto act = [&](int v, const PointRates& rates) { add(v, of.velocity[i].dot(rates.velocity)); };
+    if (!of.velocity[i].isZero(0)) visit_point_rates(system, k, points[i], std::cref(act));
+  }
 }
 
 // The same along the rates of the coordinates.
 template <class Add>
 void add_velocity_rates(const System& system, const PointQuantityRates& of, const TrackedPoints& points,
                         const Kinematics<double>& k, const Add& add) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!of.velocity[i].isZero(0))
-      visit_point_rates(system, k, points[i],
-                        [&](int v, const PointRates& rates) { add(v, of.velocity[i].dot(rates.position)); });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto act = [&](int v, const PointRates& rates) { add(v, of.velocity[i].dot(rates.position)); };
+    if (!of.velocity[i].isZero(0)) visit_point_rates(system, k, points[i], std::cref(act));
+  }
 }
 
 } // namespace flyball

@@ -163,6 +163,33 @@ TEST_CASE("a repeated small solve allocates nothing") {
   }
 }
 
+TEST_CASE("a repeated solve of a torque by places of points allocates no more than by a coordinate") {
+  if (!FLYBALL_COUNT_ALLOCATIONS) return;
+  const auto allocated = [](const std::string& law) {
+    Mechanism m = shipped("governor_engine");
+    for (Joint& joint : m.joints)
+      for (Formula& formula : joint.formulas)
+        if (formula.key == "drive.torque") formula.text = law;
+    Solver solver(std::move(m));
+    Eigen::VectorXd answer = solver.drawn;
+    long count = 0;
+    for (const double gain : {7500., 7600., 7500., 7550.}) {
+      set_parameter(solver.mechanism, "parameters.gain", gain);
+      solver.take_numbers();
+      bool arrived = false;
+      count = allocations_of([&] {
+        arrived = solver.solve(answer, true);
+        answer = solver.found.z.q;
+      });
+      CHECK(arrived);
+    }
+    return count;
+  };
+  const long by_coordinate = allocated("gain*(coordinate(slide) - 0.15 m)");
+  CHECK(by_coordinate <= 1); // of a state rounded for the law
+  CHECK(allocated("gain*(distance(collar, spindle) - 0.15 m) - 2 N s*vy(collar)") == by_coordinate);
+}
+
 TEST_CASE("setting numbers again and again allocates nothing, nor do expressions of them") {
   if (!FLYBALL_COUNT_ALLOCATIONS) return;
   Mechanism m = shipped("governor_parametric");

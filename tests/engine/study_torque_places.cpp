@@ -103,8 +103,8 @@ Force bearing(const std::string& name, const std::string& first, const std::stri
   return out;
 }
 
-// Two springs, one with a damper, two bearings with cross terms, one that resists turns as well, and joints
-// with springs by numbers and by laws.
+// Two springs, one with a damper, three bearings with cross terms, two of which resist turns as well, and
+// joints with springs by numbers and by laws. The hinge carries both bodies of the last bearing.
 Mechanism strung(Mechanism m) {
   m.forces.push_back(bearing("edge", "collar", "arm", {0.2, -0.1, 0.05}, {0.2, 1, 0.1}, {9, 1, -2, 6},
                              {0.5, 0.2, -0.1, 0.4}));
@@ -115,6 +115,7 @@ Mechanism strung(Mechanism m) {
       damping.push_back(i == j ? 0.2 + 0.02 * i : 0.02 * std::sin(2 + 5 * i + 3 * j));
     }
   m.forces.push_back(bearing("seat", "shaft", "bob", {0.3, -0.3, 0.1}, {0.1, 0.3, 1}, stiffness, damping));
+  m.forces.push_back(bearing("wrist", "arm", "bob", {0.35, -0.35, 0.1}, {1, 0.4, -0.2}, stiffness, damping));
   m.forces.push_back(point_spring("string", "shaft", "bob", {0, 0.3, 0}, {0.4, -0.5, 0.1}, 12, 0.3));
   m.forces.back().damping = 0.7;
   m.forces.push_back(point_spring("band", "collar", "arm", {0, 0.2, 0}, {0.3, -0.4, 0.1}, 0, 0.2));
@@ -130,9 +131,12 @@ const std::vector<std::string> by_springs{"1 m * tension(string)",
                                           "1 N m * sin(spring(hinge)/(1 N m)) + spring(ball.1)",
                                           "0.3 m*tension(string)*tension(band)/(1 N) + 1 m*force_y(string)"};
 
-const std::vector<std::string> by_bearings{
-    "1 m * force_y(edge)", "0.5 m * force(edge)", "0.5 m * force_y(seat) + 0.2 * couple_y(seat)",
-    "0.4 m * force(seat) - 0.3 * couple(seat)", "couple_y(seat)*force(edge)/(1 N)"};
+const std::vector<std::string> by_bearings{"1 m * force_y(edge)",
+                                           "0.5 m * force(edge)",
+                                           "0.5 m * force_y(seat) + 0.2 * couple_y(seat)",
+                                           "0.4 m * force(seat) - 0.3 * couple(seat)",
+                                           "couple_y(seat)*force(edge)/(1 N)",
+                                           "0.3 m * force_y(wrist) + 0.4 * couple_y(wrist)"};
 
 // A shaft whose balls swing on arms and joints of their own, with a collar that slides.
 Mechanism swinging(const std::string& law) {
