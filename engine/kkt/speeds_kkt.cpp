@@ -5,21 +5,6 @@
 #include <algorithm>
 
 namespace flyball {
-namespace {
-
-// Of each shaft, scaled: what a speed gains counts by this time (speed_time.hpp).
-void find_inertia(MotionProducts& products, const std::vector<int>& speeds, double time,
-                  Eigen::VectorXd& out) {
-  Eigen::VectorXd product;
-  out.resize(static_cast<Eigen::Index>(speeds.size()));
-  for (Eigen::Index i = 0; i < out.size(); ++i) {
-    const int v = speeds[static_cast<std::size_t>(i)];
-    products.inertia(Eigen::VectorXd::Unit(products.coordinates(), v), product);
-    out[i] = time * product[v];
-  }
-}
-
-} // namespace
 
 void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evaluation& at) {
   const System& system = problem.system;
@@ -36,7 +21,8 @@ void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evalu
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   columns_.resize(size_, count);
   resists_.resize(count, count);
-  find_inertia(products_, speeds_, speed_time(problem), inertia_);
+  inertia_.resize(0); // until it is asked for
+  time_ = speed_time(problem);
   for (Eigen::Index i = 0; i < count; ++i) {
     work_ = Eigen::VectorXd::Unit(size_, speeds_[static_cast<std::size_t>(i)]);
     products_.velocity(work_, product_);
@@ -74,7 +60,10 @@ void SpeedsKkt::factor(double shift) {
   const auto count = static_cast<Eigen::Index>(speeds_.size());
   response_.resize(size_, count);
   Eigen::MatrixXd border = resists_;
-  if (shift != 0) border.diagonal() += shift * inertia_;
+  if (shift != 0) {
+    find_inertia();
+    border.diagonal() += shift * inertia_;
+  }
   Eigen::VectorXd noise(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     tree_.solve(columns_.col(i), answer_);
@@ -125,7 +114,19 @@ double SpeedsKkt::with_speeds(const Eigen::VectorXd& x, double square, Eigen::Ve
   return square;
 }
 
+void SpeedsKkt::find_inertia() {
+  if (inertia_.size() > 0) return;
+  inertia_.resize(static_cast<Eigen::Index>(speeds_.size()));
+  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
+    const int v = speeds_[static_cast<std::size_t>(i)];
+    work_ = Eigen::VectorXd::Unit(size_, v);
+    products_.inertia(work_, product_);
+    inertia_[i] = time_ * product_[v];
+  }
+}
+
 double SpeedsKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
+  find_inertia();
   return with_speeds(x, tree_.metric(x, product), product);
 }
 

@@ -36,6 +36,7 @@ class SpeedsKkt final : public KktSystem {
                 Eigen::VectorXd& lambda) override;
   // r^T x of each speed, x without speeds.
   void rows_times(const Eigen::VectorXd& x, Eigen::VectorXd& out);
+  void find_inertia(); // where it was not asked for yet
   double with_speeds(const Eigen::VectorXd& x, double square, Eigen::VectorXd& product) const;
 
   bool laws_alone_ = false; // make up r
@@ -45,7 +46,8 @@ class SpeedsKkt final : public KktSystem {
   std::vector<DriveTorqueEntry> by_value_; // of the laws, with coordinates; zero: with their rates
   Eigen::MatrixXd columns_;                // b by speed, (nv, speeds), without the speeds' own rows
   Eigen::MatrixXd resists_;                // d, (speeds, speeds)
-  Eigen::VectorXd inertia_;                // of each shaft
+  double time_ = 1;                        // what a speed gains counts by (speed_time.hpp), s
+  Eigen::VectorXd inertia_;                // of each shaft, scaled, times that; empty: not asked for
   Eigen::MatrixXd response_;               // K^-1 b
   ReducedHessian border_;                  // d - r^T K^-1 b
   Eigen::VectorXd work_, product_, answer_, rest_;

@@ -34,8 +34,8 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
 
 // Whether in a state without stiffness along some direction, factored, extended precision sees a force there
 // that no rounding of the scene's numbers explains: what acts is lost beside what it is the difference of,
-// and the state need be none. Of a symmetric dense problem; false of others. The workspace's residual is
-// changed.
+// and the state need be none. Of a symmetric dense problem; false of others. Uses the workspace beside the
+// state's (elsewhere()).
 bool is_pushed_where_soft(const FactoredState& at);
 
 } // namespace flyball

@@ -1,3 +1,4 @@
+// What goals, minima and shares of friction move.
 #pragma once
 
 #include <optional>
