@@ -387,8 +387,12 @@ double value_that_keeps(const Mechanism& with_one, const std::string& address, d
     const double one = given(1), two = given(2), slope = two - one;
     if (!(std::abs(given(3) - two - slope) <= 1e-9 * std::abs(slope))) return 1;
     const double value = std::strtod(rounded_text(1 + (wanted - one) / slope, 12).c_str(), nullptr);
-    return std::isfinite(value) && value > 0 ? value : 1;
-  } catch (const SceneError&) { // it is not to be 2, or 3
+    // It may be linear between these three alone, as a largest of two is.
+    const bool keeps =
+        std::isfinite(value) && value > 0 &&
+        std::abs(given(value) - wanted) <= 1e-9 * std::max(std::abs(wanted), std::abs(slope * value));
+    return keeps ? value : 1;
+  } catch (const SceneError&) { // it is not to be one of these
     return 1;
   }
 }

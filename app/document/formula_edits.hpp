@@ -24,8 +24,9 @@ double expressed_value(const Mechanism& mechanism, const std::string& address);
 // there.
 void set_expression(Mechanism& mechanism, const std::string& address, const std::string& text);
 // The parameter that set_expression() would lack alone, in the first of the usual units with which the
-// expression can be: of the value with which the number stays what it is, where the expression is linear in
-// it and that is above zero; else of the value 1. Nothing where it lacks something else.
+// expression can be: of the value with which the number stays what it is, where it alone is the expression
+// and that value is allowed, or the expression is linear in it and that is above zero; else of the value 1.
+// Nothing where it lacks something else.
 std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, const std::string& address,
                                                 const std::string& text);
 // It is by itself this value (SI units, radians) from now on.

@@ -104,7 +104,7 @@ TEST_CASE("numbers that are tried are evaluated, and put away again") {
 }
 
 TEST_CASE("the parameter that an expression lacks has the unit that it needs there") {
-  const Mechanism m = test::shipped("governor_parametric");
+  Mechanism m = test::shipped("governor_parametric");
   const auto unit = [&](const char* address, const char* text) -> std::string {
     const auto lacking = lacking_parameter(m, address, text);
     return lacking ? lacking->name + " " + lacking->unit : "none";
@@ -128,6 +128,9 @@ TEST_CASE("the parameter that an expression lacks has the unit that it needs the
   CHECK(unit("bodies.collar.mass", "a*b") == "none");
   CHECK(unit("bodies.collar.mass", "m") == "none");
   CHECK(unit("bodies.collar.mass", "L + m0") == "none");
+  double& spindle = m.bodies[static_cast<std::size_t>(body_index(m, "spindle"))].mass;
+  spindle = 0.2;
+  CHECK(value("max(m0, 0.5 kg)") == 1); // linear from there on, but no value gives what is below
 }
 
 TEST_CASE("any number is given a name, and a name another") {
