@@ -40,13 +40,24 @@ void begin_comparison(Session& session) {
 
 void update_comparison(Session& session) {
   auto& measured = session.study.compare.measured;
-  // Stopped before its solution was found it measured nothing.
-  if (measured.take() && measured.found && measured.found->stopped &&
-      measured.found->result.status != Status::converged)
-    measured.found.reset();
+  const auto before = measured.found;
+  const bool changed =
+      measured.asked && !(measured.asked->mechanism == SharedMechanism{session.document.shared()});
+  if (measured.take() && measured.found != before && measured.found->stopped) {
+    const Comparison& part = measured.found->result;
+    const bool solved = part.status == Status::converged;
+    // A whole table does not give way to a part of it.
+    const bool whole_before =
+        before && before->result.complete && before->of.mechanism == measured.found->of.mechanism;
+    if (!solved)
+      measured.problem = changed ? "The mechanism changed before its solution was found: nothing is measured."
+                                 : "Cancelled before the solution was found: nothing is measured.";
+    else if (before && (part.motion.empty() || whole_before))
+      measured.problem = "Cancelled: these are the measurements of before.";
+    if (!measured.problem.empty()) measured.found = before;
+  }
   // Until then, which no limit of time ends, it is of no use for a mechanism that has changed.
-  if (measured.running() && measured.progress().phase == std::string_view(finding_solution) &&
-      !(measured.asked->mechanism == SharedMechanism{session.document.shared()}))
+  if (changed && measured.running() && measured.progress().phase == std::string_view(finding_solution))
     measured.stop();
 }
 

@@ -26,7 +26,8 @@ struct CompareState {
 };
 
 void begin_comparison(Session& session);
-// Takes what was measured. Stops where the mechanism changes before its solution was found.
+// Takes what was measured; of one that was stopped only what there was nothing better than before. Stops
+// where the mechanism changes before its solution was found. Either way `measured.problem` says why.
 void update_comparison(Session& session);
 bool comparing(const Session& session);
 // Whether the result is of the mechanism as it is now.

@@ -17,7 +17,7 @@ void open_study(Session& session, StudyKind study) {
   // A search goes on behind another study's tab, and what it found is there when one comes back.
   if (study == StudyKind::none) {
     session.study.states = {};
-    session.study.compare.measured.stop(); // what was measured so far is kept
+    session.study.compare.measured.stop(); // see update_comparison()
   }
   if (study != StudyKind::modes) close_modes(session);
   if (study != StudyKind::map) close_map(session);

@@ -542,7 +542,52 @@ TEST_CASE(
     CHECK(steps_until([&] { robot.frames(1); }, [&] { return !measured.running(); }));
     robot.frames(2);
     CHECK_FALSE(measured.found);
+    CHECK(measured.problem.starts_with(closed ? "Cancelled" : "The mechanism changed"));
   }
+}
+
+TEST_CASE("a whole comparison stays where a new one is stopped with less") {
+  Robot robot(wide);
+  Session& session = robot.app.session;
+  open_study(session, StudyKind::compare);
+  robot.frames(2);
+  session.options.mode = LiveSolver::Mode::background;
+  auto& measured = session.study.compare.measured;
+  const auto ask = [&](const Comparison& when_stopped, bool wait) {
+    measured.ask(session.options, {{session.document.shared()}, 1, 60},
+                 [=](const CompareRequest&, const TaskContext<Comparison>& context) {
+                   context.progress({"direct solution"});
+                   while (wait && !context.cancel)
+                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                   return when_stopped;
+                 });
+    if (wait) {
+      robot.frames(3);
+      robot.click("study/close");
+      open_study(session, StudyKind::compare);
+    }
+    REQUIRE(steps_until([&] { robot.frames(1); }, [&] { return !measured.running(); }));
+    robot.frames(2);
+  };
+  Comparison whole, unsolved, part;
+  whole.status = part.status = Status::converged;
+  whole.motion.resize(3);
+  part.motion.resize(1);
+  unsolved.complete = part.complete = false;
+  ask(whole, false);
+  REQUIRE(measured.found);
+  const auto first = measured.found;
+  for (const Comparison& stopped : {unsolved, part}) {
+    ask(stopped, true);
+    CHECK(measured.found == first);
+    CHECK_FALSE(measured.problem.empty());
+  }
+  // One of what the mechanism is now, as far as it came, is better than one of before.
+  change_parameter(session, "joints.spin.drive.speed", 12);
+  ask(unsolved, true);
+  CHECK(measured.found == first);
+  ask(part, true);
+  CHECK(measured.found->result.motion.size() == 1);
 }
 
 TEST_CASE("the comparison shows the errors of a measure") {

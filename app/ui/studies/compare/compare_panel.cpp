@@ -121,8 +121,8 @@ void shown_choice(Session& session, Ui& ui, const Comparison& c) {
 void time_field(Session& session, Ui& ui) {
   const char* help =
       "How long it measures at most. Then it keeps what it has; a single run is given up after "
-      "a tenth of it. It does not limit the solution before, which may take long for large mechanisms; "
-      "Cancel, a change of the mechanism and closing the panel end that.";
+      "a tenth of it. It does not limit the solution before, which may take long for large mechanisms: a "
+      "change of the mechanism ends that. Cancel and closing the studies end either.";
   const float width = row_label(ui, "Time limit", help);
   quantity_field(session, ui,
                  {.name = "compare/time_limit",
