@@ -520,8 +520,10 @@ struct Simulator::State {
       const StepOutcome outcome = stepper->step(end);
       if (outcome.kind == StepOutcome::failed) {
         torn = interrupt();
-        // Friction may turn round just there, or it was to end on a singular position.
-        if (!torn && (free || is_singular_at(outcome.time)) && take_back(end)) continue;
+        // Friction may turn round just there, or the step was to end on a singular position of the loops,
+        // which shows in what was evaluated last.
+        const bool singular = equations->independence() < 0.01 * best_independence;
+        if (!torn && (free || singular) && take_back(end)) continue;
         return torn ? false : diverge(outcome.time, reason_of(outcome));
       }
       if (equations->independence() < 1e-9 * best_independence && take_back(outcome.time)) continue;
@@ -529,14 +531,6 @@ struct Simulator::State {
       pending = outcome;
     }
     return true;
-  }
-
-  // Of where a step failed: at once, or where it was well last.
-  bool is_singular_at(double t) {
-    stepper->state_at(t, y);
-    ode->unpack(y.data(), q, s);
-    return !equations->project(t, q, s) || !equations->evaluate(t, q, s) ||
-           equations->independence() < 0.01 * best_independence;
   }
 
   // Why a step failed, from where it was well last.

@@ -35,11 +35,21 @@ Run recorded(Flow& flow, const Orbit& orbit, int wanted, double tolerance, doubl
   Run whole;
   for (const StateChart& node : orbit.nodes) {
     const auto led = lead > 0 ? flow.pass(node.base(), lead, tolerance) : std::nullopt;
+    if (lead > 0 && !led) return {};
     const Run part = flow.record(led ? led->to : node.base(), orbit.period / m, each, tolerance);
     if (part.time.empty()) return {};
     whole = whole.time.empty() ? part : joined(whole, whole.time.size() - 1, part);
   }
   return whole;
+}
+
+// Not where a sample would have fallen right on a singular position and was taken a little later.
+bool is_sampled_evenly(const Run& run) {
+  const auto last = static_cast<double>(run.time.size() - 1);
+  const double begin = run.time.front(), apart = (run.time.back() - begin) / last;
+  for (std::size_t i = 0; i < run.time.size(); ++i)
+    if (std::abs(run.time[i] - begin - static_cast<double>(i) * apart) > 1e-9 * apart) return false;
+  return true;
 }
 
 // What goes on is told less its advance since the first node: so of a run that begins `lead` after it.
@@ -79,10 +89,16 @@ bool measure_orbit(Flow& flow, const Orbit& orbit, const ShootingOptions& how, d
   double lead = 0;
   for (;; count *= 2) { // what moves faster than the drives takes more
     run = std::make_shared<Run>(recorded(flow, orbit, count, how.tolerance, lead));
-    if (run->statistics.singular_positions > 0 && lead == 0) {
-      // Samples are to fall beside singular positions, which are passed at even parts of a turn as a rule.
-      lead = 0.382 * orbit.period / count;
-      run = std::make_shared<Run>(recorded(flow, orbit, count, how.tolerance, lead));
+    if (lead == 0 && (run->time.empty() || !is_sampled_evenly(*run))) {
+      // Samples fall beside singular positions, which are passed at even parts of a turn as a rule.
+      const double later = 0.382 * orbit.period / count;
+      Run beside = recorded(flow, orbit, count, how.tolerance, later);
+      if (!beside.time.empty()) {
+        lead = later;
+        beside.statistics.singular_positions =
+            std::max(beside.statistics.singular_positions, run->statistics.singular_positions);
+        *run = std::move(beside);
+      }
     }
     if (run->time.empty()) return false;
     told = {};
