@@ -27,7 +27,7 @@ std::string used_by(const Mechanism& mechanism, const std::string& name) {
 // The name, in which it is given another one.
 void named_field(Session& session, Ui& ui, const std::string& widget, const std::string& name, float width,
                  Rename rename) {
-  if (!text_field(session, ui, name_field(session, widget, name, rename), width))
+  if (!text_field(session, ui, name_text_field(session, widget, name, rename), width))
     help_on_hover(used_by(session.mechanism(), name).c_str());
 }
 

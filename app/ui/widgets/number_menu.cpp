@@ -39,8 +39,8 @@ void name_it(Session& session, Ui& ui, const std::string& field, const std::stri
   });
   if (parameter_index(session.mechanism(), name) < 0) return;
   session.notice = "The " + phrase + " is the parameter " + name +
-                   " now, with a slider. Type another name, or later in the scene's inspector, where "
-                   "nothing is selected.";
+                   " now, with a slider. Type another name now, or rename it later in the scene's inspector, "
+                   "where nothing is selected.";
   start_typing(session, ui, naming_field(field), name);
 }
 
@@ -115,7 +115,8 @@ std::string naming_field(const std::string& field) {
   return field + "/name";
 }
 
-TextField name_field(Session& session, const std::string& widget, const std::string& name, Rename rename) {
+TextField name_text_field(Session& session, const std::string& widget, const std::string& name,
+                          Rename rename) {
   return {.name = widget,
           .text = name,
           .check =

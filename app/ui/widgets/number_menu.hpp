@@ -17,7 +17,8 @@ std::optional<std::string> formula_of(const Session& session, const QuantityFiel
 std::string naming_field(const std::string& field);
 // The field of a name, in which it is given another one.
 using Rename = void (*)(Mechanism&, const std::string& name, const std::string& to);
-TextField name_field(Session& session, const std::string& widget, const std::string& name, Rename rename);
+TextField name_text_field(Session& session, const std::string& widget, const std::string& name,
+                          Rename rename);
 
 // `asked` for by the right button, or by the menu key.
 void number_menu(Session& session, Ui& ui, const QuantityField& field, bool asked);

@@ -517,8 +517,7 @@ void quantity_field(Session& session, Ui& ui, const QuantityField& field, float 
   const ShownNumber shown(session, field);
   const std::optional<std::string> formula = formula_of(session, field);
   if (const std::string naming = naming_field(field.name); formula && typing_in(ui, naming)) {
-    text_field(session, ui, name_field(session, naming, *formula, rename_parameter), width);
-    note_widget(ui.widgets, naming);
+    text_field(session, ui, name_text_field(session, naming, *formula, rename_parameter), width);
     return;
   }
   Stepping stepping{field, shown, ui.fields.typing};

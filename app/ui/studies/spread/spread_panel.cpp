@@ -80,7 +80,12 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
   std::string other = chosen.percent ? (shown.empty() ? "plain" : "in " + shown) : "in %";
   if (ImGui::CalcTextSize(other.c_str()).x > room) other = cut_to(shown, room); // "N m/rad"
   if (text_button(ui, name + "/unit", other.c_str())) tell_in_percent(session, i, !chosen.percent);
-  help_on_hover("Tells the width so; it stays what it is.");
+  help_on_hover(("Tells the width in " +
+                 (!chosen.percent ? "%"
+                  : shown.empty() ? "plain numbers"
+                                  : shown) +
+                 "; it stays what it is.")
+                    .c_str());
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(remove);
   if (margin_button(ui, name + "/remove", icon::close, "No tolerance."))
