@@ -98,7 +98,9 @@ std::string column_name(const std::string& name) {
   constexpr std::array<std::string_view, 13> own{
       "t",        "branch", "fate", "status",  "equilibria", "equilibrium", "rests_on_friction",
       "period_s", "stable", "note", "special", "residual",   "run_time_s"};
-  return std::ranges::find(own, name) == own.end() ? name : name + "_";
+  // Also of "stable_", so that it is not the column of a joint "stable".
+  const std::string_view bare = std::string_view(name).substr(0, name.find_last_not_of('_') + 1);
+  return std::ranges::find(own, bare) == own.end() ? name : name + "_";
 }
 
 std::string csv_head(const std::vector<Column>& columns) {

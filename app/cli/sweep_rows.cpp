@@ -140,8 +140,9 @@ std::vector<Column> SweepColumns::columns() const {
   if (friction) out.push_back({"rests_on_friction", CellKind::word});
   if (periodic) out.push_back({"period_s"});
   for (const ValueColumn& value : values) {
-    out.push_back({column_name(value.name)});
-    if (periodic) out.insert(out.end(), {{value.name + ".min"}, {value.name + ".max"}});
+    const std::string name = column_name(value.name);
+    out.push_back({name});
+    if (periodic) out.insert(out.end(), {{name + ".min"}, {name + ".max"}});
   }
   out.insert(out.end(), {{"stable", CellKind::verdict}, {"residual"}});
   if (times) out.push_back({"run_time_s"});

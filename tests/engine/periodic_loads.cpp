@@ -245,6 +245,14 @@ TEST_CASE("A crank as long as its rod moves its piston through change points tha
   }
 }
 
+TEST_CASE("A limit cycle through positions in which arms hang straight says so") {
+  const PeriodicState s = find_periodic_state(shipped("governor_engine", {{"joints.slide.damping", 15}}));
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.motion->statistics.singular_positions > 0);
+  CHECK_THAT(s.message, ContainsSubstring("could part into branches"));
+}
+
 TEST_CASE("Springs and dampers over a period are those of a forced oscillator") {
   // On a slide, by its own spring and damper and by those between two points: half of each.
   const double mass = 2, e = 0.01, speed = 9, stiffness = 150, damping = 8;
