@@ -225,7 +225,7 @@ std::string without_modes(const Session& session) {
   return none +
          ": the balance turns with the drives, by weight or by a mass centre beside the axis. With mass "
          "centres on it, and gravity along it or turned off, there is one; its modes and critical speeds "
-         "are those that unbalance excites. How far it swings as it is, the response shows.";
+         "are those that unbalance excites. The response shows how far it swings with them as they are.";
 }
 
 float table_line(const Ui& ui) {
@@ -465,7 +465,7 @@ CampbellPlaces show_critical(Session& session, Ui& ui, CampbellView& drawn, cons
     return {ImGui::GetContentRegionAvail()};
   }
   const float width = critical_table_width(ui), gap = 10 * ui.scale;
-  const BesideDiagram place(ui, rows.size(), before);
+  const BesideDiagram place(ui, rows.size(), {before.x, before.y + ImGui::GetCursorPosY() - drawn.head});
   if (place.beside) {
     const ImVec2 at = ImGui::GetCursorPos();
     ImGui::SetCursorPos({at.x + before.x - width, at.y});
@@ -504,7 +504,8 @@ void show_campbell(Session& session, Ui& ui, CampbellView& drawn, bool told) {
   }
   if (!campbell.on_branch && converged(session) && !solving(session) && !diagram.running())
     paragraph("The state that is shown lies on none of the branches followed over this range.", colors.warn);
-  drawn.head = ImGui::GetCursorPosY();
+  // What stands above only while it is followed does not change where the tables are.
+  if (!diagram.running() || drawn.head <= 0) drawn.head = ImGui::GetCursorPosY();
   const CampbellPlaces places = show_critical(session, ui, drawn, diagram.found->of.drive, told);
   const PlotEvents events = plot_view(session, ui, "campbell", drawn.view, drawn.plot,
                                       {std::max(places.plot.x, 40.f), std::max(places.plot.y, 40.f)});
