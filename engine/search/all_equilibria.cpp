@@ -51,6 +51,7 @@ class Searcher {
     for (std::size_t i = 0; i < report_.ranges.size(); ++i) {
       const CoordinateInfo& c = p_.system.coordinates[i];
       const SearchRange& range = report_.ranges[i];
+      if (std::ranges::find(kept_, c.link) != kept_.end()) continue; // which no range bounds
       const double most = std::max(std::abs(range.lower), std::abs(range.upper));
       if (!finds_speed(p_.system.links[static_cast<std::size_t>(c.link)]) || most <= report_.fastest)
         continue;
@@ -117,9 +118,9 @@ class Searcher {
       }
       starts.next(q);
       ++spread_;
-      set_kept_speeds(q);
       spend(closing + static_cast<double>(kept_.size()));
       if (assemble(p_, q, 0, w_)) {
+        set_kept_speeds(q);
         if (arrive(q)) ++report_.arrivals;
         deflate_from(q, 2);
       }
@@ -141,9 +142,9 @@ class Searcher {
     std::size_t known = list_.states.size();
     for (int vain = 0; vain < enough && known < most && !ended(); ++vain) {
       starts.next(q);
-      set_kept_speeds(q);
       spend(closing + static_cast<double>(kept_.size()));
       if (!assemble(p_, q, 0, w_)) continue;
+      set_kept_speeds(q);
       if (arrive(q)) ++report_.arrivals;
       deflate_from(q, 1);
       if (list_.states.size() == known) continue;
