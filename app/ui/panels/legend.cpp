@@ -99,7 +99,7 @@ constexpr float largest_share = 0.2f; // of the view, that an open legend takes 
 // bodies lies in a part of the view: fifths of an arrow, and solids.
 int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
   const ShownScene& shown = state.scene;
-  constexpr std::size_t many = 3000; // solids, to be looked at in every frame
+  constexpr std::size_t many = 300; // solids, nine points of each, to be looked at in every frame
   if (!shown.scene) return 0;
   const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
   const auto is_within = [&](const Vec3& point) {
