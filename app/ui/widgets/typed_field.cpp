@@ -167,7 +167,6 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
   std::string resting = field.text;
   ImVec4 color = was_typing && !typing.mistake.empty() ? colors.bad : colors.text;
   if (!was_typing && !field.drawn_here) color.w = 0;
-  if (was_typing && std::exchange(typing.wants_focus, false)) ImGui::SetKeyboardFocusHere();
 
   ImGui::SetNextItemWidth(width);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
@@ -175,6 +174,10 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
                     ImGuiInputTextFlags_CallbackAlways;
   FieldCallback own{field, ui.completion};
   ImGui::PushID(field.name.c_str());
+  // By its ID: what asks for the next item (SetKeyboardFocusHere) finds none in some releases, where a popup
+  // has just closed.
+  if (was_typing && std::exchange(typing.wants_focus, false))
+    imgui_compat::press_item(ImGui::GetID("##typed"), true);
   const bool entered = ImGui::InputTextWithHint("##typed", field.hint, was_typing ? &typing.text : &resting,
                                                 flags, call_back, &own);
   ImGui::PopID();
