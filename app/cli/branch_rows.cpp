@@ -3,6 +3,7 @@
 #include "app/cli/hunting_told.hpp"
 #include "app/cli/output.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/column_name.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 

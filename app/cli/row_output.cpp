@@ -10,8 +10,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -93,15 +91,6 @@ class TableOutput final : public RowOutput {
 };
 
 } // namespace
-
-std::string column_name(const std::string& name) {
-  constexpr std::array<std::string_view, 13> own{
-      "t",        "branch", "fate", "status",  "equilibria", "equilibrium", "rests_on_friction",
-      "period_s", "stable", "note", "special", "residual",   "run_time_s"};
-  // Also of "stable_", so that it is not the column of a joint "stable".
-  const std::string_view bare = std::string_view(name).substr(0, name.find_last_not_of('_') + 1);
-  return std::ranges::find(own, bare) == own.end() ? name : name + "_";
-}
 
 std::string csv_head(const std::vector<Column>& columns) {
   std::string out;

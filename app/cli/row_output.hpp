@@ -47,9 +47,6 @@ std::unique_ptr<RowOutput> json_output(const Mechanism& mechanism);
 std::string json_row(std::string_view indented_object);
 // To standard output, aligned for a person, all of it at the end. Cells of a row have tabs between them.
 std::unique_ptr<RowOutput> table_output(std::vector<std::string> head);
-// What a coordinate or measure has as its column, in CSV and for NumPy: its name, with "_" behind one that
-// tables have columns of their own for.
-std::string column_name(const std::string& name);
 // "slide [m]".
 std::string named_with_unit(const std::string& name, const std::string& unit);
 

@@ -2,6 +2,7 @@
 
 #include "app/cli/output.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/column_name.hpp"
 #include "app/plot/spread_plot.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"

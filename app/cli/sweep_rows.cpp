@@ -4,6 +4,7 @@
 #include "app/cli/output.hpp"
 #include "app/cli/periodic_told.hpp"
 #include "app/cli/solution_json.hpp"
+#include "app/plot/column_name.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -1,5 +1,6 @@
 #include "app/plot/spread_plot.hpp"
 
+#include "app/plot/column_name.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 
@@ -140,7 +141,7 @@ std::string spread_csv(const SpreadAnswer& answer, std::span<const Tolerance> to
     out += csv_field(tolerance.address) + ",";
   out += "fate";
   for (const SpreadOutput& output : answer.outputs)
-    out += "," + csv_field(output.name);
+    out += "," + csv_field(column_name(output.name));
   out += "\n";
   std::vector<double> values(answer.outputs.size());
   for (std::size_t i = 0; i < answer.samples; ++i) {

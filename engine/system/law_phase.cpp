@@ -21,6 +21,10 @@ bool is_of_points(const DriveLaw::Input& input) {
   return input.coordinate < 0;
 }
 
+bool is_of_spring_force(const DriveLaw::Input& input) {
+  return input.spring >= 0 && is_spring_force(input.quantity.result);
+}
+
 // Of no particular place, at speeds (1/s, of slides in reaches) that are like the largest that are given.
 Eigen::VectorXd some_configuration(const System& system, const Parameters& p, double speed) {
   Eigen::VectorXd q(system.nq);
@@ -50,7 +54,7 @@ AtPhase at_phase(const System& system, const Parameters& p, const DriveLaw& law,
                  const Kinematics<double>& k) {
   AtPhase out{0, 0, Eigen::VectorXd::Zero(system.nv)};
   const Result asked = law.inputs[i].quantity.result;
-  if (law.inputs[i].spring >= 0 && is_spring_force(asked)) {
+  if (is_of_spring_force(law.inputs[i])) {
     const auto s = static_cast<std::size_t>(law.inputs[i].spring);
     const SpringState<double> spring = spring_state(system.springs[s], p.springs[s], k);
     out.value = spring.length;
@@ -97,7 +101,7 @@ void refuse_turning_laws(const System& system, const Mechanism& mechanism, const
       const Result result = law.inputs[i].quantity.result;
       const bool armless = result == Result::angle && std::isnan(a.value);
       if (!armless && !p.moving) continue;
-      const double size = law.inputs[i].spring >= 0 && is_spring_force(result)
+      const double size = is_of_spring_force(law.inputs[i])
                               ? a.value + p.length
                               : law_input_size(system, p, law, numbers, i, q, here);
       const bool stays = std::ranges::none_of(times, [&](double time) {

@@ -189,11 +189,18 @@ TEST_CASE("the legend leaves the drawn pose in sight, and stays where it is whil
   robot.frames(3);
   CHECK(middle("legend") > middle("view"));
   const float low = middle("legend");
+  // The motion keeps it there even where nothing is under its upper place any more.
   robot.key(' ');
+  robot.frames(1, 0.03);
+  REQUIRE(in_motion(app.session, app.view));
+  app.view.camera.zoom(0.2, {0, 800}, {1280, 800});
   for (int i = 0; i < 20; ++i) {
     robot.frames(1, 0.03);
     CHECK(middle("legend") == low);
   }
+  robot.key(' ');
+  robot.frames(3);
+  CHECK(middle("legend") < middle("view"));
 }
 
 TEST_CASE("in a narrow view the legend is folded where it would lie over the tools") {

@@ -46,6 +46,17 @@ struct MotionRobot : Robot {
   }
 };
 
+// A comparison that looks for its solution: for ever where it is to wait, and ends with this.
+void look_for_solution(Session& session, const Comparison& end, bool waits) {
+  session.study.compare.measured.ask(session.options, {{session.document.shared()}, 1, 60},
+                                     [=](const CompareRequest&, const TaskContext<Comparison>& context) {
+                                       context.progress({"direct solution"});
+                                       while (waits && !context.cancel)
+                                         std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                       return end;
+                                     });
+}
+
 } // namespace
 
 TEST_CASE("without being asked for there is no motion, no integrator and no panel of it") {
@@ -521,16 +532,9 @@ TEST_CASE(
   session.options.mode = LiveSolver::Mode::background;
   auto& measured = session.study.compare.measured;
   for (const bool closed : {false, true}) {
-    // One whose solution takes for ever.
-    measured.ask(session.options, {{session.document.shared()}, 1, 60},
-                 [](const CompareRequest&, const TaskContext<Comparison>& context) {
-                   context.progress({"direct solution"});
-                   while (!context.cancel)
-                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-                   Comparison nothing;
-                   nothing.status = Status::not_converged;
-                   return nothing;
-                 });
+    Comparison nothing;
+    nothing.status = Status::not_converged;
+    look_for_solution(session, nothing, true);
     REQUIRE(steps_until([&] { robot.frames(1); },
                         [&] { return std::string(measured.progress().phase) == "direct solution"; }));
     robot.frames(3);
@@ -554,13 +558,7 @@ TEST_CASE("a whole comparison stays where a new one is stopped with less") {
   session.options.mode = LiveSolver::Mode::background;
   auto& measured = session.study.compare.measured;
   const auto ask = [&](const Comparison& when_stopped, bool wait) {
-    measured.ask(session.options, {{session.document.shared()}, 1, 60},
-                 [=](const CompareRequest&, const TaskContext<Comparison>& context) {
-                   context.progress({"direct solution"});
-                   while (wait && !context.cancel)
-                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-                   return when_stopped;
-                 });
+    look_for_solution(session, when_stopped, wait);
     if (wait) {
       robot.frames(3);
       robot.click("study/close");

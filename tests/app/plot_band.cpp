@@ -119,6 +119,8 @@ TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
     area += (curve[i][0] - curve[i - 1][0]) * (curve[i][1] + curve[i - 1][1]) / 2;
   CHECK(area / width == Approx(800).epsilon(1e-3));
   CHECK(spread_csv(answer, tolerances, 1).starts_with("a,fate,slide\n"));
+  answer.outputs[0].name = "fate"; // as a joint may be called
+  CHECK(spread_csv(answer, tolerances, 1).starts_with("a,fate,fate_\n"));
 
   SECTION("samples that are alike but for rounding have one bar as wide as those of the others") {
     for (std::size_t i = 0; i < 1000; ++i)

@@ -33,6 +33,8 @@ constexpr std::array columns{
         "Speed", 84,
         "The drive's speed. A click on a row sets the number along the axis so that the drive has it."}};
 
+constexpr std::size_t mode_column = 1; // which gives way where there is too little room
+
 std::string help_of(const CriticalSpeed& at, const std::string& name, const std::string& speed,
                     const ShownUnit& unit) {
   std::string text = order_text(at.order) + " " + name + (at.until ? " runs along from " : " at ") + speed +
@@ -87,14 +89,19 @@ float critical_table_width(const Ui& ui) {
   return width;
 }
 
+float critical_table_bar(const Ui& ui, float width) {
+  const float least = critical_table_width(ui) - (columns[mode_column].width - least_mode) * ui.scale;
+  return width < least ? ImGui::GetStyle().ScrollbarSize : 0;
+}
+
 void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& rows, const ShownUnit& unit,
                     const std::string& address, float height) {
   const UiColors& colors = colors_of(ui);
-  constexpr std::size_t mode = 1; // the column that gives way
   const float width = std::min(critical_table_width(ui), ImGui::GetContentRegionAvail().x);
-  const float missing = critical_table_width(ui) - width;
-  const float mode_width = std::max(least_mode * ui.scale, columns[mode].width * ui.scale - missing);
-  const bool scrolls = columns[mode].width * ui.scale - mode_width < missing;
+  const float mode_width =
+      std::max(least_mode, columns[mode_column].width - (critical_table_width(ui) - width) / ui.scale) *
+      ui.scale;
+  const bool scrolls = critical_table_bar(ui, width) > 0;
   const ImGuiTableFlags flags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersInnerH |
                                 ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingFixedFit |
                                 (scrolls ? ImGuiTableFlags_ScrollX : 0);
@@ -105,7 +112,7 @@ void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& ro
     ImGui::TableSetupScrollFreeze(0, 1);
     for (const CriticalColumn& column : columns)
       ImGui::TableSetupColumn(column.title, ImGuiTableColumnFlags_WidthFixed,
-                              &column == &columns[mode] ? mode_width : column.width * ui.scale);
+                              &column == &columns[mode_column] ? mode_width : column.width * ui.scale);
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (const CriticalColumn& column : columns) {
       if (!ImGui::TableNextColumn()) continue;

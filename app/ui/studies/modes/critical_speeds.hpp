@@ -16,9 +16,11 @@ std::vector<CriticalRow> critical_rows(const CampbellDiagram& diagram, std::size
                                        std::span<const std::string> names, const ShownUnit& unit);
 // Pixels, of all columns.
 float critical_table_width(const Ui& ui);
-// From here on, `height` (pixels) of it; narrower where there is less room: names of modes are cut, and below
-// the least width of its columns the table scrolls sideways. A click on a row sets the number at `address` so
-// that the drive has its speed.
+// Pixels that the bar below it takes where it has this width.
+float critical_table_bar(const Ui& ui, float width);
+// From here on, `height` (pixels) of it, the bar included; narrower where there is less room: names of modes
+// are cut, and below the least width of its columns the table scrolls sideways. A click on a row sets the
+// number at `address` so that the drive has its speed.
 void critical_table(Session& session, Ui& ui, const std::vector<CriticalRow>& rows, const ShownUnit& unit,
                     const std::string& address, float height);
 

@@ -261,7 +261,9 @@ struct BesideDiagram {
     // As many rows as leave the diagram its height; its circles tell the others.
     const float space = room.y - least_height * ui.scale - gap; // the same in whatever style it is asked
     for (std::size_t count = std::min(rows, most_below); count >= fewest; --count)
-      if (const float height = table_line(ui) * static_cast<float>(1 + count); height <= space) {
+      if (const float height =
+              table_line(ui) * static_cast<float>(1 + count) + critical_table_bar(ui, room.x);
+          height <= space) {
         below = height;
         return;
       }
