@@ -553,7 +553,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
   struct Entry {
     Potential potential;
     Solution solution;
-    Eigen::VectorXd q, error;
+    Eigen::VectorXd q, error; // the error scaled
     std::vector<int> neutral;
     std::string kinks;
   };
@@ -586,15 +586,20 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     }
     const bool varies = stability.floquet || stability.floquet_failure;
     if (sign_may_change(problem, steady, stability)) leave_verdict_open(steady, stability);
-    if (!stability.neutral.empty() && is_pushed_where_soft(steady.factored(classified))) continue;
-    // Nearer than their errors two are one.
-    if (std::ranges::any_of(entries, [&](const Entry& e) {
-          const Eigen::VectorXd apart =
-              scaled_difference(problem, e.q, found.z.q).cwiseProduct(s.scaling.column).cwiseAbs();
-          return e.solution.stable == stability.stable &&
-                 (apart.array() <= (e.error + steady.error.solution).array()).all();
-        }))
+    if (!stability.neutral.empty() && is_pushed_where_soft(steady.factored(classified))) {
+      ++out.lost;
       continue;
+    }
+    // Nearer than their errors two are one: that which is known better.
+    const Eigen::VectorXd error = steady.error.solution.cwiseQuotient(s.scaling.column);
+    const auto is_same = [&](const Entry& e) {
+      const Eigen::VectorXd apart = scaled_difference(problem, e.q, found.z.q).cwiseAbs();
+      return e.solution.stable == stability.stable && (apart.array() <= (e.error + error).array()).all();
+    };
+    if (std::ranges::any_of(entries,
+                            [&](const Entry& e) { return is_same(e) && e.error.norm() <= error.norm(); }))
+      continue;
+    std::erase_if(entries, is_same);
     std::string without_modes;
     if (by_pivots && options.modes > 0 && options.details && !varies)
       without_modes = add_lowest_eigenvalues(problem, found.z, options.modes, steady.elsewhere(), stability);
@@ -610,9 +615,12 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
         }))
       continue;
     const auto end = std::chrono::steady_clock::now();
-    Entry entry{potential,         {},
-                found.z.q,         steady.error.solution,
-                stability.neutral, kink_message(s.system, *s.mechanism, stability)};
+    Entry entry{.potential = potential,
+                .solution = {},
+                .q = found.z.q,
+                .error = error,
+                .neutral = stability.neutral,
+                .kinks = kink_message(s.system, *s.mechanism, stability)};
     entry.solution.status = Status::converged;
     entry.solution.iterations = found.iterations;
     entry.solution.run_time_s = std::chrono::duration<double>(end - begin).count();

@@ -66,6 +66,7 @@ struct AllSolutions {
   double unseen = 0;         // expected to be missing (SearchReport::unseen)
   SearchEnd end = SearchEnd::settled;
   std::string message; // a sentence
+  int lost = 0;        // states in which what acts is lost in rounding (is_pushed_where_soft()): not listed
 };
 
 // Of a body, in the world frame: rad/s, rad/s^2.

@@ -7,7 +7,6 @@
 #include "engine/search/most_turned.hpp"
 #include "engine/solve/singular_loops.hpp"
 #include "engine/solve/unbounded.hpp"
-#include "engine/stability/neutral_directions.hpp"
 #include "engine/system/implied_rates.hpp"
 
 #include <algorithm>
@@ -233,6 +232,10 @@ std::string message(const AllSolutions& all) {
             (all.passing == 1 ? " equilibrium of the drawn phase is not listed: it does"
                               : " equilibria of the drawn phase are not listed: they do") +
             " not hold as the drives turn.";
+  if (all.lost > 0)
+    text +=
+        " " + std::to_string(all.lost) + (all.lost == 1 ? " more is" : " more are") +
+        " not listed: what acts there is lost in rounding beside the forces that it is the difference of.";
   switch (all.end) {
   case SearchEnd::settled: break;
   case SearchEnd::starts: text += " The search ended after the starts asked for."; break;
@@ -309,26 +312,22 @@ namespace {
 
 // The one direction that nothing resists where it turns a ball alone; else how many there are, where they are
 // fewer than what takes part in them. Empty where each coordinate is free by itself, or that is not known.
-std::string directions_in_words(const ReportInput& in, std::size_t joints, Workspace& w) {
+std::string directions_in_words(const ReportInput& in, std::size_t joints) {
   const System& system = in.problem.system;
-  if (system.nv > largest_for_eigenvalues) return {};
-  const FactoredState at = factor_at({system, in.problem.parameters, in.problem.scaling, in.problem.cancel},
-                                     in.found.z, w.elsewhere());
-  const DenseKkt& dense = at.w.dense;
-  const NeutralDirections neutral =
-      neutral_directions(at, dense.constraints().basis() * dense.hessian().null_basis());
-  const std::vector<int>& parts = neutral.coordinates;
-  if (parts != in.stability.neutral) return {};
-  const bool one = neutral.count == 1;
+  const Eigen::MatrixXd& directions = in.stability.neutral_directions;
+  if (directions.size() == 0) return {};
+  const std::vector<int>& parts = in.stability.neutral;
+  const bool one = directions.cols() == 1;
   const auto ball = std::ranges::find_if(system.links, [&](const Link& link) {
     return link.type == LinkType::spherical && link.v >= 0 && parts.front() >= link.v &&
            parts.back() < link.v + 3;
   });
   if (one && ball != system.links.end()) {
+    Kinematics<double> k;
+    forward<double>(system, in.problem.parameters, in.found.z.q, 0, k);
     Vec3 axis = Vec3::Zero();
-    for (int i = 0; i < 3; ++i)
-      axis += neutral.directions(ball->v + i, 0) * in.problem.scaling.column[ball->v + i] *
-              at.w.kinematics.columns[static_cast<std::size_t>(ball->v + i)].axis;
+    for (int v = ball->v; v < ball->v + 3; ++v)
+      axis += directions(v, 0) * in.problem.scaling.column[v] * k.columns[static_cast<std::size_t>(v)].axis;
     axis.normalize();
     Eigen::Index largest_entry = 0;
     axis.cwiseAbs().maxCoeff(&largest_entry);
@@ -338,16 +337,15 @@ std::string directions_in_words(const ReportInput& in, std::size_t joints, Works
       text += (text.empty() ? "" : ", ") + rounded_text(std::abs(x) < 1e-9 ? 0 : x, 4);
     return " turning about [" + text + "]; the angle of that turn is arbitrary";
   }
-  if (static_cast<std::size_t>(neutral.count) == parts.size()) return {};
-  return (one ? " along one direction" : " along " + std::to_string(neutral.count) + " directions") +
+  if (static_cast<std::size_t>(directions.cols()) == parts.size()) return {};
+  return (one ? " along one direction" : " along " + std::to_string(directions.cols()) + " directions") +
          std::string(joints > 1 ? " together; where they stand" : "; where it stands") +
          (one ? " along it" : " along these") + " is arbitrary";
 }
 
 } // namespace
 
-std::string solution_message(const ReportInput& in, int rank, const Solution& out, bool details,
-                             Workspace& w) {
+std::string solution_message(const ReportInput& in, int rank, const Solution& out) {
   const System& system = in.problem.system;
   std::string text = message(in.found, in.problem);
   if (text.empty()) text = "Converged.";
@@ -361,7 +359,7 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
     for (std::size_t i = 0; i < std::min(named, out.neutral.size()); ++i)
       text += (i ? ", " : " ") + out.neutral[i];
     if (out.neutral.size() > named) text += " and " + std::to_string(out.neutral.size() - named) + " more";
-    const std::string along = details ? directions_in_words(in, out.neutral.size(), w) : std::string();
+    const std::string along = directions_in_words(in, out.neutral.size());
     if (!along.empty())
       text += along;
     else

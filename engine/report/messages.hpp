@@ -22,10 +22,8 @@ std::string message(const AllSolutions& all);
 // Why there is no answer, naming the part that is to blame.
 std::string failure_message(const ReportInput& input, Workspace& w);
 
-// Of a converged solution whose other parts are filled; `rank`: of the constraint equations. `details`: also
-// along which directions nothing resists; for that another workspace beside `w` is used.
-std::string solution_message(const ReportInput& input, int rank, const Solution& solution, bool details,
-                             Workspace& w);
+// Of a converged solution whose other parts are filled; `rank`: of the constraint equations.
+std::string solution_message(const ReportInput& input, int rank, const Solution& solution);
 
 // Of a state that rests on dry friction, for what is not asked of such states: `asked` begins the sentence on
 // it, as "Rates of change are known".

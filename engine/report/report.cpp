@@ -293,7 +293,7 @@ void report(const ReportInput& in, const Eigen::VectorXd& error, bool details, W
     if (in.measures)
       in.measures->mark_nonunique(in.mechanism, out.reactions, out.drive_torques, out.measures);
   }
-  out.message = solution_message(in, rank, out, details, w);
+  out.message = solution_message(in, rank, out);
   if (const std::string kinks = kink_message(system, in.mechanism, in.stability); !kinks.empty())
     out.message += " " + kinks;
 }

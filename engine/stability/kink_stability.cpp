@@ -109,6 +109,7 @@ void judge_kinks(const FactoredState& at, Stability& out) {
     out.stable = common.stable;
     out.reason = common.reason;
     out.neutral = common.neutral;
+    out.neutral_directions = common.neutral_directions;
     out.kinks_leave_open = common.kinks_leave_open;
   }
   const bool by_eigenvalues =

@@ -99,6 +99,7 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   if (of_angles && null_space.cols() > 0) null_space = without_drift(at, angles, null_space);
   NeutralDirections neutral = neutral_directions(at, null_space);
   out.neutral = std::move(neutral.coordinates);
+  out.neutral_directions = std::move(neutral.directions);
   // Multipliers take such angles for cyclic, and where momentum is kept the row of what acts is not at hand.
   out.angles_leave_open = of_angles && (varies || keeps_momentum(system));
   if (out.angles_leave_open) return out;

@@ -24,6 +24,9 @@ struct Stability : Verdict {
   // not told: of what keeps its momentum, or turns unlike others.
   bool angles_leave_open = false;
   bool kinks_leave_open = false; // stable or not: the sides differ, or there is no potential to compare them
+  // Those directions, of the matrices (neutral_directions.hpp): (nv, count), scaled; empty where pivots
+  // decide.
+  Eigen::MatrixXd neutral_directions;
 };
 
 // Whether f is the gradient of the amended potential at a steady state z although drives ride on drives:

@@ -406,6 +406,8 @@ TEST_CASE("equilibria whose digits are lost beside a large inertia are listed on
                 revolute("swing", "hub", "ball", {0, 0, 0}, {0, 0, 1})};
     const AllSolutions all = Analysis(m).solve_all();
     CHECK(all.equilibria.size() == 4);
+    CHECK((all.lost > 0) == (inertia == 1e12));
+    CHECK((all.message.find("lost in rounding") != std::string::npos) == (all.lost > 0));
     const double length = std::hypot(tip, down), drawn = std::atan2(tip, down);
     const double steep = std::acos(standard_gravity / (speed * speed * length)), pi = std::numbers::pi;
     for (const double angle : {0., pi, steep, -steep}) { // from the vertical
