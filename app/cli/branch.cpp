@@ -16,6 +16,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/friction_branches.hpp"

@@ -5,6 +5,7 @@
 #include "app/cli/shared_rows.hpp"
 #include "app/cli/study_part.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 
 #include <fmt/format.h>
 

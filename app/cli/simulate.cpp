@@ -15,6 +15,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"

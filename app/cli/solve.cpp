@@ -7,6 +7,7 @@
 #include "app/cli/solution_json.hpp"
 #include "app/cli/solution_text.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 

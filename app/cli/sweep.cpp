@@ -7,6 +7,7 @@
 #include "app/cli/study_part.hpp"
 #include "app/cli/sweep_rows.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

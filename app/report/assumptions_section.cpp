@@ -3,6 +3,7 @@
 #include "app/report/sections.hpp"
 #include "app/report/versions.hpp"
 #include "engine/mechanism/damped.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "app/session/response_quantity.hpp"
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/periodic/limit_cycle.hpp"

@@ -1,6 +1,7 @@
 #include "app/report/linear_model_file.hpp"
 
 #include "app/report/npz_archive.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -1,6 +1,7 @@
 #include "app/session/friction.hpp"
 
 #include "app/session/session.hpp"
+#include "engine/mechanism/frictions.hpp"
 
 namespace flyball {
 namespace {

@@ -4,6 +4,7 @@
 #include "app/session/variable_numbers.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/text.hpp"
 

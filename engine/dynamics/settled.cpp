@@ -1,6 +1,7 @@
 #include "engine/dynamics/settled.hpp"
 
 #include "engine/dynamics/motion_model.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/system/rotation_vector.hpp"
 

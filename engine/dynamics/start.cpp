@@ -5,6 +5,7 @@
 #include "engine/linear/large.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/messages.hpp"

@@ -1,7 +1,10 @@
 #include "engine/mechanism/frictions.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/referred_to.hpp"
+
+#include <algorithm>
 
 namespace flyball {
 
@@ -9,9 +12,21 @@ std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
   std::vector<CoordinateReference> all;
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
     for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
-      if (mechanism.joints[j].coordinates[i].friction)
-        all.push_back({static_cast<int>(j), static_cast<int>(i)});
+      if (const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
+          mechanism.joints[j].coordinates[i].friction && !is_at_given_speed(mechanism, at))
+        all.push_back(at);
   return all;
+}
+
+bool has_friction(const Mechanism& mechanism) {
+  return !find_frictions(mechanism).empty();
+}
+
+bool is_at_given_speed(const Mechanism& mechanism, CoordinateReference at) {
+  return std::ranges::any_of(gear_train(mechanism, at), [&](const GearedCoordinate& geared) {
+    const auto& drive = coordinate_of(mechanism, geared.at).drive;
+    return drive && !finds_speed(*drive);
+  });
 }
 
 const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at) {

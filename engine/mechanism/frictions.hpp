@@ -5,8 +5,14 @@
 
 namespace flyball {
 
-// In the mechanism's order.
+// In the mechanism's order, without those at a given speed.
 std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism);
+
+// Whether a drive gives the speed, also through gears: friction then holds nothing there, and the drive bears
+// its limit against the way it goes.
+bool is_at_given_speed(const Mechanism& mechanism, CoordinateReference at);
+
+bool has_friction(const Mechanism& mechanism); // some that find_frictions() finds
 
 const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at);
 

@@ -165,12 +165,6 @@ double friction_limit(const Friction& friction) {
   return friction.mu.value_or(0) * friction.preload.value_or(0) * friction.radius.value_or(1);
 }
 
-bool has_friction(const Mechanism& mechanism) {
-  return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
-    return std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.friction.has_value(); });
-  });
-}
-
 double drawn_distance(const std::array<Vec3, 2>& points) {
   return (points[1] - points[0]).norm();
 }

@@ -341,7 +341,6 @@ bool has_axis2(JointType type);
 
 // The most that friction holds, N m or N.
 double friction_limit(const Friction& friction);
-bool has_friction(const Mechanism& mechanism);
 
 // Whether a body, joint or force may be called so: not empty, not "ground", without dots (addresses) and
 // control characters.

@@ -132,11 +132,14 @@ void find_springs_on_driven(const Mechanism& mechanism, const DrivenCoordinates&
         mistakes.add(coordinate_path(mechanism, j, "spring", i), "expected no spring" + reason);
       if (coordinate.stop)
         mistakes.add(coordinate_path(mechanism, j, "stop", i), "expected no stop" + reason);
-      if (coordinate.friction && (!driven(j, i).found || driven(j, i).keeps_momentum))
+      if (coordinate.friction && driven(j, i).keeps_momentum)
         mistakes.add(coordinate_path(mechanism, j, "friction", i),
                      "expected no friction on this coordinate, which is driven" + by +
-                         (driven(j, i).found ? ": where friction acts no momentum is kept"
-                                             : ": it holds nothing there, and only the drive would feel it"));
+                         ": where friction acts no momentum is kept");
+      else if (coordinate.friction && !driven(j, i).found && coordinate.friction->share != 0)
+        mistakes.add(coordinate_path(mechanism, j, "friction", i) + ".share",
+                     "expected 0 on this coordinate, which is driven" + by +
+                         ": at a given speed friction gives all of its limit against it");
     }
 }
 

@@ -1,6 +1,7 @@
 #include "engine/periodic/periodic_state.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/periodic/cycle_guess.hpp"
 #include "engine/periodic/drive_period.hpp"

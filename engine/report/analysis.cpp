@@ -3,6 +3,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/topology.hpp"

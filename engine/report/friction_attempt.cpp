@@ -95,6 +95,7 @@ class Attempt {
   std::optional<StateOnFriction> solve_with(std::span<const CoordinateReference> at_rest,
                                             const SolveOptions& options, bool loose) const try {
     const Standstill still = driven(at_rest);
+    if (stands_without_a_part(still.mechanism)) return std::nullopt;
     StateOnFriction out{
         Analysis(std::make_shared<const Mechanism>(still.mechanism)), {}, parts_, implied_, {}};
     SolveOptions inner = options;
@@ -109,6 +110,13 @@ class Attempt {
     return out;
   } catch (const SceneError&) { // drives that close a loop, say
     return std::nullopt;
+  }
+
+  // Whether gears tie what has no part to what is held: it would hold some of it.
+  bool stands_without_a_part(const Mechanism& changed) const {
+    return std::ranges::any_of(std::views::iota(std::size_t(0), parts_.size()), [&](std::size_t i) {
+      return parts_[i] == Part::none && is_at_given_speed(changed, frictions_[i]);
+    });
   }
 
   std::vector<CoordinateReference> held() const {

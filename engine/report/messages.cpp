@@ -1,6 +1,7 @@
 #include "engine/report/messages.hpp"
 
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/turning_part.hpp"
@@ -343,6 +344,23 @@ std::string directions_in_words(const ReportInput& in, std::size_t joints) {
          (one ? " along it" : " along these") + " is arbitrary";
 }
 
+// Of drives that stand: how friction and the drive share what both hold is open.
+std::string friction_at_standstill(const ReportInput& in) {
+  std::string text;
+  const System& system = in.problem.system;
+  for (const DrivenCoordinate& d : system.drives) {
+    const Link& link = system.links[static_cast<std::size_t>(d.link)];
+    const int joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint;
+    if (joint < 0 || in.problem.parameters.links[static_cast<std::size_t>(d.link)].speed != 0) continue;
+    const CoordinateReference at{joint, link.coordinate};
+    if (!coordinate_of(in.mechanism, at).friction || !is_at_given_speed(in.mechanism, at)) continue;
+    text += " At speed zero the friction of " + coordinate_label(system, link) + " may bear up to " +
+            rounded_text(friction_limit(friction_at(in.mechanism, at)), 4) +
+            (link.type == LinkType::revolute ? " N m" : " N") + " of what its drive is told to.";
+  }
+  return text;
+}
+
 } // namespace
 
 std::string solution_message(const ReportInput& in, int rank, const Solution& out) {
@@ -383,6 +401,7 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
       is_in_still_air(in.problem))
     text += " The force of still air grows with the square of the speed and has no slope at rest: the linear "
             "motion does not show whether it dies out in it.";
+  text += friction_at_standstill(in);
   if (out.stable == false && in.found.remark == Remark::none) text += " This state is unstable.";
   return text;
 }

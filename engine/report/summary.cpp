@@ -1,4 +1,5 @@
 #include "engine/kkt/coordinate_gradient.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/system/dampers.hpp"

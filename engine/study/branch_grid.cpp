@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/study/friction_branches.hpp"
 

@@ -4,6 +4,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/report/friction_state.hpp"
 #include "engine/solve/solution_difference.hpp"
 

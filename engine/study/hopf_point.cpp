@@ -7,6 +7,7 @@
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/stability/phase_stiffness.hpp"
 #include "engine/study/lyapunov.hpp"

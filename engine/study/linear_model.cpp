@@ -5,6 +5,7 @@
 #include "engine/kkt/tied_angles.hpp"
 #include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"

@@ -196,8 +196,18 @@ class Binder {
       l.gear_ratio = ratio;
       l.speed = ratio * read_(c.drive->speed);
       l.start = value - l.drawn;
+      bind_friction_at_given_speed(s_.links[static_cast<std::size_t>(d.link)], l);
       p_.moving = p_.moving || l.speed != N(0) || finds_speed(s_.links[static_cast<std::size_t>(d.link)]);
     }
+  }
+
+  // Its limit against the way it goes; nothing where that is none.
+  void bind_friction_at_given_speed(const Link& link, BasicLinkParameters<N>& out) const {
+    const Coordinate& c = joint(s_.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint)
+                              .coordinates[static_cast<std::size_t>(link.coordinate)];
+    if (!c.friction || finds_speed(link)) return;
+    const double against = out.speed > N(0) ? -1 : out.speed < N(0) ? 1 : 0;
+    out.force.hold(0).friction = N(against) * limit_of(*c.friction);
   }
 
   // Of a world point of the drawn pose, in a link.

@@ -32,7 +32,7 @@ struct BasicSpringDamper {
 };
 
 // Spring, damper, stop and friction of one coordinate. In a steady state friction is a constant force, with
-// the potential of one.
+// the potential of one; at a given speed one against it, which the drive bears.
 template <class N>
 struct BasicCoordinateForce : BasicSpringDamper<N> {
   using BasicSpringDamper<N>::stiffness, BasicSpringDamper<N>::laws;

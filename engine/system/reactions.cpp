@@ -164,10 +164,12 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
   for (const DrivenCoordinate& d : system.drives) {
     const auto l = static_cast<std::size_t>(d.link);
     const LinkState<double>& x = k.links[l];
+    const CoordinateForce& own = p.links[l].force[0];
+    const bool found = finds_speed(system.links[l]);
     const double carried =
         x.axis.dot(system.links[l].type == LinkType::revolute ? needed[l].moment : needed[l].force) +
-        p.links[l].force[0].resistance(finds_speed(system.links[l]) ? turning_rate(system, d.link, k)
-                                                                    : p.links[l].speed);
+        own.resistance(found ? turning_rate(system, d.link, k) : p.links[l].speed) -
+        (found ? 0 : own.friction);
     loads.push_back(carried);
     out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
   }

@@ -396,6 +396,30 @@ TEST_CASE("a drive is left to itself where that is ticked, and its speed is foun
   CHECK(drive().keeps == DriveKeeps::speed);
 }
 
+TEST_CASE("a driven joint has friction where that is ticked, which no momentum bears") {
+  Hand hand;
+  hand.choose(PartKind::joint, "spin");
+  const auto spin = [&] { return hand.joint("spin").coordinates[0]; };
+  hand.one_step([&] { hand.press_widget("inspector/friction"); });
+  hand.one_step([&] { hand.fill("inspector/friction/limit", "2"); });
+  REQUIRE(spin().friction);
+  CHECK_FALSE(hand.app.ui.widgets.contains("inspector/friction/share")); // all of it loads the drive
+  CHECK(find_mistakes(hand.mechanism()).empty());
+  hand.press_widget("inspector/drive/keeps");
+  CHECK(spin().drive->keeps == DriveKeeps::speed);
+  set_mode(hand.app.session, Mode::explore);
+  hand.frames(3);
+  REQUIRE(hand.app.session.answer.solution.drive_torques.size() == 1);
+  CHECK(hand.app.session.answer.solution.drive_torques[0].value == Approx(2));
+  set_mode(hand.app.session, Mode::build);
+  hand.frames(2);
+  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  REQUIRE(spin().drive->torque);
+  hand.frames(2);
+  CHECK(hand.app.ui.widgets.contains("inspector/friction/share"));
+  CHECK(find_mistakes(hand.mechanism()).empty());
+}
+
 TEST_CASE("powers in fields are written as in results, and typed either way") {
   Hand hand;
   select(hand.app.session, {});

@@ -3,6 +3,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/linear/uniform_random.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
@@ -413,10 +414,58 @@ TEST_CASE("behind a brake that holds, a flexible coupling winds up and its shaft
   }
 }
 
-TEST_CASE("friction where the speed is given, or momentum is kept, is refused with the reason") {
+TEST_CASE("friction at a given speed loads the drive alone") {
+  for (const double speed : {5., -5., 0.}) {
+    const auto shafts = [&](double own, double geared) {
+      return scene(
+          body_at("a", 0) + ", " + body_at("c", 0.3) + ", " + body_at("b", 0.6),
+          bearing_at("pa", "a", 0,
+                     R"("damping": 0.2, "drive": {"speed": )" + number_text(speed) + "}, " + friction(own)) +
+              ", " + bearing_at("pc", "c", 0.3, friction(geared)) + ", " + meshing("g", "pa", "pc", -2) +
+              ", " + bearing_at("pb", "b", 0.6, R"("spring": {"stiffness": 10}, )" + friction(0.1)));
+    };
+    const Mechanism m = shafts(1, 0.75);
+    CHECK(find_frictions(m).size() == 1); // which holds something
+    const Solution s = Analysis(m).solve({});
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.frictions.empty());
+    REQUIRE(s.drive_torques.size() == 1);
+    // What both bearings rub, seen from the drive: 1 N m + 2 x 0.75 N m.
+    const double rubbed = speed == 0 ? 0 : std::copysign(2.5, speed);
+    CHECK_THAT(s.drive_torques[0].value, WithinAbs(0.2 * speed + rubbed, 1e-14));
+    REQUIRE(s.gears.size() == 1);
+    CHECK_THAT(s.gears[0].a, WithinAbs(speed == 0 ? 0 : std::copysign(1.5, -speed), 1e-14));
+    CHECK((s.message.find("At speed zero the friction of pc may bear up to 0.75 N m") != std::string::npos) ==
+          (speed == 0));
+    SimulationOptions options;
+    options.duration = 1;
+    options.rate = 0;
+    const Run run = simulate(m, options);
+    REQUIRE(run.drives.size() == 1);
+    CHECK_THAT(run.drives[0].torque.back(), WithinAbs(s.drive_torques[0].value, 1e-9));
+  }
   CHECK_THROWS_WITH(
-      scene(body_at("a", 0), bearing_at("pa", "a", 0, R"("drive": {"speed": 5}, )" + friction(1))),
-      ContainsSubstring("only the drive would feel it"));
+      scene(body_at("a", 0),
+            bearing_at("pa", "a", 0, R"("drive": {"speed": 5}, "friction": {"limit": 1, "share": 0.5})")),
+      ContainsSubstring("friction.share") && ContainsSubstring("gives all of its limit"));
+}
+
+TEST_CASE("friction at a given speed changes nothing but the torque of the drive") {
+  const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
+  Mechanism rubbing = governor;
+  const int spin = joint_index(governor, governor.joints[0].name);
+  REQUIRE(governor.joints[static_cast<std::size_t>(spin)].coordinates[0].drive);
+  rubbing.joints[static_cast<std::size_t>(spin)].coordinates[0].friction.emplace().limit = 0.3;
+  const Solution a = Analysis(governor).solve({}), b = Analysis(rubbing).solve({});
+  REQUIRE(b.status == Status::converged);
+  REQUIRE(a.coordinates.size() == b.coordinates.size());
+  for (std::size_t i = 0; i < a.coordinates.size(); ++i)
+    CHECK(a.coordinates[i].value == b.coordinates[i].value);
+  CHECK(a.eigenvalues == b.eigenvalues);
+  CHECK_THAT(b.drive_torques[0].value - a.drive_torques[0].value, WithinAbs(0.3, 1e-12));
+}
+
+TEST_CASE("friction where momentum is kept is refused with the reason") {
   CHECK_THROWS_WITH(
       scene(body_at("a", 0),
             bearing_at("pa", "a", 0, R"("drive": {"keeps": "momentum", "speed": 5}, )" + friction(1))),

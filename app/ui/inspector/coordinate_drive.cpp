@@ -11,7 +11,6 @@ const char* drive_refused(const Joint& joint, int coordinate) {
            "bearings, Drive in its bearings (Edit).";
   if (joint.cut == true) return "A joint that is cut has no coordinate to drive.";
   if (c.spring || c.stop) return "Not beside a spring or stop, which would never settle; take it away first.";
-  if (c.friction) return "Not beside friction, which would hold nothing there; take it away first.";
   return nullptr;
 }
 
@@ -23,10 +22,9 @@ void set_driven(Session& session, Ui& ui, const std::string& joint, int coordina
     if (i >= same.coordinates.size()) return;
     Coordinate& c = same.coordinates[i];
     if (driven == c.drive.has_value()) return; // of several, one that is so already
-    if (driven)
-      c.drive.emplace().speed = is_angle(same.type, coordinate) ? turned : m_per_s;
-    else
-      c.drive.reset();
+    if (!driven) return c.drive.reset();
+    c.drive.emplace().speed = is_angle(same.type, coordinate) ? turned : m_per_s;
+    if (c.friction) c.friction->share = 0;
   });
 }
 

@@ -247,6 +247,7 @@ struct CoordinateRows {
       c.drive->torque = on ? std::nullopt : std::optional(0.);
       c.drive->load = c.drive->torque;
       c.drive->keeps = DriveKeeps::speed;
+      if (on && c.friction) c.friction->share = 0;
     });
   }
 
@@ -256,7 +257,10 @@ struct CoordinateRows {
             ui, widget(key("drive") + ".keeps"), "Keeps momentum", on,
             "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
             "and the steady speed is found.",
-            !on && is_damped(coordinate()) ? "Not beside a damper, which would take the momentum." : nullptr))
+            on                           ? nullptr
+            : is_damped(coordinate())    ? "Not beside a damper, which would take the momentum."
+            : has_friction(coordinate()) ? "Not beside friction, which would take the momentum."
+                                         : nullptr))
       return;
     change((on ? "Prescribe the speed of " : "Keep the momentum of ") + joint.name, [on](Coordinate& c) {
       if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
@@ -392,16 +396,10 @@ struct CoordinateRows {
            "How hard the stop pushes back beyond its limits.", Least::above_zero);
   }
 
-  // Whether loops, gears or forces make it go on at a rate of its own, against which friction gives its
-  // limit.
-  bool slips_on() const {
-    const CoordinateSolution* found = solution();
-    return !coordinate().drive && found && found->speed;
-  }
-
   // Why this coordinate can have none; null where it may.
   const char* friction_refused() const {
-    if (const char* why = driven(); why && !slips_on()) return why;
+    if (coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum)
+      return "Not where momentum is kept: friction takes it away.";
     if (is_rotation_vector(joint.type, i) || joint.type == JointType::free)
       return "Its coordinates do not slip one by one; use revolute and prismatic joints.";
     if (joint.type == JointType::planar && !angle())
@@ -454,6 +452,7 @@ struct CoordinateRows {
       if (f.radius)
         number("Radius", address + "radius", *f.radius, "m", "At which it acts, for a moment.", Least::zero);
     }
+    if (coordinate().drive && !finds_speed(*coordinate().drive)) return; // all of it acts against the drive
     number(
         "Share", address + "share", f.share, "",
         "Of its limit, -1 to 1, positive along the coordinate: what friction gives in the steady state that "

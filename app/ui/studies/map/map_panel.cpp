@@ -7,6 +7,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>

@@ -13,6 +13,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -10,6 +10,7 @@
 #include "app/ui/widgets/stability_words.hpp"
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
