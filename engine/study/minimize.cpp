@@ -1,4 +1,5 @@
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
@@ -17,6 +18,8 @@ using State = SteadyMap::State;
 
 constexpr int most_evaluations = 1000;
 constexpr double kept_within = 1e-11; // scaled: the goals
+constexpr double beside = 1e-3;       // a look around where the slope vanishes, in parts of the ranges
+constexpr int most_ways_down = 20;    // from where it does
 
 class Minimizer {
  public:
@@ -59,16 +62,22 @@ class Minimizer {
     nlopt_set_maxeval(search.get(), most_evaluations);
     search_ = search.get();
     Eigen::VectorXd x = (now_.p - map_.lower()).cwiseQuotient(map_.range());
-    double least = 0;
-    nlopt_optimize(search.get(), x.data(), &least); // what it says, its state and the goals tell better
-    if (interrupted_) std::rethrow_exception(interrupted_);
-    const bool lost = lost_ && nlopt_get_force_stop(search.get()) != 0;
-    if (!lost) go_to(x);
-    lost_ = lost_ || lost;
-    out.iterations = nlopt_get_numevals(search.get());
-    if (!now_.values.allFinite())
-      throw SceneError(objective_, "expected a value all along the way; it has none there");
-    const bool exhausted = out.iterations >= most_evaluations;
+    bool exhausted = false;
+    for (int ways = 0;; ++ways) {
+      double least = 0;
+      nlopt_optimize(search.get(), x.data(), &least); // what it says, its state and the goals tell better
+      if (interrupted_) std::rethrow_exception(interrupted_);
+      const bool lost = lost_ && nlopt_get_force_stop(search.get()) != 0;
+      if (!lost) go_to(x);
+      lost_ = lost_ || lost;
+      out.iterations += nlopt_get_numevals(search.get());
+      if (!now_.values.allFinite())
+        throw SceneError(objective_, "expected a value all along the way; it has none there");
+      exhausted = nlopt_get_numevals(search.get()) >= most_evaluations;
+      if (lost_ || exhausted || !step_down(x)) break;
+      exhausted = ways == most_ways_down;
+      if (exhausted) break;
+    }
     tell_state(map_, now_, free_, goals_, options_.details, out);
     out.least =
         GoalAnswer::Reached{objective_, map_.unit(goals_.size()), now_.values[objective_row()], before};
@@ -151,6 +160,86 @@ class Minimizer {
     }
   }
 
+  // The objective of a state, scaled, less what the goals' own residuals account for.
+  double lagrangian(const State& state, const Eigen::VectorXd& multipliers) const {
+    double out = state.values[objective_row()] / scales_[objective_row()];
+    for (Eigen::Index i = 0; i < objective_row(); ++i)
+      out -=
+          multipliers[i] *
+          map_.away(static_cast<std::size_t>(i), state.values[i], goals_[static_cast<std::size_t>(i)].value) /
+          scales_[i];
+    return out;
+  }
+
+  // From where the search ended: it does wherever no slope leads down, on a maximum or a saddle as in a
+  // minimum, and where nothing changes the objective at all (flat_). Along what keeps the goals, and along
+  // the least curvature there, it is looked whether there is less beside; then x and now_ are moved there.
+  bool step_down(Eigen::VectorXd& x) {
+    const State here = now_;
+    const Eigen::Index n = x.size(), goals = objective_row();
+    const auto slopes = [&]() -> Eigen::MatrixXd {
+      return scales_.cwiseInverse().asDiagonal() * map_.rates() * map_.range().asDiagonal();
+    };
+    const Eigen::MatrixXd first = slopes();
+    Eigen::MatrixXd ways = Eigen::MatrixXd::Identity(n, n);
+    Eigen::VectorXd multipliers;
+    if (goals > 0) {
+      std::vector<Eigen::Index> inside; // numbers that stand at no end of their range
+      for (Eigen::Index i = 0; i < n; ++i)
+        if (x[i] > 0 && x[i] < 1) inside.push_back(i);
+      if (inside.empty()) return false;
+      const Eigen::MatrixXd kept = first.topRows(goals)(Eigen::all, inside);
+      const auto basis = null_space(kept);
+      const auto by = least_squares(kept.transpose(), first.row(goals)(inside).transpose());
+      if (!basis || !by || basis->cols() == 0) return false;
+      multipliers = *by;
+      ways.setZero(n, basis->cols());
+      ways(inside, Eigen::all) = *basis;
+      ways.colwise().normalize();
+    }
+    const double value = lagrangian(here, multipliers);
+    const double noise = 1e-14 + 1e-12 * std::abs(here.values[goals] / scales_[goals]);
+    int looked = 0, level = 0;
+    double lowest = value - noise;
+    Eigen::VectorXd lower_at;
+    // The slope of the Lagrangian beside, where a steady state is there.
+    const auto look = [&](const Eigen::VectorXd& way) -> std::optional<Eigen::VectorXd> {
+      const Eigen::VectorXd to = (x + beside * way).cwiseMax(0).cwiseMin(1);
+      if ((to - x).norm() < 0.5 * beside) return std::nullopt; // out of the ranges
+      State there = here;
+      if (!map_.find_rates(here) || !map_.walk_to(there, unscaled(to)) || !there.values.allFinite())
+        return std::nullopt;
+      const double found = lagrangian(there, multipliers);
+      ++looked;
+      level += std::abs(found - value) <= noise;
+      if (found < lowest) {
+        lowest = found;
+        lower_at = to;
+      }
+      if (!map_.find_rates(there) || !map_.rates().allFinite()) return std::nullopt;
+      Eigen::VectorXd slope = slopes().row(goals).transpose();
+      if (goals > 0) slope -= slopes().topRows(goals).transpose() * multipliers;
+      return slope;
+    };
+    Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(ways.cols(), ways.cols());
+    for (Eigen::Index i = 0; i < ways.cols(); ++i) {
+      const auto forth = look(ways.col(i)), back = look(-ways.col(i));
+      if (forth && back) curvature.col(i) = ways.transpose() * (*forth - *back);
+    }
+    SymmetricEigen eigen;
+    if (lower_at.size() == 0 && eigen.compute(curvature + curvature.transpose()) && eigen.values()[0] < 0) {
+      const Eigen::VectorXd least = ways * eigen.vectors().col(0);
+      look(least.normalized());
+      look(-least.normalized());
+    }
+    flat_ = looked > 0 && level == looked;
+    now_ = here;
+    if (lower_at.size() == 0) return false;
+    x = lower_at;
+    map_.find_rates(here);
+    return go_to(x);
+  }
+
   static double objective_at(unsigned n, const double* x, double* slope, void* self) {
     auto& minimizer = *static_cast<Minimizer*>(self);
     return minimizer.at(n, x, slope, minimizer.objective_row());
@@ -171,6 +260,8 @@ class Minimizer {
       text += "; the search was not at its end";
     else if (lost_)
       text += "; beyond it no steady state follows";
+    else if (flat_)
+      text += ": none of the numbers that may move changes it there";
     else
       text += ": a minimum nearby, which need not be the least of all";
     return text + "." + closing_words(out);
@@ -184,6 +275,7 @@ class Minimizer {
   State now_;          // that was evaluated last
   bool known_ = false; // its rates are the map's
   bool lost_ = false;  // it is not where it was asked for
+  bool flat_ = false;  // nothing changes the objective there
   Eigen::VectorXd scales_;
   std::vector<Constraint> constraints_;
   nlopt_opt search_ = nullptr;

@@ -308,6 +308,41 @@ TEST_CASE("random mechanisms find back to where two of their numbers had brought
   CHECK(reached >= tried * 9 / 10);
 }
 
+TEST_CASE(
+    "what is least is not a maximum or a saddle on which the search begins, and nothing where nothing acts") {
+  Mechanism m = parse_scene(R"s({"flyball": 2, "name": "two slides",
+    "parameters": {"F": {"value": 0, "unit": "N"}, "G": {"value": 0, "unit": "N"}},
+    "bodies": [{"name": "b", "mass": 1, "position": [0, 0, 0]}, {"name": "c", "mass": 1, "position": [0, 1, 0]}],
+    "joints": [
+      {"name": "x", "type": "prismatic", "bodies": ["ground", "b"], "at": [0, 0, 0], "axis": [1, 0, 0],
+       "spring": {"stiffness": 100}},
+      {"name": "y", "type": "prismatic", "bodies": ["ground", "c"], "at": [0, 1, 0], "axis": [1, 0, 0],
+       "spring": {"stiffness": 100}}],
+    "forces": [{"name": "f", "type": "force", "body": "b", "at": [0, 0, 0], "vector": ["=F", 0, 0]},
+               {"name": "g", "type": "force", "body": "c", "at": [0, 1, 0], "vector": ["=G", 0, 0]}],
+    "measures": {"hill": {"value": "=-coordinate(x)^2", "unit": "m^2"},
+                 "saddle": {"value": "=coordinate(x)*coordinate(y)", "unit": "m^2"},
+                 "valley": {"value": "=coordinate(x)^2 + coordinate(y)^2", "unit": "m^2"},
+                 "sum": {"value": "=coordinate(x) + coordinate(y)", "unit": "m"}}})s");
+  const FreeNumber one[]{{"parameters.F", -4, 5}};
+  const GoalAnswer top = minimize(m, one, "hill", {});
+  INFO(top.message);
+  CHECK(std::abs(top.least->value) >= 0.04 * 0.04 - 1e-12); // at one of the ends
+
+  const FreeNumber both[]{{"parameters.F", -5, 5}, {"parameters.G", -5, 5}};
+  CHECK(minimize(m, both, "saddle", {}).least->value == Approx(-0.05 * 0.05));
+  // The goal keeps y = -x: what is least there is at an end, too.
+  const Goal level[]{{"sum", 0}};
+  CHECK(minimize(m, both, "saddle", level).least->value == Approx(-0.05 * 0.05));
+
+  const GoalAnswer bottom = minimize(m, both, "valley", {});
+  CHECK(bottom.numbers[0].value == 0);
+  CHECK(bottom.message.find("a minimum nearby") != std::string::npos);
+  const GoalAnswer idle = minimize(m, one, "y", {});
+  CHECK(idle.numbers[0].value == 0);
+  CHECK(idle.message.find("none of the numbers that may move changes it") != std::string::npos);
+}
+
 TEST_CASE("what is least: against a search along one number, and with a goal kept") {
   Mechanism m = shipped("governor_parametric");
   m.measures = {{"odd", "", "(coordinate(slide) - 0.146 m)^2", "m^2"}, {"pull", "", "reaction(arm1)", "N"}};
