@@ -133,9 +133,13 @@ std::vector<Example> read_examples(const fs::path& folder) {
   return examples;
 }
 
-bool is_found_by(const Example& example, std::string_view typed) {
-  return words_begin(typed, example.mechanism.name + " " + example.group + " " +
-                                example.mechanism.description + words_for(example.mechanism));
+std::optional<int> found_rank(const Example& example, std::string_view typed) {
+  std::string text = example.mechanism.name;
+  if (words_begin(typed, text)) return 0;
+  text += " " + example.group + " " + example.mechanism.description;
+  if (words_begin(typed, text)) return 1;
+  if (words_begin(typed, text + words_for(example.mechanism))) return 2;
+  return std::nullopt;
 }
 
 } // namespace flyball

@@ -4,6 +4,7 @@
 #include "engine/mechanism/mechanism.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,9 @@ struct Example {
 // does not name last, by title. Files that cannot be opened are left out.
 std::vector<Example> read_examples(const std::filesystem::path& folder);
 
-// Whether every word that is typed begins one of its title, its group's, its description, or of what its
-// parts are called: "belt", "hinge", "friction", "engine". Upper and lower case count as the same.
-bool is_found_by(const Example& example, std::string_view typed);
+// Where every word that is typed begins one: 0 of its title, 1 of that, its group's or its description, 2 of
+// those or of what its parts are called ("belt", "hinge", "friction", "engine"); else nothing. Upper and
+// lower case count as the same.
+std::optional<int> found_rank(const Example& example, std::string_view typed);
 
 } // namespace flyball

@@ -247,11 +247,19 @@ TEST_CASE("the gallery finds examples by their titles, descriptions and parts as
   CHECK_FALSE(robot.app.dialog.showing);
   CHECK(robot.opened() == "gear_train");
 
-  // Arrows go through what is found, down into the next group.
+  // Arrows go through what is found.
   REQUIRE(found("belts") == Names{"gear_train", "differential", "fan_governor"}); // by the group, by the belt
-  robot.key(key_down);
+  robot.key(key_right);
+  robot.key(key_right);
   robot.key(key_enter);
   CHECK(robot.opened() == "fan_governor");
+
+  // Titles are found before groups, descriptions and parts, whatever was chosen by the letters before.
+  for (const auto& [text, scene] : {std::pair{"engine", "governor_engine"}, {"top", "free_top"}}) {
+    REQUIRE(found(text).size() > 1);
+    robot.key(key_enter);
+    CHECK(robot.opened() == scene);
+  }
 
   // Nothing is found: it is told, and Enter opens nothing.
   CHECK(found("zeppelin").empty());

@@ -42,21 +42,33 @@ std::vector<SceneCard> read_cards(const fs::path& folder) {
   return cards;
 }
 
-// A line of cards, all of one group.
+// A line of cards, all of one group where nothing is typed.
 struct CardRow {
   std::vector<int> cards;
   bool begins_group = false;
 };
 
-// Of the cards that are found by what is typed.
+// Those that are found by what is typed, by their titles first.
+std::vector<int> found_cards(const std::vector<SceneCard>& cards, const std::string& typed) {
+  std::vector<std::pair<int, int>> found; // with their ranks
+  for (int i = 0; i < static_cast<int>(cards.size()); ++i)
+    if (const auto rank = found_rank(cards[static_cast<std::size_t>(i)], typed)) found.emplace_back(*rank, i);
+  std::ranges::sort(found);
+  std::vector<int> out;
+  for (const auto& [rank, i] : found)
+    out.push_back(i);
+  return out;
+}
+
+// In groups as long as nothing is typed.
 std::vector<CardRow> card_rows(const std::vector<SceneCard>& cards, const std::string& typed, int columns) {
   std::vector<CardRow> rows;
   const std::string* group = nullptr;
-  for (int i = 0; i < static_cast<int>(cards.size()); ++i) {
+  for (const int i : found_cards(cards, typed)) {
     const SceneCard& card = cards[static_cast<std::size_t>(i)];
-    if (!is_found_by(card, typed)) continue;
-    const bool begins = !group || *group != card.group;
-    if (begins || static_cast<int>(rows.back().cards.size()) == columns) rows.push_back({{}, begins});
+    const bool begins = typed.empty() && (!group || *group != card.group);
+    if (rows.empty() || begins || static_cast<int>(rows.back().cards.size()) == columns)
+      rows.push_back({{}, begins});
     rows.back().cards.push_back(i);
     group = &card.group;
   }
@@ -186,6 +198,7 @@ GalleryDialog::Answer GalleryDialog::draw(Ui& ui, DialogState& dialog) {
   if (!begin_dialog(ui, dialog, Dialog::gallery, "Examples", 3 * scene_picture_width + 2 * card_gap + 47))
     return answer;
   showing_ = true;
+  const std::string searched = search_;
   const bool entered = search_field(ui, search_);
   const float between = card_gap * s;
   const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
@@ -194,8 +207,10 @@ GalleryDialog::Answer GalleryDialog::draw(Ui& ui, DialogState& dialog) {
   const float width =
       std::min((room + between) / static_cast<float>(columns) - between, scene_picture_width * s);
   const std::vector<CardRow> rows = card_rows(cards_, search_, columns);
-  const bool found = std::ranges::any_of(
-      rows, [&](const CardRow& row) { return std::ranges::count(row.cards, chosen_) > 0; });
+  // What is typed chooses anew: what answers it best is opened by Enter.
+  const bool found = search_ == searched && std::ranges::any_of(rows, [&](const CardRow& row) {
+                       return std::ranges::count(row.cards, chosen_) > 0;
+                     });
   if (!found && !rows.empty()) chosen_ = rows[0].cards[0];
   const bool moved = move_by_keys(rows, chosen_) || !found;
   fs::path opened;
