@@ -1,5 +1,6 @@
 // New, save, and questions before work is lost.
 #include "app/ui/panel_list.hpp"
+#include "app/ui/widgets/file_list.hpp"
 #include "file_robot.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/parts.hpp"
@@ -116,6 +117,21 @@ TEST_CASE("a picture of an example is not offered a place among the examples") {
   const fs::path offered = robot.app.panels->picture.query().path;
   CHECK(offered.parent_path() == fs::current_path());
   CHECK(offered.filename() == "flyball-governor.png");
+}
+
+TEST_CASE("a new document is not offered a place among the examples that were opened before it") {
+  const TemporaryFolder folder;
+  FileRobot robot(folder);
+  fs::create_directory(folder / "shipped");
+  fs::copy_file(shipped_file("governor"), folder / "shipped/governor.json");
+  fs::create_directory_symlink(folder / "shipped", folder / "scenes"); // as a build folder has them
+  robot.app.session.options.scenes = folder / "scenes";
+  robot.open(folder / "scenes/governor.json");
+  REQUIRE(is_example(robot.app.session));
+  REQUIRE(robot.app.session.files.recent.size() == 1);
+  robot.key('N', true);
+  REQUIRE(robot.app.session.document.file().empty());
+  CHECK(usual_folder(robot.app.session) == fs::current_path());
 }
 
 TEST_CASE("a picture of a file of the program's own is called without its two endings") {

@@ -223,8 +223,9 @@ fs::path usual_folder(const Session& session) {
   std::error_code ignored;
   std::vector<fs::path> folders;
   if (!is_example(session)) folders.push_back(session.document.file().parent_path());
-  for (const fs::path& recent : session.files.recent)
-    if (recent.parent_path() != session.options.scenes) folders.push_back(recent.parent_path());
+  for (const fs::path& recent : session.files.recent) // the shipped scenes may lie behind a link
+    if (!fs::equivalent(recent.parent_path(), session.options.scenes, ignored))
+      folders.push_back(recent.parent_path());
   folders.push_back(fs::current_path(ignored));
   for (const fs::path& folder : folders)
     if (may_write(folder)) return folder;
