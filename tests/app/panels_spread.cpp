@@ -82,6 +82,7 @@ TEST_CASE("numbers that change nothing spread nothing: all samples stand at one 
   REQUIRE(plot.references.size() == 1); // no labels over each other
   CHECK(plot.references[0].label == "nominal");
   CHECK(plot.y.whole);
+  CHECK(robot.app.ui.widgets.contains("spread/unmoved")); // and it is said
 }
 
 TEST_CASE("a width is typed in per cent or in the number's unit, and what it is scatters so") {

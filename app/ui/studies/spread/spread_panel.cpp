@@ -185,14 +185,19 @@ void spread_choices(Session& session, Ui& ui) {
   help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
 }
 
-// With as many digits as its standard error leaves.
+// With as many digits as its standard error leaves, and with that where it is more than rounding.
 void estimated_row(const Session& session, const Ui& ui, const char* label, double value, double error,
                    const ShownUnit& unit, const char* help) {
   const NumberStyle& numbers = session.options.numbers;
-  row(ui, label,
-      value_text(value * unit.factor, error * unit.factor, numbers) + " ± " +
-          size_text(error * unit.factor, numbers),
-      unit.text.c_str(), help);
+  std::string text = value_text(value * unit.factor, error * unit.factor, numbers);
+  if (error * unit.factor >= numbers.noise) text += " ± " + size_text(error * unit.factor, numbers);
+  row(ui, label, text, unit.text.c_str(), help);
+}
+
+// Nothing scatters but rounding, of which nothing has a share.
+bool is_unmoved(const SpreadOutput& output) {
+  return !output.linear_shares.empty() && output.linear_deviation == 0 &&
+         output.followed.deviation <= 1e-12 * std::abs(output.nominal);
 }
 
 void statistics_rows(const Session& session, Ui& ui, const SpreadOutput& output) {
@@ -224,6 +229,10 @@ void statistics_rows(const Session& session, Ui& ui, const SpreadOutput& output)
   if (s.count > 1) {
     plain("95 % from", s.lowest, s.deviation_error, "2.5 % of the samples that followed are below.");
     plain("to", s.highest, s.deviation_error, "2.5 % of the samples that followed are above.");
+  }
+  if (is_unmoved(output)) {
+    paragraph("None of the tolerances moves it.", colors_of(ui).dim);
+    note_widget(ui.widgets, "spread/unmoved", KeyUse::none);
   }
 }
 
@@ -280,8 +289,9 @@ void share_rows(Ui& ui, const std::vector<Tolerance>& tolerances, const SpreadOu
   ImGui::TextUnformatted("");
   title("by rates", first);
   title("by samples", second);
-  const auto share = [](const std::vector<double>& shares, std::size_t k) {
-    return shares.empty() ? std::string("–") : rounded_text(std::round(1000 * shares[k]) / 10, 4) + " %";
+  const auto share = [&](const std::vector<double>& shares, std::size_t k) {
+    return shares.empty() || is_unmoved(output) ? std::string("–")
+                                                : rounded_text(std::round(1000 * shares[k]) / 10, 4) + " %";
   };
   for (std::size_t k = 0; k < tolerances.size(); ++k) {
     ImGui::PushStyleColor(ImGuiCol_Text, colors.dim);

@@ -7,6 +7,7 @@
 #include "app/ui/widgets/task_bar.hpp"
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -70,10 +71,12 @@ void search_bounds(Session& session, Ui& ui, const StatesStudy::Found& search) {
             colors.dim);
   note_widget(ui.widgets, "states/search");
   for (const AllSolutions::Bound& b : found.bounds) {
-    const ShownUnit unit = coordinate_unit(b.angle, session.units);
-    row(ui, coordinate_words(b),
+    const ShownUnit unit =
+        b.speed ? rate_unit(b.angle, session.units) : coordinate_unit(b.angle, session.units);
+    row(ui, b.speed ? speed_words(coordinate_words(b)) : coordinate_words(b),
         short_text(unit.shown(b.lower), 5) + " … " + short_text(unit.shown(b.upper), 5), unit.text.c_str(),
         "Where starts lay. What was found a range's width further out was kept, too.");
+    note_widget(ui.widgets, "states/bound/" + coordinate_label(b.joint, b.index, b.count));
   }
   if (session.options.numbers.run_times)
     row(ui, "Run time", duration_text(search.run_time, session.options.numbers), "");
