@@ -8,7 +8,7 @@ import shutil
 import sys
 import tempfile
 
-from window_test import SKIPPED, Window, start_display
+from window_test import SKIPPED, Window, own_display
 
 
 class Builder:
@@ -64,7 +64,7 @@ class Builder:
     def fill(self, field, text):
         self.click("inspector/" + field)
         self.key("ctrl+a")
-        self.window.do("type", "--delay", 40, text)
+        self.window.do("type", text)
         self.key("Return")
 
     def joint(self, x, y, kind, axis, name):
@@ -132,17 +132,9 @@ def main():
         if not shutil.which(tool):
             print(f"skipped: {tool} is missing")
             sys.exit(SKIPPED)
-    server, display = start_display()
-    window = None
-    try:
-        with tempfile.TemporaryDirectory() as name:
-            window = Window(display, pathlib.Path(name), program, scene)
-            build(window)
-    finally:
-        if window:
-            window.end()
-        server.terminate()
-        server.wait()
+    with (tempfile.TemporaryDirectory() as name, own_display() as display,
+          Window(display, pathlib.Path(name), program, scene) as window):
+        build(window)
     print("the pendulum was built in the window and settles where it should")
 
 

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from window_test import LIMIT, SKIPPED, SPEED, Window, hidden_files, start_display
+from window_test import LIMIT, SKIPPED, SPEED, Window, hidden_files, own_display, side_by_side, start_display
 
 
 def fail(words):
@@ -121,7 +121,7 @@ def rest_and_watch(window, copy):
     window.wait("it plays on where it is seen", lambda s: s["frame"] > frame + 10)
 
 
-def pipes(window, pipe):
+def pipes(window):
     """A pipe that nobody writes to does not hold up the start, nor one that nobody reads a save."""
     shown = window.wait("the window in spite of the pipe", lambda s: s["frame"] > 3)
     if "no regular file" not in shown["problem"]:
@@ -148,52 +148,60 @@ def main():
         if not shutil.which(tool):
             print(f"skipped: {tool} is missing")
             sys.exit(SKIPPED)
-    server, display = start_display()
-    windows = []
-    try:
-        with tempfile.TemporaryDirectory() as name:
-            def begin(part, own_display=display, file="governor.json"):
-                folder = pathlib.Path(name) / part
-                folder.mkdir()
-                (folder / "own").mkdir()
-                copy = pathlib.Path(shutil.copy(scene, folder / "own" / "governor.json"))
-                if file == "pipe":
-                    os.mkfifo(folder / "own" / file)
-                windows.append(Window(own_display, folder, program, folder / "own" / file))
-                return windows[-1], copy
+    with tempfile.TemporaryDirectory() as name:
+        def begin(part, display, file="governor.json"):
+            """The program with a copy of the scene, or beside it, in a folder of its own; and the copy."""
+            folder = pathlib.Path(name) / part
+            (folder / "own").mkdir(parents=True)
+            copy = pathlib.Path(shutil.copy(scene, folder / "own" / "governor.json"))
+            if file == "pipe":
+                os.mkfifo(folder / "own" / file)
+            return Window(display, folder, program, folder / "own" / file), copy
 
+        def signals():
             for number in (signal.SIGTERM, signal.SIGHUP):
-                window, copy = begin(number.name)
-                speed = keep_another_speed(window)
-                window.program.send_signal(number)
-                ends_and_keeps_speed(window, copy.parent, -number, speed, number.name)
-            window, copy = begin("dragging")
-            drag_without_pause(window)
-            window.program.send_signal(signal.SIGINT)
-            ends_and_keeps_move(window, copy, -signal.SIGINT, "while dragging")
-            subprocess.run(["xdotool", "mouseup", "1"], env=window.environment, check=True)
+                with own_display() as display:
+                    window, copy = begin(number.name, display)
+                    with window:
+                        speed = keep_another_speed(window)
+                        window.program.send_signal(number)
+                        ends_and_keeps_speed(window, copy.parent, -number, speed, number.name)
+            with own_display() as display:
+                window, copy = begin("dragging", display)
+                with window:
+                    drag_without_pause(window)
+                    window.program.send_signal(signal.SIGINT)
+                    ends_and_keeps_move(window, copy, -signal.SIGINT, "while dragging")
+
+        def lost_displays():
             for part in ("display lost", "display lost while dragging"):
                 dragging = part.endswith("dragging")
-                doomed, its_display = start_display()
-                try:
-                    window, copy = begin(part, its_display)
-                    speed = drag_without_pause(window) if dragging else keep_another_speed(window)
-                finally:
-                    doomed.kill()
-                    doomed.wait()
-                if dragging:
-                    ends_and_keeps_move(window, copy, 1, part)
-                else:
-                    ends_and_keeps_speed(window, copy.parent, 1, speed, part)
-            rest_and_watch(*begin("rest"))
-            windows[-1].end()
-            pipes(begin("pipe", file="pipe")[0], None)
-            save_onto_pipe(*begin("saving"))
-    finally:
-        for window in windows:
-            window.end()
-        server.terminate()
-        server.wait()
+                doomed, display = start_display()
+                window, copy = begin(part, display)
+                with window:
+                    try:
+                        speed = drag_without_pause(window) if dragging else keep_another_speed(window)
+                    finally:
+                        doomed.kill()
+                        doomed.wait()
+                    if dragging:
+                        ends_and_keeps_move(window, copy, 1, part)
+                    else:
+                        ends_and_keeps_speed(window, copy.parent, 1, speed, part)
+
+        def rests_and_pipes():
+            with own_display() as display:
+                window, copy = begin("rest", display)
+                with window:
+                    rest_and_watch(window, copy)
+                window, _ = begin("pipe", display, file="pipe")
+                with window:
+                    pipes(window)
+                window, copy = begin("saving", display)
+                with window:
+                    save_onto_pipe(window, copy)
+
+        side_by_side(signals, lost_displays, rests_and_pipes)
     print("no work is lost at the end, and nothing is done at rest")
 
 

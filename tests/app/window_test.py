@@ -3,6 +3,8 @@ recover.
 
 Usage: window_test.py FLYBALL SCENE. Exits 77 with a message where Xvfb or xdotool are missing.
 """
+import concurrent.futures
+import contextlib
 import json
 import os
 import pathlib
@@ -15,6 +17,7 @@ import time
 
 SKIPPED = 77
 LIMIT = 60  # seconds, for anything to happen
+LOOK = 0.01  # seconds between two looks at the state
 SPEED = "joints.spin.drive.speed"
 
 
@@ -36,7 +39,27 @@ def start_display(resets=False):
     return server, ":" + number
 
 
+@contextlib.contextmanager
+def own_display(resets=False):
+    """The number of an Xvfb that ends with the block."""
+    server, number = start_display(resets)
+    try:
+        yield number
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def side_by_side(*parts):
+    """Runs functions at once, as they mostly wait; ends with what the first of them that failed raised."""
+    with concurrent.futures.ThreadPoolExecutor(len(parts)) as threads:
+        for begun in [threads.submit(part) for part in parts]:
+            begun.result()
+
+
 class Window:
+    """The program in a window of its own, to be used in a `with` block, at whose end it ends."""
+
     def __init__(self, display, folder, program, scene):
         self.environment = {**os.environ, "DISPLAY": display, "XDG_STATE_HOME": str(folder / "state")}
         self.environment.pop("WAYLAND_DISPLAY", None)
@@ -44,6 +67,12 @@ class Window:
         self.state_file.unlink(missing_ok=True)
         self.program = subprocess.Popen([program, scene, "--state-file", self.state_file], cwd=folder,
                                         env=self.environment)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.end()
 
     def end(self):
         if self.program.poll() is None:
@@ -65,7 +94,7 @@ class Window:
                 return state
             if self.program.poll() is not None:
                 raise SystemExit(f"the program ended with {self.program.returncode} before: {what}")
-            time.sleep(0.05)
+            time.sleep(LOOK)
         raise SystemExit(f"never happened: {what}; the last state was {self.state()}")
 
     def do(self, *words):
@@ -74,8 +103,8 @@ class Window:
         subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True)
         end = time.time() + 3  # what changes nothing draws nothing
         while self.state().get("frame", 0) < before + 3 and time.time() < end:
-            time.sleep(0.05)
-        time.sleep(0.1)
+            time.sleep(LOOK)
+        time.sleep(0.03)
 
     def place(self, widget, share=0.5):
         left, top, right, bottom = self.wait(f"{widget} is there", lambda s: widget in s["widgets"])["widgets"][widget]
@@ -225,16 +254,10 @@ def recover(window, scene, value):
 
 def open_bare(program, scene, folder):
     """A server that starts anew whenever its last client has gone is asked for a window once."""
-    server, display = start_display(resets=True)
-    window = Window(display, folder, program, scene)
-    try:
+    with own_display(resets=True) as display, Window(display, folder, program, scene) as window:
         window.wait("a frame of the window", lambda s: s.get("frame", 0) > 0)
         window.do("key", "ctrl+q")
         window.ends_well()
-    finally:
-        window.end()
-        server.terminate()
-        server.wait()
 
 
 def main():
@@ -243,30 +266,34 @@ def main():
         if not shutil.which(tool):
             print(f"skipped: {tool} is missing")
             sys.exit(SKIPPED)
-    server, display = start_display()
-    windows = []
-    try:
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            own = folder / "own"
-            own.mkdir()
-            copy = pathlib.Path(shutil.copy(scene, own))
+    with tempfile.TemporaryDirectory() as name:
+        def copied(part):
+            """A folder for a part of the test, and a copy of the scene in a folder in it."""
+            folder = pathlib.Path(name) / part
+            (folder / "own").mkdir(parents=True)
+            return folder, pathlib.Path(shutil.copy(scene, folder / "own" / "governor.json"))
 
-            def start(file):
-                windows.append(Window(display, folder, program, file))
-                return windows[-1]
-
+        def explores():
+            folder, _ = copied("bare")
             open_bare(program, scene, folder)
-            explore(start(pathlib.Path(shutil.copy(scene, folder))), folder)  # pictures go beside their scene
-            ahead = pathlib.Path(shutil.copy(scene, folder / "ahead.json"))
-            type_ahead(start(ahead), ahead)
-            value = crash(start(copy))
-            recover(start(copy), copy, value)
-    finally:
-        for window in windows:
-            window.end()
-        server.terminate()
-        server.wait()
+            folder, copy = copied("explored")
+            with own_display() as display, Window(display, folder, program, copy) as window:
+                explore(window, copy.parent)  # pictures go beside their scene
+
+        def types_ahead():
+            folder, copy = copied("ahead")
+            with own_display() as display, Window(display, folder, program, copy) as window:
+                type_ahead(window, copy)
+
+        def crashes():
+            folder, copy = copied("crashed")
+            with own_display() as display:
+                with Window(display, folder, program, copy) as window:
+                    value = crash(window)
+                with Window(display, folder, program, copy) as window:
+                    recover(window, copy, value)
+
+        side_by_side(explores, types_ahead, crashes)
     print("the window solves, draws, saves and recovers")
 
 
