@@ -189,11 +189,14 @@ def main():
                     else:
                         ends_and_keeps_speed(window, copy.parent, 1, speed, part)
 
-        def rests_and_pipes():
+        def at_rest():
             with own_display() as display:
                 window, copy = begin("rest", display)
                 with window:
                     rest_and_watch(window, copy)
+
+        def at_pipes():
+            with own_display() as display:
                 window, _ = begin("pipe", display, file="pipe")
                 with window:
                     pipes(window)
@@ -201,7 +204,7 @@ def main():
                 with window:
                     save_onto_pipe(window, copy)
 
-        side_by_side(signals, lost_displays, rests_and_pipes)
+        side_by_side(signals, lost_displays, at_rest, at_pipes)
     print("no work is lost at the end, and nothing is done at rest")
 
 
