@@ -63,6 +63,7 @@ class Minimizer {
     search_ = search.get();
     Eigen::VectorXd x = (now_.p - map_.lower()).cwiseQuotient(map_.range());
     bool exhausted = false;
+    std::optional<State> best; // before a step down
     for (int ways = 0;; ++ways) {
       double least = 0;
       nlopt_optimize(search.get(), x.data(), &least); // what it says, its state and the goals tell better
@@ -74,7 +75,15 @@ class Minimizer {
       if (!now_.values.allFinite())
         throw SceneError(objective_, "expected a value all along the way; it has none there");
       exhausted = nlopt_get_numevals(search.get()) >= most_evaluations;
-      if (lost_ || exhausted || !step_down(x)) break;
+      if (best && !(goals_kept() && now_.values[objective_row()] < best->values[objective_row()])) {
+        now_ = *best; // the way led nowhere
+        lost_ = exhausted = flat_ = false;
+        map_.find_rates(now_);
+        break;
+      }
+      if (lost_ || exhausted || !goals_kept()) break;
+      best = now_;
+      if (!step_down(x)) break;
       exhausted = ways == most_ways_down;
       if (exhausted) break;
     }
@@ -82,9 +91,7 @@ class Minimizer {
     out.least =
         GoalAnswer::Reached{objective_, map_.unit(goals_.size()), now_.values[objective_row()], before};
     if (out.status != Status::converged) return;
-    bool kept = true;
-    for (std::size_t i = 0; i < goals_.size(); ++i)
-      kept = kept && std::abs(residual(static_cast<Eigen::Index>(i))) < 1e-8;
+    const bool kept = goals_kept();
     out.reached = kept && !exhausted && !lost_;
     out.message = sentence(out, kept, exhausted);
   }
@@ -122,6 +129,12 @@ class Minimizer {
     return map_.away(static_cast<std::size_t>(goal), now_.values[goal],
                      goals_[static_cast<std::size_t>(goal)].value) /
            scales_[goal];
+  }
+
+  bool goals_kept() const {
+    for (std::size_t i = 0; i < goals_.size(); ++i)
+      if (!(std::abs(residual(static_cast<Eigen::Index>(i))) < 1e-8)) return false;
+    return true;
   }
 
   // Moves now_ along its branch towards x, as far as there are steady states; whether it arrived.
@@ -198,9 +211,9 @@ class Minimizer {
       ways.colwise().normalize();
     }
     const double value = lagrangian(here, multipliers);
-    const double noise = 1e-14 + 1e-12 * std::abs(here.values[goals] / scales_[goals]);
+    const double size = std::abs(here.values[goals] / scales_[goals]);
     int looked = 0, level = 0;
-    double lowest = value - noise;
+    double lowest = value - 1e-14 - 1e-9 * size; // less would be lost in what the goals are kept to
     Eigen::VectorXd lower_at;
     // The slope of the Lagrangian beside, where a steady state is there.
     const auto look = [&](const Eigen::VectorXd& way) -> std::optional<Eigen::VectorXd> {
@@ -209,9 +222,14 @@ class Minimizer {
       State there = here;
       if (!map_.find_rates(here) || !map_.walk_to(there, unscaled(to)) || !there.values.allFinite())
         return std::nullopt;
-      const double found = lagrangian(there, multipliers);
+      double astray = 0; // from the goals, whose curvature the multipliers do not know
+      for (Eigen::Index i = 0; i < goals; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        astray += std::pow(map_.away(k, there.values[i], goals_[k].value) / scales_[i], 2);
+      }
+      const double found = lagrangian(there, multipliers) + astray;
       ++looked;
-      level += std::abs(found - value) <= noise;
+      level += std::abs(found - value) <= 1e-14 + 1e-12 * size + 2 * astray;
       if (found < lowest) {
         lowest = found;
         lower_at = to;

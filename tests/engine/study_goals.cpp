@@ -338,6 +338,14 @@ TEST_CASE(
   const GoalAnswer bottom = minimize(m, both, "valley", {});
   CHECK(bottom.numbers[0].value == 0);
   CHECK(bottom.message.find("a minimum nearby") != std::string::npos);
+  // Nothing is less where the goal leaves nothing open.
+  Mechanism governor = shipped("governor_parametric");
+  const FreeNumber balls[]{{"parameters.w", 5, 30}, {"parameters.m", 0.2, 5}};
+  const Goal stands[]{{"slide", 0.145}};
+  const GoalAnswer fixed = minimize(governor, balls, "radius", stands);
+  INFO(fixed.message);
+  CHECK(fixed.reached);
+  CHECK(fixed.goals[0].value == Approx(0.145).epsilon(1e-10));
   const GoalAnswer idle = minimize(m, one, "y", {});
   CHECK(idle.numbers[0].value == 0);
   CHECK(idle.message.find("none of the numbers that may move changes it") != std::string::npos);
