@@ -141,7 +141,7 @@ TEST_CASE("where there is no motion is told with the reason, and steady states a
   robot.frames(2);
   choose_response(app.session, "joints.spin.drive.speed");
   choose_response_end(app.session, &ResponseChoice::from, 0);
-  choose_response_end(app.session, &ResponseChoice::to, 200); // 50 is critical; the slowest points take longest
+  choose_response_end(app.session, &ResponseChoice::to, 200); // 50 is critical, slow ones take longest
   robot.key('C');
   robot.frames(3);
   REQUIRE(app.session.study.response.resonance.found);
