@@ -283,7 +283,7 @@ struct Analysis::State {
     out.message = failure_message(input, steady.elsewhere());
     if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
     out.residual = steady.history.empty() ? 0 : steady.history.back();
-    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
+    explain_unbounded(problem, *mechanism, steady.start, steady.elsewhere(), out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
                        weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
     if (system.torques.empty() || out.status != Status::not_converged || problem.cancelled()) return;
@@ -509,7 +509,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   report_progress(options.progress, "reactions");
   s.conclude(problem, steady, std::move(stability), without_modes, options, out);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
-    explain_unbounded(problem, steady.start, steady.elsewhere(), out);
+    explain_unbounded(problem, *s.mechanism, steady.start, steady.elsewhere(), out);
   const std::optional<std::string> unknown = unknown_coordinate(out);
   if (unknown || !is_finite(out)) {
     s.settled = false;

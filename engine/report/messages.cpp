@@ -406,7 +406,8 @@ std::string solution_message(const ReportInput& in, int rank, const Solution& ou
   return text;
 }
 
-void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out) {
+void explain_unbounded(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& start,
+                       Workspace& w, Solution& out) {
   const bool unstable = out.status == Status::converged && out.stable == false;
   if ((out.status != Status::not_converged && !unstable) || problem.cancelled()) return;
   const Unbounded found = find_unbounded(problem, start, w);
@@ -427,13 +428,21 @@ void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Wor
     out.message = unstable ? out.message + " " + words : words;
     return;
   }
+  // Beside an unstable state: where it is drawn, or further on, friction may hold it all the same.
+  const bool rubs =
+      unstable && std::ranges::any_of(find_frictions(mechanism), [&](CoordinateReference at) {
+        return std::ranges::find(found.coordinates, mechanism.joints[static_cast<std::size_t>(at.joint)].name,
+                                 &UnheldCoordinate::joint) != found.coordinates.end();
+      });
   const std::string words =
-      "Nothing holds " + names_of(found) + " against " +
+      (rubs ? "Nothing but dry friction holds " : "Nothing holds ") + names_of(found) + " against " +
       (found.by_weight    ? "the weight"
        : found.by_inertia ? "the centrifugal force"
                           : "the forces on it") +
-      ": " + (one ? "it goes" : "they go") + " on without end" +
-      (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+      ": " + (rubs ? "where it slips " : "") + (one ? "it goes" : "they go") + " on without end" +
+      (rubs       ? ". "
+       : unstable ? " from the drawn pose. "
+                  : ", so there is no steady state to find. ") +
       (one ? "It needs a spring" : "They need springs") +
       (pulled_by_law(problem.system, found) ? " whose force grows with its deflection," : "") +
       (one ? " or a stop" : " or stops") + (found.by_weight ? ", or no gravity." : ".");

@@ -32,6 +32,7 @@ std::string rests_on_friction(const Solution& solution, std::string_view asked);
 // Looks for what runs away (find_unbounded) where `out` has no answer or an unstable one; names it in
 // `out.unheld`, and in `out.message` what holds nothing and what would mend it: of an unstable answer beside
 // what the message says already. Leaves `out` alone where nothing runs away.
-void explain_unbounded(const Problem& problem, const Eigen::VectorXd& start, Workspace& w, Solution& out);
+void explain_unbounded(const Problem& problem, const Mechanism& mechanism, const Eigen::VectorXd& start,
+                       Workspace& w, Solution& out);
 
 } // namespace flyball

@@ -169,6 +169,18 @@ TEST_CASE("insensitivity of a bead on a turning rod") {
   CHECK_FALSE(find_held_speeds(bead_on_rod(2, 30), {})[0].lower);
 }
 
+TEST_CASE("what runs away once it slips is not said to do so where friction holds it") {
+  Mechanism bead = bead_on_rod(2, 30); // held as drawn by a thirtieth of that
+  bead.joints[1].coordinates[0].spring.reset();
+  const Solution s = Analysis(bead).solve();
+  CHECK(s.stable == false);
+  INFO(s.message);
+  CHECK(
+      s.message.find("Nothing but dry friction holds slide against the centrifugal force: where it slips it "
+                     "goes on without end.") != std::string::npos);
+  CHECK_THAT(extent(report_friction(bead, s).band, "slide").high, WithinRel(30 / (0.5 * 2 * 2), 1e-12));
+}
+
 TEST_CASE("two hinges with friction: each coordinate has corners of its own") {
   Mechanism m = read_scene(R"json({"flyball": 2, "name": "Double pendulum", "gravity": [0, -10, 0],
     "bodies": [{"name": "upper", "mass": 2, "position": [0, -0.5, 0]},
