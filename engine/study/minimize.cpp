@@ -88,8 +88,9 @@ class Minimizer {
       if (exhausted) break;
     }
     tell_state(map_, now_, free_, goals_, options_.details, out);
-    out.least =
-        GoalAnswer::Reached{objective_, map_.unit(goals_.size()), now_.values[objective_row()], before};
+    out.least = GoalAnswer::Reached{objective_, map_.unit(goals_.size()),
+                                    now_.values[objective_row()] + 0., // no minus zero
+                                    before};
     if (out.status != Status::converged) return;
     const bool kept = goals_kept();
     out.reached = kept && !exhausted && !lost_;
