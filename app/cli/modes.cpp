@@ -165,6 +165,7 @@ void add_modes(CLI::App& app, Ending& ending) {
     try {
       Analysis analysis(mechanism);
       solution = analysis.solve(solve);
+      report_progress(solve.progress, "modes");
       if (solution.status == Status::converged)
         for (VibrationMode& mode : analysis.modes(options->count)) {
           ToldMode& told = modes.emplace_back();

@@ -34,6 +34,7 @@ FoundModes find(std::shared_ptr<const Mechanism> mechanism,
   const Solution solution = found.analysis->solve(options);
   if (solution.status != Status::converged) throw std::runtime_error(solution.message);
   found.singular_loops = solution.singular_loops;
+  report_progress(context.progress, "modes");
   found.modes = found.analysis->modes();
   for (const VibrationMode& mode : found.modes)
     found.whirls.push_back(found.analysis->whirl(mode));
