@@ -41,7 +41,7 @@ MUTATIONS = [
     Mutation("reaction of a joint that the tree runs against, sign", "engine/system/reactions.cpp",
              "o.force = sign * w.force;", "o.force = w.force;", "system_tests"),
     Mutation("damping in a drive's torque, dropped", "engine/system/reactions.cpp",
-             "p.links[l].force[0].resistance(", "0 * p.links[l].force[0].resistance(", "system_tests"),
+             "own.resistance(found", "0 * own.resistance(found", "system_tests"),
     Mutation("existence: forces that vary, let pass", "engine/solve/existence.cpp",
              "if (left > least * size", "if (left > 1e30 * size", "equilibrium_tests",
              "weight that turns*,a rotor must be*,forces held by the world*"),
