@@ -5,7 +5,6 @@ namespace flyball::icon {
 
 inline constexpr unsigned short first = 0xF000, last = 0xF2E0;
 
-inline constexpr char search[] = "\uF002";
 inline constexpr char check[] = "\uF00C";
 inline constexpr char close[] = "\uF00D";
 inline constexpr char gear[] = "\uF013";
@@ -13,16 +12,11 @@ inline constexpr char file[] = "\uF016";
 inline constexpr char refresh[] = "\uF021";
 inline constexpr char lock[] = "\uF023";
 inline constexpr char camera[] = "\uF030";
-inline constexpr char pencil[] = "\uF040";
 inline constexpr char step_backward[] = "\uF048";
 inline constexpr char play[] = "\uF04B";
 inline constexpr char pause[] = "\uF04C";
-inline constexpr char stop[] = "\uF04D";
-inline constexpr char step_forward[] = "\uF051";
 inline constexpr char chevron_left[] = "\uF053";
 inline constexpr char chevron_right[] = "\uF054";
-inline constexpr char plus[] = "\uF067";
-inline constexpr char minus[] = "\uF068";
 inline constexpr char eye[] = "\uF06E";
 inline constexpr char eye_off[] = "\uF070";
 inline constexpr char warning[] = "\uF071";
@@ -30,21 +24,14 @@ inline constexpr char folder_open[] = "\uF07C";
 inline constexpr char folder[] = "\uF114";
 inline constexpr char folder_up[] = "\uF148";
 inline constexpr char save[] = "\uF0C7";
-inline constexpr char link[] = "\uF0C1";
-inline constexpr char cut[] = "\uF0C4";
 inline constexpr char undo[] = "\uF0E2";
 inline constexpr char expand[] = "\uF065";
-inline constexpr char home[] = "\uF015";
 inline constexpr char info[] = "\uF05A";
 inline constexpr char question[] = "\uF059";
 inline constexpr char trash[] = "\uF1F8";
 inline constexpr char redo[] = "\uF01E";
 inline constexpr char sun[] = "\uF185";
 inline constexpr char moon[] = "\uF186";
-inline constexpr char sliders[] = "\uF1DE";
-inline constexpr char line_chart[] = "\uF201";
-inline constexpr char cube[] = "\uF1B2";
-inline constexpr char bolt[] = "\uF0E7";
 inline constexpr char pin[] = "\uF08D";
 inline constexpr char swap[] = "\uF0EC";
 

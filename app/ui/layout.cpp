@@ -16,6 +16,8 @@ constexpr float toolbar_height = 68, narrow_width = 1060; // points
 constexpr float key_step = 10;                            // points that a key moves a line between panels
 // Points that a study and then the view are to have while nobody has chosen: below that plots say little.
 constexpr float study_height = 290, view_beside_study = 200;
+// In a window too low for both, which is then shared.
+constexpr float least_study = 175, view_beside_least = 115;
 constexpr float least_panel = 230, most_panel = 560, least_view = 240; // points
 
 float panel_width(float wanted, float room) {
@@ -102,7 +104,8 @@ Layout layout_of(const Session& session, const Ui& ui, const PanelSizes& sizes, 
   if (!building && session.study.open != StudyKind::none) {
     float study = below * sizes.study_share;
     if (!sizes.study_chosen)
-      study = std::max(study, std::min(study_height * s, below - view_beside_study * s));
+      study = std::max({study, std::min(study_height * s, below - view_beside_study * s),
+                        std::min(least_study * s, below - view_beside_least * s)});
     study = std::round(study);
     below -= study;
     layout.study = {0, top + below, width, study};

@@ -358,6 +358,18 @@ TEST_CASE("in a low window the diagram has the width, and one chooses between mo
   CHECK(widgets.contains("modes/row/1"));
 }
 
+TEST_CASE("in the lowest window modes are in sight, and the words about them below") {
+  const char* scene = GENERATE("governor_engine", "rotor_oil_whip");
+  ModesRobot robot(scene, {640, 360}); // 1280 x 720 where a point has two pixels
+  for (const char* row : {"modes/row/1", "modes/row/2"})
+    CHECK(robot.widget(row).to.y <= 360);
+  CHECK(robot.widget("modes/verdict").from.y > robot.widget("modes/row/2").to.y);
+  if (scene == std::string("rotor_oil_whip")) {
+    const WidgetRect plot = robot.widget("plot/campbell/area");
+    CHECK(plot.to.y - plot.from.y > 30);
+  }
+}
+
 TEST_CASE("critical speeds have a place in a panel of any height, whatever is said above the diagram") {
   const int width = GENERATE(700, 820, 1280);
   ModesRobot robot("rotor_oil_whip", {width, 900});

@@ -290,6 +290,32 @@ void choose_table(Ui& ui, CampbellView& drawn) {
   }
 }
 
+// Modes, or the critical speeds, as there is room; returns whether the latter are told. `beside`: pixels of
+// the panel beside the list.
+bool mode_tables(Session& session, Ui& ui, const FoundModes& found, CampbellView& drawn, ImVec2 beside,
+                 const CommandRunner& commands) {
+  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * ui.scale;
+  const float critical = critical_height(session, ui, drawn, found.modes.size(), foot);
+  const auto& diagram = session.study.modes.campbell.diagram.found;
+  const std::string drive = diagram ? diagram->of.drive : std::string();
+  if (critical <= 0 && one_table(session, ui, drawn, beside)) {
+    choose_table(ui, drawn);
+    if (drawn.critical_for_modes) {
+      critical_table(session, ui, *drawn.critical, drawn.unit, drive,
+                     std::max(ImGui::GetContentRegionAvail().y, 60 * ui.scale));
+      return true;
+    }
+  }
+  const float all = table_line(ui) * static_cast<float>(1 + found.modes.size());
+  list(session, ui, found,
+       critical > 0 ? all : std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
+  transport(session, ui, commands);
+  if (critical <= 0) return false;
+  ImGui::SetCursorPosY(ImGui::GetWindowHeight() - critical);
+  critical_table(session, ui, *drawn.critical, drawn.unit, drive, critical);
+  return true;
+}
+
 // Returns whether the critical speeds are told here. `beside`: pixels of the panel beside the list.
 bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, const CommandRunner& commands) {
   ModesState& modes = session.study.modes;
@@ -317,32 +343,18 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
     paragraph("Of the state before the last changes.", colors.warn);
     if (text_button(ui, "modes/again", "Find again", true)) find_modes_again(session);
   }
-  verdict(session, ui, found);
+  // Of a low panel the words would take all: they stand below what they are about.
+  constexpr float low = 170; // points
+  const bool words_first = found.modes.empty() || ImGui::GetContentRegionAvail().y >= low * ui.scale;
+  if (words_first) verdict(session, ui, found);
   if (found.modes.empty()) {
     paragraph(found.singular_loops ? std::string(singular_loops_message) : "No coordinate is free to swing.",
               colors.dim);
     return false;
   }
-  const float foot = 2 * ImGui::GetTextLineHeightWithSpacing() + 12 * ui.scale;
-  const float critical = critical_height(session, ui, drawn, found.modes.size(), foot);
-  if (critical <= 0 && one_table(session, ui, drawn, beside)) {
-    choose_table(ui, drawn);
-    if (drawn.critical_for_modes) {
-      critical_table(session, ui, *drawn.critical, drawn.unit,
-                     session.study.modes.campbell.diagram.found->of.drive,
-                     std::max(ImGui::GetContentRegionAvail().y, 60 * ui.scale));
-      return true;
-    }
-  }
-  const float all = table_line(ui) * static_cast<float>(1 + found.modes.size());
-  list(session, ui, found,
-       critical > 0 ? all : std::max(ImGui::GetContentRegionAvail().y - foot, 60 * ui.scale));
-  transport(session, ui, commands);
-  if (critical <= 0) return false;
-  ImGui::SetCursorPosY(ImGui::GetWindowHeight() - critical);
-  critical_table(session, ui, *drawn.critical, drawn.unit,
-                 session.study.modes.campbell.diagram.found->of.drive, critical);
-  return true;
+  const bool told = mode_tables(session, ui, found, drawn, beside, commands);
+  if (!words_first) verdict(session, ui, found);
+  return told;
 }
 
 // Drive, range and unit, in one line.
