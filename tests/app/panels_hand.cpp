@@ -349,7 +349,7 @@ TEST_CASE("what a drive turns does not give way, and says so") {
   hand.take(at + Vec3(0, 0.01, 0));
   hand.frames(2);
   CHECK_FALSE(hand.app.tool.pull);
-  CHECK_THAT(hand.app.session.notice, ContainsSubstring("nothing gives way"));
+  CHECK_THAT(hand.app.session.notice, ContainsSubstring("no other body turns with it"));
   hand.let_go();
 }
 

@@ -198,7 +198,8 @@ void follow_pull(Session& session, ToolState& tool) {
   if (!pull->grip && session.answer.grip && session.answer.ticket == session.awaited) {
     pull->grip = session.answer.grip;
     if (pull->grip->holder.empty()) {
-      session.notice = "The drives turn " + pull->grabbed.body + ", and nothing gives way.";
+      session.notice = "The drives turn " + pull->grabbed.body +
+                       ", and no other body turns with it, in which a hand that pulls could stand.";
       session.playback.playing = pull->playing;
       tool.spent = true;
       pull.reset();
