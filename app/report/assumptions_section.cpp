@@ -63,7 +63,7 @@ OptionalSection assumptions_section(const ReportContents& contents) {
   const Mechanism& m = *contents.mechanism;
   const SystemSummary& system = contents.system;
   HtmlTerms terms;
-  terms.term("Bodies", has_friction(m)
+  terms.term("Bodies", rubs_anywhere(m)
                            ? "Rigid, joined by ideal joints without play; dry friction (Coulomb's) where the "
                              "scene has it, the same sticking and slipping."
                            : "Rigid, joined by ideal joints without play or dry friction.");

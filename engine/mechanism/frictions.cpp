@@ -8,12 +8,28 @@
 
 namespace flyball {
 
+bool rubs_anywhere(const Mechanism& mechanism) {
+  return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
+    return std::ranges::any_of(joint.coordinates, [](const Coordinate& c) { return c.friction.has_value(); });
+  });
+}
+
 std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
   std::vector<CoordinateReference> all;
+  if (!rubs_anywhere(mechanism)) return all;
+  std::vector<CoordinateReference> given; // each gear train once
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i) {
+      const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
+      const auto& drive = mechanism.joints[j].coordinates[i].drive;
+      if (!drive || finds_speed(*drive) || std::ranges::count(given, at)) continue;
+      for (const GearedCoordinate& geared : gear_train(mechanism, at))
+        given.push_back(geared.at);
+    }
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
     for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
       if (const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
-          mechanism.joints[j].coordinates[i].friction && !is_at_given_speed(mechanism, at))
+          mechanism.joints[j].coordinates[i].friction && !std::ranges::count(given, at))
         all.push_back(at);
   return all;
 }

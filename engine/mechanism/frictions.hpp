@@ -1,4 +1,5 @@
-// Which coordinates have dry friction, and the addresses of what it gives.
+// Which coordinates have dry friction that holds or slips, which are at a given speed, and the addresses of
+// what friction gives.
 #pragma once
 
 #include "engine/mechanism/mechanism.hpp"
@@ -12,7 +13,8 @@ std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism);
 // its limit against the way it goes.
 bool is_at_given_speed(const Mechanism& mechanism, CoordinateReference at);
 
-bool has_friction(const Mechanism& mechanism); // some that find_frictions() finds
+bool has_friction(const Mechanism& mechanism);  // some that find_frictions() finds, so that states are bands
+bool rubs_anywhere(const Mechanism& mechanism); // also where it loads drives alone
 
 const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at);
 

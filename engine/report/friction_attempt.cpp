@@ -112,7 +112,7 @@ class Attempt {
     return std::nullopt;
   }
 
-  // Whether gears tie what has no part to what is held: it would hold some of it.
+  // Whether gears tie what has no part to what is held or has come to rest: it would hold some of it.
   bool stands_without_a_part(const Mechanism& changed) const {
     return std::ranges::any_of(std::views::iota(std::size_t(0), parts_.size()), [&](std::size_t i) {
       return parts_[i] == Part::none && is_at_given_speed(changed, frictions_[i]);

@@ -346,7 +346,7 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
     const CoordinateReference named = find_coordinate(mechanism, name);
     if (named.joint < 0) continue;
     const Coordinate& c = coordinate_of(mechanism, named);
-    if (c.friction && c.drawn != value) return std::nullopt;
+    if (c.friction && c.drawn != value && !is_at_given_speed(mechanism, named)) return std::nullopt;
   }
   std::optional<StateOnFriction> unstable;
   std::vector<FrictionParts> all = parts_to_try(mechanism, options.cancel);

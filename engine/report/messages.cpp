@@ -346,17 +346,27 @@ std::string directions_in_words(const ReportInput& in, std::size_t joints) {
 
 // Of drives that stand: how friction and the drive share what both hold is open.
 std::string friction_at_standstill(const ReportInput& in) {
-  std::string text;
+  if (!rubs_anywhere(in.mechanism)) return {};
   const System& system = in.problem.system;
+  std::vector<double> limits(system.drives.size(), 0); // of what is geared together, as the drive sees it
   for (const DrivenCoordinate& d : system.drives) {
     const Link& link = system.links[static_cast<std::size_t>(d.link)];
+    const LinkParameters& p = in.problem.parameters.links[static_cast<std::size_t>(d.link)];
     const int joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint;
-    if (joint < 0 || in.problem.parameters.links[static_cast<std::size_t>(d.link)].speed != 0) continue;
+    if (joint < 0 || p.speed != 0) continue;
     const CoordinateReference at{joint, link.coordinate};
-    if (!coordinate_of(in.mechanism, at).friction || !is_at_given_speed(in.mechanism, at)) continue;
-    text += " At speed zero the friction of " + coordinate_label(system, link) + " may bear up to " +
-            rounded_text(friction_limit(friction_at(in.mechanism, at)), 4) +
-            (link.type == LinkType::revolute ? " N m" : " N") + " of what its drive is told to.";
+    if (coordinate_of(in.mechanism, at).friction && is_at_given_speed(in.mechanism, at))
+      limits[static_cast<std::size_t>(d.motor)] +=
+          friction_limit(friction_at(in.mechanism, at)) * std::abs(p.gear_ratio);
+  }
+  std::string text;
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    const Link& link = system.links[static_cast<std::size_t>(system.drives[d].link)];
+    const bool turns = link.type == LinkType::revolute;
+    if (limits[d] > 0)
+      text += " At speed zero dry friction may bear up to " + rounded_text(limits[d], 4) +
+              (turns ? " N m of the torque" : " N of the force") + " told of " +
+              coordinate_label(system, link) + ".";
   }
   return text;
 }

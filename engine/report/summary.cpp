@@ -62,7 +62,10 @@ SystemSummary summarize(const Mechanism& mechanism, const System& system, const 
     return std::ranges::any_of(l.force, [](const CoordinateForce& f) { return f.elastic(); });
   };
   say(std::ranges::any_of(p.links, has_elastic), "springs and stops in joints");
-  if (has_friction(mechanism)) out.in.emplace_back("dry friction in joints: the steady state is a band");
+  if (has_friction(mechanism))
+    out.in.emplace_back("dry friction in joints: the steady state is a band");
+  else if (rubs_anywhere(mechanism))
+    out.in.emplace_back("dry friction at given speeds: it loads the drives");
   say(!system.springs.empty(), "springs between points");
   if (!system.bearings.empty())
     out.in.emplace_back(system.conservative

@@ -17,9 +17,10 @@ namespace {
 using State = SteadyMap::State;
 
 constexpr int most_evaluations = 1000;
-constexpr double kept_within = 1e-11; // scaled: the goals
-constexpr double beside = 1e-3;       // a look around where the slope vanishes, in parts of the ranges
-constexpr int most_ways_down = 20;    // from where it does
+constexpr double kept_within = 1e-11;  // scaled: the goals
+constexpr double beside = 1e-3;        // a look around where the slope vanishes, in parts of the ranges
+constexpr double still_sloping = 1e-3; // of the slope, along what keeps the goals, where no search ends
+constexpr int most_ways_down = 20;     // from where it does
 
 class Minimizer {
  public:
@@ -78,6 +79,7 @@ class Minimizer {
       if (best && !(goals_kept() && now_.values[objective_row()] < best->values[objective_row()])) {
         now_ = *best; // the way led nowhere
         lost_ = exhausted = flat_ = false;
+        led_nowhere_ = true;
         map_.find_rates(now_);
         break;
       }
@@ -90,10 +92,10 @@ class Minimizer {
     tell_state(map_, now_, free_, goals_, options_.details, out);
     out.least = GoalAnswer::Reached{objective_, map_.unit(goals_.size()),
                                     now_.values[objective_row()] + 0., // no minus zero
-                                    before};
+                                    before + 0.};
     if (out.status != Status::converged) return;
     const bool kept = goals_kept();
-    out.reached = kept && !exhausted && !lost_;
+    out.reached = kept && !exhausted && !lost_ && !stopped_;
     out.message = sentence(out, kept, exhausted);
   }
 
@@ -207,6 +209,9 @@ class Minimizer {
       const auto by = least_squares(kept.transpose(), first.row(goals)(inside).transpose());
       if (!basis || !by || basis->cols() == 0) return false;
       multipliers = *by;
+      const Eigen::VectorXd slope = first.row(goals)(inside).transpose();
+      stopped_ = (slope - kept.transpose() * multipliers).norm() > still_sloping * slope.norm();
+      if (stopped_) return false;
       ways.setZero(n, basis->cols());
       ways(inside, Eigen::all) = *basis;
       ways.colwise().normalize();
@@ -280,7 +285,11 @@ class Minimizer {
     else if (lost_)
       text += "; beyond it no steady state follows";
     else if (flat_)
-      text += ": none of the numbers that may move changes it there";
+      text += ": beside it none of the numbers that may move changes it noticeably";
+    else if (stopped_)
+      text += "; the search stopped on the way to less: begin from other numbers";
+    else if (led_nowhere_)
+      text += ": nothing less was found nearby, and it need not be the least of all";
     else
       text += ": a minimum nearby, which need not be the least of all";
     return text + "." + closing_words(out);
@@ -291,10 +300,12 @@ class Minimizer {
   std::span<const Goal> goals_;
   std::string objective_;
   SteadyMap map_;
-  State now_;          // that was evaluated last
-  bool known_ = false; // its rates are the map's
-  bool lost_ = false;  // it is not where it was asked for
-  bool flat_ = false;  // nothing changes the objective there
+  State now_;                // that was evaluated last
+  bool known_ = false;       // its rates are the map's
+  bool lost_ = false;        // it is not where it was asked for
+  bool flat_ = false;        // nothing changes the objective there
+  bool stopped_ = false;     // where it could be less along what keeps the goals
+  bool led_nowhere_ = false; // a step down from where the search ended
   Eigen::VectorXd scales_;
   std::vector<Constraint> constraints_;
   nlopt_opt search_ = nullptr;

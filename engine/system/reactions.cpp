@@ -166,10 +166,10 @@ TransmittedForces transmitted_forces(const System& system, const Parameters& p, 
     const LinkState<double>& x = k.links[l];
     const CoordinateForce& own = p.links[l].force[0];
     const bool found = finds_speed(system.links[l]);
+    const double rubbed = found ? 0 : own.friction; // of a speed that is found the balance has it
     const double carried =
         x.axis.dot(system.links[l].type == LinkType::revolute ? needed[l].moment : needed[l].force) +
-        own.resistance(found ? turning_rate(system, d.link, k) : p.links[l].speed) -
-        (found ? 0 : own.friction);
+        own.resistance(found ? turning_rate(system, d.link, k) : p.links[l].speed) - rubbed;
     loads.push_back(carried);
     out.drives[static_cast<std::size_t>(d.motor)] += carried * p.links[l].gear_ratio;
   }

@@ -13,9 +13,11 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 SKIPPED = 77
+ONE_AT_A_TIME = threading.Lock()  # two servers that start may choose the same number
 LIMIT = 60  # seconds, for anything to happen
 LOOK = 0.01  # seconds between two looks at the state
 SPEED = "joints.spin.drive.speed"
@@ -24,14 +26,15 @@ SPEED = "joints.spin.drive.speed"
 def start_display(resets=False):
     """Xvfb on a number of its own choice, which starts anew or not when its last client has gone; returns the process
     and the number."""
-    read, write = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
-         *([] if resets else ["-noreset"])],
-        pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        number = pipe.readline().strip()
+    with ONE_AT_A_TIME:
+        read, write = os.pipe()
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp",
+             *([] if resets else ["-noreset"])],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            number = pipe.readline().strip()
     if not number:
         server.wait()
         print("skipped: Xvfb does not start here")
@@ -51,10 +54,11 @@ def own_display(resets=False):
 
 
 def side_by_side(*parts):
-    """Runs functions at once, as they mostly wait; ends with what the first of them that failed raised."""
+    """Runs functions at once, as they mostly wait; ends with what one of them raised, a failure before a skip."""
     with concurrent.futures.ThreadPoolExecutor(len(parts)) as threads:
-        for begun in [threads.submit(part) for part in parts]:
-            begun.result()
+        raised = [error for begun in [threads.submit(part) for part in parts] if (error := begun.exception())]
+    for error in sorted(raised, key=lambda e: isinstance(e, SystemExit) and e.code == SKIPPED):
+        raise error
 
 
 class Window:
@@ -99,7 +103,7 @@ class Window:
 
     def do(self, *words):
         """One xdotool command, then a few frames: ImGui 1.86 sees one change of input a frame."""
-        before = self.state().get("frame", 0)
+        before = self.wait("a frame", lambda s: "frame" in s)["frame"]
         subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True)
         end = time.time() + 3  # what changes nothing draws nothing
         while self.state().get("frame", 0) < before + 3 and time.time() < end:

@@ -435,8 +435,8 @@ TEST_CASE("friction at a given speed loads the drive alone") {
     CHECK_THAT(s.drive_torques[0].value, WithinAbs(0.2 * speed + rubbed, 1e-14));
     REQUIRE(s.gears.size() == 1);
     CHECK_THAT(s.gears[0].a, WithinAbs(speed == 0 ? 0 : std::copysign(1.5, -speed), 1e-14));
-    CHECK((s.message.find("At speed zero the friction of pc may bear up to 0.75 N m") != std::string::npos) ==
-          (speed == 0));
+    CHECK((s.message.find("At speed zero dry friction may bear up to 2.5 N m of the torque told of pa.") !=
+           std::string::npos) == (speed == 0));
     SimulationOptions options;
     options.duration = 1;
     options.rate = 0;
@@ -453,9 +453,11 @@ TEST_CASE("friction at a given speed loads the drive alone") {
 TEST_CASE("friction at a given speed changes nothing but the torque of the drive") {
   const Mechanism governor = load_scene(FLYBALL_ASSETS "/scenes/governor.json");
   Mechanism rubbing = governor;
-  const int spin = joint_index(governor, governor.joints[0].name);
+  const int spin = joint_index(governor, "spin");
   REQUIRE(governor.joints[static_cast<std::size_t>(spin)].coordinates[0].drive);
   rubbing.joints[static_cast<std::size_t>(spin)].coordinates[0].friction.emplace().limit = 0.3;
+  CHECK_FALSE(has_friction(rubbing)); // no band
+  CHECK(rubs_anywhere(rubbing));
   const Solution a = Analysis(governor).solve({}), b = Analysis(rubbing).solve({});
   REQUIRE(b.status == Status::converged);
   REQUIRE(a.coordinates.size() == b.coordinates.size());

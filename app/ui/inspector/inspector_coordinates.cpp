@@ -9,6 +9,7 @@
 #include "engine/mechanism/damped.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/force_law.hpp"
+#include "engine/mechanism/frictions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -257,10 +258,10 @@ struct CoordinateRows {
             ui, widget(key("drive") + ".keeps"), "Keeps momentum", on,
             "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
             "and the steady speed is found.",
-            on                           ? nullptr
-            : is_damped(coordinate())    ? "Not beside a damper, which would take the momentum."
-            : has_friction(coordinate()) ? "Not beside friction, which would take the momentum."
-                                         : nullptr))
+            on                        ? nullptr
+            : is_damped(coordinate()) ? "Not beside a damper, which would take the momentum."
+            : some_have(has_friction) ? "Not beside friction, which would take the momentum."
+                                      : nullptr))
       return;
     change((on ? "Prescribe the speed of " : "Keep the momentum of ") + joint.name, [on](Coordinate& c) {
       if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
@@ -410,7 +411,8 @@ struct CoordinateRows {
   void friction() const {
     tick(
         "friction", "Friction", "friction", has_friction,
-        "Dry friction: holds the coordinate at rest up to a limit, so that the steady state is a band.",
+        "Dry friction: holds the coordinate at rest up to a limit, so that the steady state is a band; at a "
+        "given speed it loads the drive.",
         &CoordinateRows::friction_refused, [](Coordinate& c) { c.friction.reset(); },
         [limit = beginning().friction](Coordinate& c) { c.friction.emplace().limit = limit; });
   }
@@ -452,7 +454,8 @@ struct CoordinateRows {
       if (f.radius)
         number("Radius", address + "radius", *f.radius, "m", "At which it acts, for a moment.", Least::zero);
     }
-    if (coordinate().drive && !finds_speed(*coordinate().drive)) return; // all of it acts against the drive
+    if (is_at_given_speed(session.mechanism(), {joint_index(session.mechanism(), joint.name), i}))
+      return; // all of it loads the drive
     number(
         "Share", address + "share", f.share, "",
         "Of its limit, -1 to 1, positive along the coordinate: what friction gives in the steady state that "
