@@ -58,8 +58,9 @@ class Minimizer {
       constraints_.push_back({this, static_cast<Eigen::Index>(i)});
     for (Constraint& each : constraints_)
       nlopt_add_equality_constraint(search.get(), constraint_at, &each, kept_within);
+    // No tolerance of the objective: it may stand still at an end of a range while the goals are not yet
+    // kept.
     nlopt_set_xtol_rel(search.get(), 1e-11);
-    nlopt_set_ftol_rel(search.get(), 1e-14);
     nlopt_set_maxeval(search.get(), most_evaluations);
     search_ = search.get();
     Eigen::VectorXd x = (now_.p - map_.lower()).cwiseQuotient(map_.range());

@@ -3,6 +3,7 @@
 #include "tests/engine/reference/random_mechanism.hpp"
 #include "tests/support/dice.hpp"
 
+#include "engine/continuation/branch_follower.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/goals.hpp"
@@ -346,6 +347,12 @@ TEST_CASE(
   INFO(fixed.message);
   CHECK(fixed.reached);
   CHECK(fixed.goals[0].value == Approx(0.145).epsilon(1e-10));
+  // On a circle, from its top and from beside it.
+  const Goal around[]{{"valley", 0.0009}};
+  for (const double start : {0., 1., 2.}) {
+    const Mechanism there = with_parameter(with_parameter(m, "parameters.F", start), "parameters.G", 3);
+    CHECK(minimize(there, both, "y", around).least->value == Approx(-0.03));
+  }
   const GoalAnswer idle = minimize(m, one, "y", {});
   CHECK(idle.numbers[0].value == 0);
   CHECK(idle.message.find("none of the numbers that may move changes it") != std::string::npos);
