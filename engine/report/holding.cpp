@@ -16,6 +16,7 @@
 #include "engine/search/steady_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/tied_motions.hpp"
+#include "engine/system/drive_rates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -296,6 +297,10 @@ class HoldingAttempt {
     measures.bind(locked, held.system, held.parameters);
     const std::vector<MeasureSolution> laws = measures.solutions(problem, z, {}, w);
     const Kinematics<double> drawn = w.kinematics;
+    if (const std::string going = going_on(held, q, drawn); !going.empty()) {
+      out.message = "Friction does not hold " + going + ", which goes on with the drives.";
+      return;
+    }
     const ReportedForces forces = report_forces(locked, problem, z, w);
     std::vector<double> needed;
     for (std::size_t k = 0; k < independent_.size(); ++k) {
@@ -322,6 +327,21 @@ class HoldingAttempt {
                             (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")
                       : "Whether friction holds it " + there +
                             " depends on how the joints in loops share the load, which is not determined.";
+  }
+
+  // Of the joints that loops tie one that does not stand, as drives turn the loop; empty where there is none.
+  std::string going_on(const Compiled& held, const VectorXd& q, const Kinematics<double>& drawn) const {
+    if (which_.others.empty()) return {};
+    const double fastest = fastest_given_rate(held.system, held.parameters);
+    for (const CoordinateSolution& c :
+         coordinate_solutions(held.system, held.parameters, q, VectorXd::Zero(held.system.nv), drawn))
+      for (const std::size_t i : which_.others) {
+        const CoordinateReference& at = frictions_[i];
+        if (c.joint != joint_of(mechanism_, at).name || c.index != at.coordinate) continue;
+        const double rate = 1e-9 * fastest * (c.angle ? 1 : held.parameters.length);
+        if (c.speed ? std::abs(*c.speed) > rate : c.driven && c.dependent) return coordinate_label(c);
+      }
+    return {};
   }
 
   // Of its own spring, where it stands.

@@ -467,6 +467,34 @@ TEST_CASE("friction at a given speed changes nothing but the torque of the drive
   CHECK_THAT(b.drive_torques[0].value - a.drive_torques[0].value, WithinAbs(0.3, 1e-12));
 }
 
+TEST_CASE("friction does not hold what a loop carries along with a drive") {
+  const auto at = [](const char* name, const char* a, const char* b, double x, double y,
+                     const std::string& more) {
+    return R"({"name": ")" + std::string(name) + R"(", "type": "revolute", "bodies": [")" + a + R"(", ")" +
+           b + R"("], "axis": [0, 0, 1], "at": [)" + number_text(x) + ", " + number_text(y) + ", 0]" + more +
+           "}";
+  };
+  for (const std::string rubbing : {"p", "a", "b"}) {
+    CAPTURE(rubbing);
+    const auto more = [&](const std::string& name) { return name == rubbing ? ", " + friction(1) : ""; };
+    const Mechanism m = scene(
+        R"({"name": "c1", "mass": 1, "position": [0, 0.5, 0], "inertia": [0.01, 0.01, 0.01]},
+           {"name": "c2", "mass": 1, "position": [2, 0.5, 0], "inertia": [0.01, 0.01, 0.01]},
+           {"name": "k", "mass": 1, "position": [1, 1, 0], "inertia": [0.01, 0.01, 0.01]})",
+        at("o", "ground", "c1", 0, 0, R"(, "drive": {"speed": 3})") + ", " +
+            at("p", "ground", "c2", 2, 0, more("p")) + ", " + at("a", "c1", "k", 0, 1, more("a")) + ", " +
+            at("b", "c2", "k", 2, 1, more("b")),
+        R"("gravity": [0, 0, 0], )");
+    const Solution s = Analysis(m).solve();
+    REQUIRE(s.frictions.size() == 1);
+    CHECK(s.frictions[0].slips);
+    CHECK_THAT(s.drive_torques[0].value, WithinRel(1., 1e-12));
+    const Holding holding = find_holding(m, {});
+    CHECK_FALSE(holding.takes);
+    CHECK(holding.message == "Friction does not hold " + rubbing + ", which goes on with the drives.");
+  }
+}
+
 TEST_CASE("friction where momentum is kept is refused with the reason") {
   CHECK_THROWS_WITH(
       scene(body_at("a", 0),
