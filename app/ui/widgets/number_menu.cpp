@@ -38,9 +38,10 @@ void name_it(Session& session, Ui& ui, const std::string& field, const std::stri
       set_expression(mechanism, other, name);
   });
   if (parameter_index(session.mechanism(), name) < 0) return;
-  session.notice = "The " + phrase + " is the parameter " + name +
-                   " now, with a slider. Type another name now, or rename it later in the scene's inspector, "
-                   "where nothing is selected.";
+  session.notice =
+      "The " + phrase + " is the parameter " + name +
+      " now, with a slider. Its name can be changed in the scene's inspector, too, where nothing is "
+      "selected.";
   start_typing(session, ui, naming_field(field), name);
 }
 
