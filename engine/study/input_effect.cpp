@@ -119,7 +119,8 @@ InputEffect MotionAt::effect(const Eigen::VectorXd& force, const Eigen::VectorXd
   out.b1 =
       -(basis_.transpose() * (carried(out.drive_rates) + l_.velocity.topLeftCorner(n_, n_) * out.closing));
   const Eigen::VectorXd acts = out.b1.size() > 0 ? units_.cwiseProduct(out.b1) : out.b1;
-  if (!((shape_.vectors().leftCols(without_mass).transpose() * acts).norm() <= consistent * acts.norm()))
+  if (without_mass > 0 && // else of what is held whole there are no directions to look along
+      !((shape_.vectors().leftCols(without_mass).transpose() * acts).norm() <= consistent * acts.norm()))
     throw Refusal{"its rate moves dampers of parts without mass"};
   out.shift = accelerate(out.b1);
   return out;
