@@ -26,6 +26,7 @@ void Cholesky::solve_in_place(Eigen::Ref<Eigen::VectorXd> x) const {
 }
 
 Eigen::MatrixXd Cholesky::solve(const Eigen::MatrixXd& b) const {
+  if (b.size() == 0) return b; // of which Eigen would take the first entry
   if (!large_) return factors_.solve(b);
   Eigen::MatrixXd x = b;
   for (auto column : x.colwise()) {
