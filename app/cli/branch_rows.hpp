@@ -23,7 +23,7 @@ nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbon
 // All of a table: branch, parameter, values, `stable`, `special`; with ribbons then
 // `rests_on_friction` (see friction_word()), and `NAME.low` and `NAME.high` of each value.
 std::string diagram_csv(const Mechanism& mechanism, const std::string& address,
-                        const ResponseDiagram& diagram, const Ribbons& ribbons = {});
+                        const ResponseDiagram& diagram, const Ribbons& ribbons);
 
 struct BranchColumns {
   std::vector<Variation> over;

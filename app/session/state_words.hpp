@@ -27,7 +27,7 @@ std::string window_message(const Solution& solution);
 // Whether two lists of coordinates are one state but for rounding: whole turns, and joints in which nothing
 // resists, do not count.
 bool same_state(const std::vector<CoordinateSolution>& a, const std::vector<CoordinateSolution>& b,
-                const std::vector<std::string>& neutral = {});
+                const std::vector<std::string>& neutral);
 
 // What a drive by torque gives and its load, zero where they are rounding beside what the joints bear.
 std::optional<DriveTorque::Given> told_torque(const Solution& solution, const DriveTorque& drive);

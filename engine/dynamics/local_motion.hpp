@@ -22,7 +22,7 @@ class LocalMotion {
   // `with_angles`: those between parts that turn at found speeds are among y. Throws SceneError where there
   // is no such F: parts move without mass.
   LocalMotion(const MotionModel& model, const Eigen::VectorXd& q, const Eigen::VectorXd& u, double rate,
-              bool with_angles = false);
+              bool with_angles);
 
   Eigen::Index size() const { return positions_.cols() + rates_.cols(); }
 

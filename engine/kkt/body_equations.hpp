@@ -38,7 +38,7 @@ class BodyEquations {
 
   // The constraints, with the metric alone as a stiffness.
   void assemble_metric(const Problem& problem, const Kinematics<double>& kinematics,
-                       BodyEntries::Zeros zeros = BodyEntries::Zeros::left_out);
+                       BodyEntries::Zeros zeros);
 
   const BodyNodes& nodes() const { return nodes_; }
   bool symmetric() const { return pattern().symmetric; }

@@ -35,6 +35,6 @@ std::optional<std::vector<std::complex<double>>> pencil_eigenvalues(const Eigen:
 std::optional<std::vector<std::complex<double>>>
 eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                            const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic, double massless,
-                           const std::atomic<bool>* cancel = nullptr);
+                           const std::atomic<bool>* cancel);
 
 } // namespace flyball

@@ -7,6 +7,23 @@
 #include <algorithm>
 
 namespace flyball {
+namespace {
+
+// All whose speeds drives give, themselves or through gears: each gear train is walked once.
+std::vector<CoordinateReference> find_given_speeds(const Mechanism& mechanism) {
+  std::vector<CoordinateReference> given;
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
+    for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i) {
+      const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
+      const auto& drive = mechanism.joints[j].coordinates[i].drive;
+      if (!drive || finds_speed(*drive) || std::ranges::count(given, at)) continue;
+      for (const GearedCoordinate& geared : gear_train(mechanism, at))
+        given.push_back(geared.at);
+    }
+  return given;
+}
+
+} // namespace
 
 bool rubs_anywhere(const Mechanism& mechanism) {
   return std::ranges::any_of(mechanism.joints, [](const Joint& joint) {
@@ -17,15 +34,7 @@ bool rubs_anywhere(const Mechanism& mechanism) {
 std::vector<CoordinateReference> find_frictions(const Mechanism& mechanism) {
   std::vector<CoordinateReference> all;
   if (!rubs_anywhere(mechanism)) return all;
-  std::vector<CoordinateReference> given; // each gear train once
-  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
-    for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i) {
-      const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
-      const auto& drive = mechanism.joints[j].coordinates[i].drive;
-      if (!drive || finds_speed(*drive) || std::ranges::count(given, at)) continue;
-      for (const GearedCoordinate& geared : gear_train(mechanism, at))
-        given.push_back(geared.at);
-    }
+  const std::vector<CoordinateReference> given = find_given_speeds(mechanism);
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
     for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i)
       if (const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
@@ -39,10 +48,7 @@ bool has_friction(const Mechanism& mechanism) {
 }
 
 bool is_at_given_speed(const Mechanism& mechanism, CoordinateReference at) {
-  return std::ranges::any_of(gear_train(mechanism, at), [&](const GearedCoordinate& geared) {
-    const auto& drive = coordinate_of(mechanism, geared.at).drive;
-    return drive && !finds_speed(*drive);
-  });
+  return std::ranges::count(find_given_speeds(mechanism), at) > 0;
 }
 
 const Friction& friction_at(const Mechanism& mechanism, CoordinateReference at) {

@@ -73,7 +73,7 @@ class ObjectReader {
   // `noun` is what messages call the object, as in "a revolute joint"; `relatives` are the keys of objects it
   // may be mistaken for, such as joints of other types; `sink` takes the expressions.
   ObjectReader(const ValueReader& value, FormulaSink sink, scene_keys::Keys keys, std::string_view noun,
-               std::span<const scene_keys::Keys> relatives = {});
+               std::span<const scene_keys::Keys> relatives);
 
   bool has(std::string_view key) const { return json_.contains(key); }
   // Of a field that is there.

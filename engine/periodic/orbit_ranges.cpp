@@ -172,7 +172,7 @@ double advance_of(const CoordinateTrack& track) {
 
 // Whether the end joins the beginning. What wheels measure that have no part in the period does not;
 // rounding, which changes its direction all the time, is taken to, and what is less than `small`.
-bool comes_back(std::span<const double> values, double small = 0) {
+bool comes_back(std::span<const double> values, double small) {
   const auto [least, most] = std::ranges::minmax(values);
   if (!(std::abs(values.back() - values.front()) > std::max(small, near_enough * (most - least))))
     return true;

@@ -118,7 +118,7 @@ class Analysis {
   // Poses of all bodies in a mode of the last answer at `phase` (rad): the coordinates moved along Re(v e^(i
   // phase)), the loops closed, the drives `t` seconds on. `amplitude` is that of the largest entry, in rad or
   // parts of the mechanism's reach. For a mode that grows or decays multiply the amplitude by e^(Re s t).
-  std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t = 0);
+  std::vector<Pose> mode_poses(const VibrationMode& mode, double amplitude, double phase, double t);
 
   // How the bodies move in a mode of the last answer, in the mechanism's order.
   std::vector<BodyAmplitude> body_amplitudes(const VibrationMode& mode);

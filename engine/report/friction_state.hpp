@@ -38,8 +38,7 @@ struct StateOnFriction {
 // All parts that friction may have: at first what holds all that it can, as drawn; then those with something
 // that slips or rests in balance, most held first, then those with most in balance. Of more than three joints
 // that may slip the first, how they begin, and those with which a search by single joints finds a state.
-std::vector<FrictionParts> friction_parts(const Mechanism& mechanism,
-                                          const std::atomic<bool>* cancel = nullptr);
+std::vector<FrictionParts> friction_parts(const Mechanism& mechanism, const std::atomic<bool>* cancel);
 
 // The parts that friction has in a state that rests on it.
 FrictionParts parts_of(const Mechanism& mechanism, std::span<const FrictionForce> frictions);
@@ -61,7 +60,7 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
 // Of a study that found no steady state without friction: what is said where solving answers with one that
 // rests on it (rests_on_friction()); empty where it does not.
 std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked,
-                              const std::atomic<bool>* cancel = nullptr);
+                              const std::atomic<bool>* cancel);
 
 // All of them, what is held as drawn first; of `options` the starts do not count.
 std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options);

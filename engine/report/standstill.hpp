@@ -43,8 +43,7 @@ struct Standstill {
 // numbers. `at_rest`: drives by torque that have come to rest against what springs give; their torques must
 // be of their own rates alone. Throws SceneError where they are not, or a law is no number then.
 Standstill stand_still(const Mechanism& mechanism, std::span<const Standing> held,
-                       std::span<const Standing> others = {},
-                       std::span<const CoordinateReference> at_rest = {});
+                       std::span<const Standing> others, std::span<const CoordinateReference> at_rest);
 
 // Sets of drives by torque that gears do not tie to held coordinates, the empty one first: which of them may
 // have come to rest. With more than three drives none and all.

@@ -33,7 +33,7 @@ class MotionAt {
  public:
   // About `state`, whose multipliers are found. `held`: entries of q_R that dry friction holds, as
   // constraints would.
-  MotionAt(const MotionModel& model, const MotionOfAll& state, std::span<const int> held = {});
+  MotionAt(const MotionModel& model, const MotionOfAll& state, std::span<const int> held);
 
   const Eigen::VectorXd& column() const { return column_; } // rad or m per scaled unit, of all coordinates
   const Eigen::MatrixXd& basis() const { return basis_; }   // (n, k), orthonormal

@@ -92,7 +92,7 @@ BothModes both_modes(const Mechanism& m, KktForm form, int count) {
   return *modes;
 }
 
-void check_modes(const BothModes& modes, int count, double tolerance = 1e-8) {
+void check_modes(const BothModes& modes, int count) {
   INFO(modes.lowest.failure);
   REQUIRE(modes.lowest.failure.empty());
   REQUIRE(modes.lowest.modes.size() == static_cast<std::size_t>(count));
@@ -105,8 +105,8 @@ void check_modes(const BothModes& modes, int count, double tolerance = 1e-8) {
     for (const VibrationMode& other : modes.dense)
       nearest = std::min(nearest, std::abs(s - other.eigenvalue));
     CAPTURE(i, s, modes.dense[i].eigenvalue);
-    CHECK(nearest <= tolerance * std::abs(s));
-    CHECK(std::abs(std::abs(s) - modes.dense[i].natural_frequency) <= tolerance * std::abs(s));
+    CHECK(nearest <= 1e-8 * std::abs(s));
+    CHECK(std::abs(std::abs(s) - modes.dense[i].natural_frequency) <= 1e-8 * std::abs(s));
     CHECK(found[i].residual <= 1e-8);
   }
 }

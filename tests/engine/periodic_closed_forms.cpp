@@ -99,10 +99,10 @@ Mechanism shaken_pendulum(double radius, double speed, double length, double dam
 // Multipliers of p'' + d p' + (g cos(angle) - r w^2 cos(angle) cos(w t)) / l p = 0, that pendulum about a
 // straight position: by Runge and Kutta's method with many steps.
 std::array<std::complex<double>, 2> mathieu_multipliers(double radius, double speed, double length,
-                                                        double damping, double angle, int turns = 1) {
+                                                        double damping, double angle) {
   Eigen::Matrix2d x = Eigen::Matrix2d::Identity();
-  const int steps = 40000 * turns;
-  const double h = turns * 2 * pi / speed / steps;
+  const int steps = 40000;
+  const double h = 2 * pi / speed / steps;
   const auto rate = [&](double t, const Eigen::Matrix2d& y) -> Eigen::Matrix2d {
     Eigen::Matrix2d a;
     const double stiffness = std::cos(angle) * (9.81 - radius * speed * speed * std::cos(speed * t)) / length;

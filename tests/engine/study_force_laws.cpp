@@ -23,8 +23,8 @@ using Catch::Matchers::WithinRel;
 
 namespace {
 
-Joint by_law(Joint j, const std::string& force, double free = 0) {
-  j.coordinates[0].spring = CoordinateSpring{0, free, "", 0};
+Joint by_law(Joint j, const std::string& force) {
+  j.coordinates[0].spring = CoordinateSpring{0, 0, "", 0};
   j.formulas.push_back({"spring.force", force});
   return j;
 }

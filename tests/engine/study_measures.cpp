@@ -34,8 +34,8 @@ void check_measure(const Solution& s, const std::string& name, double wanted) {
   CHECK(*found.error < 1e-10 * (1 + std::abs(wanted)));
 }
 
-Mechanism measured_pendulum(double length, double w, double angle = 0.5) {
-  Mechanism m = conical(length, 0, w, angle, 1.7);
+Mechanism measured_pendulum(double length, double w) {
+  Mechanism m = conical(length, 0, w, 0.5, 1.7);
   const std::string bob = m.bodies.back().name;
   m.points = {{"P", Vec3::Zero(), {}}, {"U", Vec3(0, 1, 0), {}}};
   m.measures = {{"lean", "", "angle(" + bob + ", ground@P, ground@U)", "rad"},

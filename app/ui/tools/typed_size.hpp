@@ -18,7 +18,6 @@ std::string typed_text(const std::string& typed, const std::string& unit);
 
 // What is typed as a length (m, more than zero; a number without a unit in the one shown); nothing where it
 // is none, and then why, as a sentence.
-std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units,
-                                   std::string* mistake = nullptr);
+std::optional<double> typed_length(const std::string& typed, const DisplayUnits& units, std::string* mistake);
 
 } // namespace flyball
