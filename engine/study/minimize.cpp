@@ -1,9 +1,9 @@
 #include "engine/linear/interruption.hpp"
-#include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/goal_state.hpp"
+#include "engine/study/look_around.hpp"
 
 #include <nlopt.h>
 
@@ -17,10 +17,8 @@ namespace {
 using State = SteadyMap::State;
 
 constexpr int most_evaluations = 1000;
-constexpr double kept_within = 1e-11;  // scaled: the goals
-constexpr double beside = 1e-3;        // a look around where the slope vanishes, in parts of the ranges
-constexpr double still_sloping = 1e-3; // of the slope, along what keeps the goals, where no search ends
-constexpr int most_ways_down = 20;     // from where it does
+constexpr double kept_within = 1e-11; // scaled: the goals
+constexpr int most_ways_down = 20;    // from where a search ended
 
 class Minimizer {
  public:
@@ -129,15 +127,15 @@ class Minimizer {
     known_ = map_.find_rates(now_);
   }
 
-  double residual(Eigen::Index goal) const {
-    return map_.away(static_cast<std::size_t>(goal), now_.values[goal],
+  double residual(Eigen::Index goal, const State& state) const {
+    return map_.away(static_cast<std::size_t>(goal), state.values[goal],
                      goals_[static_cast<std::size_t>(goal)].value) /
            scales_[goal];
   }
 
   bool goals_kept() const {
     for (std::size_t i = 0; i < goals_.size(); ++i)
-      if (!(std::abs(residual(static_cast<Eigen::Index>(i))) < 1e-8)) return false;
+      if (!(std::abs(residual(static_cast<Eigen::Index>(i), now_)) < 1e-8)) return false;
     return true;
   }
 
@@ -160,7 +158,7 @@ class Minimizer {
         if (slope) std::fill_n(slope, n, 0.);
         return 0;
       }
-      double value = goal ? residual(row) : now_.values[row] / scales_[row];
+      double value = goal ? residual(row, now_) : now_.values[row] / scales_[row];
       Eigen::VectorXd gradient = map_.rates().row(row).transpose().cwiseProduct(map_.range()) / scales_[row];
       if (!arrived && !goal) {
         const Eigen::VectorXd beyond = (unscaled(x) - now_.p).cwiseQuotient(map_.range());
@@ -177,90 +175,33 @@ class Minimizer {
     }
   }
 
-  // The objective of a state, scaled, less what the goals' own residuals account for.
-  double lagrangian(const State& state, const Eigen::VectorXd& multipliers) const {
-    double out = state.values[objective_row()] / scales_[objective_row()];
+  // A state, whose rates the map's are if they are `known`.
+  PlaceBeside scaled(const State& state, bool known) const {
+    PlaceBeside out{
+        state.values[objective_row()] / scales_[objective_row()], Eigen::VectorXd(objective_row()), {}};
     for (Eigen::Index i = 0; i < objective_row(); ++i)
-      out -=
-          multipliers[i] *
-          map_.away(static_cast<std::size_t>(i), state.values[i], goals_[static_cast<std::size_t>(i)].value) /
-          scales_[i];
+      out.residuals[i] = residual(i, state);
+    if (known && map_.rates().allFinite())
+      out.slopes = scales_.cwiseInverse().asDiagonal() * map_.rates() * map_.range().asDiagonal();
     return out;
   }
 
-  // From where the search ended: it does wherever no slope leads down, on a maximum or a saddle as in a
-  // minimum, and where nothing changes the objective at all (flat_). Along what keeps the goals, and along
-  // the least curvature there, it is looked whether there is less beside; then x and now_ are moved there.
+  // From where the search ended: x and now_ are moved to where there is less beside. Whether they were.
   bool step_down(Eigen::VectorXd& x) {
     const State here = now_;
-    const Eigen::Index n = x.size(), goals = objective_row();
-    const auto slopes = [&]() -> Eigen::MatrixXd {
-      return scales_.cwiseInverse().asDiagonal() * map_.rates() * map_.range().asDiagonal();
-    };
-    const Eigen::MatrixXd first = slopes();
-    Eigen::MatrixXd ways = Eigen::MatrixXd::Identity(n, n);
-    Eigen::VectorXd multipliers;
-    if (goals > 0) {
-      std::vector<Eigen::Index> inside; // numbers that stand at no end of their range
-      for (Eigen::Index i = 0; i < n; ++i)
-        if (x[i] > 0 && x[i] < 1) inside.push_back(i);
-      if (inside.empty()) return false;
-      const Eigen::MatrixXd kept = first.topRows(goals)(Eigen::all, inside);
-      const auto basis = null_space(kept);
-      const auto by = least_squares(kept.transpose(), first.row(goals)(inside).transpose());
-      if (!basis || !by || basis->cols() == 0) return false;
-      multipliers = *by;
-      const Eigen::VectorXd slope = first.row(goals)(inside).transpose();
-      stopped_ = (slope - kept.transpose() * multipliers).norm() > still_sloping * slope.norm();
-      if (stopped_) return false;
-      ways.setZero(n, basis->cols());
-      ways(inside, Eigen::all) = *basis;
-      ways.colwise().normalize();
-    }
-    const double value = lagrangian(here, multipliers);
-    const double size = std::abs(here.values[goals] / scales_[goals]);
-    int looked = 0, level = 0;
-    double lowest = value - 1e-14 - 1e-9 * size; // less would be lost in what the goals are kept to
-    Eigen::VectorXd lower_at;
-    // The slope of the Lagrangian beside, where a steady state is there.
-    const auto look = [&](const Eigen::VectorXd& way) -> std::optional<Eigen::VectorXd> {
-      const Eigen::VectorXd to = (x + beside * way).cwiseMax(0).cwiseMin(1);
-      if ((to - x).norm() < 0.5 * beside) return std::nullopt; // out of the ranges
-      State there = here;
-      if (!map_.find_rates(here) || !map_.walk_to(there, unscaled(to)) || !there.values.allFinite())
-        return std::nullopt;
-      double astray = 0; // from the goals, whose curvature the multipliers do not know
-      for (Eigen::Index i = 0; i < goals; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        astray += std::pow(map_.away(k, there.values[i], goals_[k].value) / scales_[i], 2);
-      }
-      const double found = lagrangian(there, multipliers) + astray;
-      ++looked;
-      level += std::abs(found - value) <= 1e-14 + 1e-12 * size + 2 * astray;
-      if (found < lowest) {
-        lowest = found;
-        lower_at = to;
-      }
-      if (!map_.find_rates(there) || !map_.rates().allFinite()) return std::nullopt;
-      Eigen::VectorXd slope = slopes().row(goals).transpose();
-      if (goals > 0) slope -= slopes().topRows(goals).transpose() * multipliers;
-      return slope;
-    };
-    Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(ways.cols(), ways.cols());
-    for (Eigen::Index i = 0; i < ways.cols(); ++i) {
-      const auto forth = look(ways.col(i)), back = look(-ways.col(i));
-      if (forth && back) curvature.col(i) = ways.transpose() * (*forth - *back);
-    }
-    SymmetricEigen eigen;
-    if (lower_at.size() == 0 && eigen.compute(curvature + curvature.transpose()) && eigen.values()[0] < 0) {
-      const Eigen::VectorXd least = ways * eigen.vectors().col(0);
-      look(least.normalized());
-      look(-least.normalized());
-    }
-    flat_ = looked > 0 && level == looked;
-    now_ = here;
-    if (lower_at.size() == 0) return false;
-    x = lower_at;
+    const PlaceBeside place = scaled(here, known_);
+    if (place.slopes.size() == 0) return false;
+    const Surroundings around =
+        look_around(x, place, [&](const Eigen::VectorXd& to) -> std::optional<PlaceBeside> {
+          State there = here;
+          if (!map_.find_rates(here) || !map_.walk_to(there, unscaled(to)) || !there.values.allFinite())
+            return std::nullopt;
+          return scaled(there, map_.find_rates(there));
+        });
+    flat_ = around.flat;
+    stopped_ = around.slopes;
+    if (!around.lower) return false;
+    x = *around.lower;
     map_.find_rates(here);
     return go_to(x);
   }

@@ -8,6 +8,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/study/goals.hpp"
 #include "engine/study/least_change.hpp"
+#include "engine/study/look_around.hpp"
 
 #include <Eigen/QR>
 
@@ -324,6 +325,9 @@ TEST_CASE(
     "measures": {"hill": {"value": "=-coordinate(x)^2", "unit": "m^2"},
                  "saddle": {"value": "=coordinate(x)*coordinate(y)", "unit": "m^2"},
                  "valley": {"value": "=coordinate(x)^2 + coordinate(y)^2", "unit": "m^2"},
+                 "corner": {"value": "=-coordinate(x)*coordinate(y)", "unit": "m^2"},
+                 "capped": {"value": "=1 - (coordinate(x)/(50 mm))^4", "unit": ""},
+                 "level": {"value": "=1 + (coordinate(x)/(50 mm))^6", "unit": ""},
                  "sum": {"value": "=coordinate(x) + coordinate(y)", "unit": "m"}}})s");
   const FreeNumber one[]{{"parameters.F", -4, 5}};
   const GoalAnswer top = minimize(m, one, "hill", {});
@@ -353,9 +357,82 @@ TEST_CASE(
     const Mechanism there = with_parameter(with_parameter(m, "parameters.F", start), "parameters.G", 3);
     CHECK(minimize(there, both, "y", around).least->value == Approx(-0.03));
   }
+  // At a corner of the ranges neither number changes anything by itself.
+  const FreeNumber quarter[]{{"parameters.F", 0, 5}, {"parameters.G", 0, 5}};
+  CHECK(minimize(m, quarter, "corner", {}).least->value == Approx(-0.05 * 0.05));
+  // What goes with the fourth or the sixth power changes nothing close by.
+  CHECK(minimize(m, one, "capped", {}).least->value < 1 - std::pow(0.8, 4) + 1e-12);
+  const GoalAnswer trough = minimize(m, one, "level", {});
+  INFO(trough.message);
+  CHECK(trough.least->value == Approx(1));
+  CHECK(trough.message.find("a minimum nearby") != std::string::npos);
   const GoalAnswer idle = minimize(m, one, "y", {});
   CHECK(idle.numbers[0].value == 0);
   CHECK(idle.message.find("none of the numbers that may move changes it") != std::string::npos);
+}
+
+TEST_CASE("around a place where no slope leads down there is less, or not, as of closed forms") {
+  using Place = std::optional<PlaceBeside>;
+  // Around the x at which f has the slope zero, of f and its gradient.
+  const auto around = [](const Eigen::VectorXd& x, const auto& f, const auto& slope) {
+    const auto evaluate = [&](const Eigen::VectorXd& at) -> Place {
+      return PlaceBeside{f(at), Eigen::VectorXd(0), Eigen::MatrixXd(slope(at).transpose())};
+    };
+    return look_around(x, *evaluate(x), evaluate);
+  };
+  using V = Eigen::VectorXd;
+  const auto v = [](double x, double y) -> V { return Eigen::Vector2d(x, y); };
+  const V corner = v(0, 1), middle = v(0.5, 0.5);
+
+  // From a corner of the unit square less lies between its sides alone, and along them nothing changes.
+  const auto between = around(
+      corner, [](const V& at) { return -at[0] * (1 - at[1]); },
+      [&](const V& at) { return v(at[1] - 1, at[0]); });
+  REQUIRE(between.lower);
+  CHECK(((*between.lower)[0] > 0 && (*between.lower)[1] < 1));
+  CHECK_FALSE(between.flat);
+  const auto valley = around(
+      corner, [](const V& at) { return at[0] * (1 - at[1]); },
+      [&](const V& at) { return v(1 - at[1], -at[0]); });
+  CHECK_FALSE(valley.lower);
+  CHECK_FALSE(valley.flat);
+
+  // 1 +- (x - 1/2)^4, of which close by nothing is noticed.
+  for (const double side : {1., -1.}) {
+    const auto fourth = around(
+        middle, [&](const V& at) { return 1 + side * std::pow(at[0] - 0.5, 4); },
+        [&](const V& at) { return v(4 * side * std::pow(at[0] - 0.5, 3), 0); });
+    CHECK(fourth.lower.has_value() == (side < 0));
+    CHECK_FALSE(fourth.flat);
+  }
+  // x^4 + y^4 - 3 x^2 y^2 is less on the diagonals alone.
+  const auto star = around(
+      middle,
+      [](const V& at) {
+        const double x = at[0] - 0.5, y = at[1] - 0.5;
+        return std::pow(x, 4) + std::pow(y, 4) - 3 * x * x * y * y;
+      },
+      [&](const V& at) {
+        const double x = at[0] - 0.5, y = at[1] - 0.5;
+        return v(4 * std::pow(x, 3) - 6 * x * y * y, 4 * std::pow(y, 3) - 6 * x * x * y);
+      });
+  CHECK(star.lower.has_value());
+  const auto idle = around(
+      middle, [](const V&) { return 7.; }, [&](const V&) { return v(0, 0); });
+  CHECK(idle.flat);
+  CHECK_FALSE(idle.lower);
+
+  // On a circle about the middle, y kept least: at its top is the most.
+  const auto on_circle = [&](const V& at) -> Place {
+    const double x = at[0] - 0.5, y = at[1] - 0.5;
+    Eigen::Matrix2d slopes;
+    slopes << 2 * x, 2 * y, 0, 1;
+    return PlaceBeside{at[1], V::Constant(1, x * x + y * y - 0.09), slopes};
+  };
+  const V top = v(0.5, 0.8), bottom = v(0.5, 0.2), side = v(0.8, 0.5);
+  CHECK(look_around(top, *on_circle(top), on_circle).lower.has_value());
+  CHECK_FALSE(look_around(bottom, *on_circle(bottom), on_circle).lower.has_value());
+  CHECK(look_around(side, *on_circle(side), on_circle).slopes);
 }
 
 TEST_CASE("what is least: against a search along one number, and with a goal kept") {
