@@ -159,12 +159,27 @@ Ray ViewCamera::ray(Vec2 pixel, ViewSize view) const {
   return ray;
 }
 
-std::optional<Vec2> ViewCamera::project(const Vec3& world, ViewSize view) const {
-  const Vec3 d = world - eye();
-  const double ahead = -d.dot(backward());
+std::optional<Vec2> Projection::operator()(const Vec3& world) const {
+  const Vec3 d = world - eye;
+  const double ahead = -d.dot(backward);
   if (!orthographic && !(ahead > 1e-9 * distance)) return std::nullopt;
-  const double size = orthographic ? pixel_size(view) : pixel_size(view) * ahead / distance;
-  return Vec2(0.5 * view.width + d.dot(right()) / size, 0.5 * view.height - d.dot(screen_up()) / size);
+  const double size = orthographic ? pixel_size : pixel_size * ahead / distance;
+  return Vec2(middle.x() + d.dot(right) / size, middle.y() - d.dot(screen_up) / size);
+}
+
+Projection ViewCamera::projection(ViewSize view) const {
+  return {eye(),
+          right(),
+          screen_up(),
+          backward(),
+          distance,
+          pixel_size(view),
+          {0.5 * view.width, 0.5 * view.height},
+          orthographic};
+}
+
+std::optional<Vec2> ViewCamera::project(const Vec3& world, ViewSize view) const {
+  return projection(view)(world);
 }
 
 double ViewCamera::pixel_size(ViewSize view) const {

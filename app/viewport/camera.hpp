@@ -27,6 +27,19 @@ struct Ray {
 // The direction drawn upwards: against gravity, +y without gravity.
 Vec3 up_axis(const Mechanism& mechanism);
 
+// Where a camera puts points, for many of them: its axes are found once.
+struct Projection {
+  Vec3 eye = Vec3::Zero();                                                         // m
+  Vec3 right = Vec3::UnitX(), screen_up = Vec3::UnitY(), backward = Vec3::UnitZ(); // unit vectors
+  double distance = 1;        // m, from the eye to the target
+  double pixel_size = 1;      // m across one pixel at the target
+  Vec2 middle = Vec2::Zero(); // pixels
+  bool orthographic = false;
+
+  // The pixel a world point falls on; nothing where it is behind the eye.
+  std::optional<Vec2> operator()(const Vec3& world) const;
+};
+
 // Pixels count from the top left corner of the view.
 struct ViewCamera {
   Vec3 target = Vec3::Zero(); // m
@@ -55,7 +68,8 @@ struct ViewCamera {
   Mat4 projection_matrix(ViewSize view, const Vec3& around, double reach) const;
 
   Ray ray(Vec2 pixel, ViewSize view) const;
-  // The pixel a world point falls on; nothing where it is behind the eye.
+  Projection projection(ViewSize view) const;
+  // Of a single point.
   std::optional<Vec2> project(const Vec3& world, ViewSize view) const;
   // Metres across one pixel at the target.
   double pixel_size(ViewSize view) const;

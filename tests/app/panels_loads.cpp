@@ -117,7 +117,7 @@ TEST_CASE("with a body selected the arrows are its free-body diagram, with value
   CHECK(has_row(app, "Free body: ball2"));
 }
 
-TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump while the view is turned") {
+TEST_CASE("the legend goes where it hides fewer arrows, and does not jump while the view is turned") {
   Robot robot;
   App& app = robot.app;
   const auto middle = [&](const char* widget) {
@@ -134,6 +134,8 @@ TEST_CASE("the legend stands where it hides the fewest arrows, and does not jump
   robot.point({view.from.x + 20, view.from.y + 120});
   robot.press();
   look_from(app.view, 0, 1.57);
+  robot.frames(2);
+  app.view.camera.target -= Vec3(0.2, 0, 0.3); // the mechanism into the lower corner
   robot.frames(2);
   CHECK(middle("legend") > middle("view"));
   robot.release();

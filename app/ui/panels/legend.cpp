@@ -6,6 +6,7 @@
 #include "app/ui/widgets/widgets.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace flyball {
@@ -93,47 +94,77 @@ std::vector<LegendRow> legend_rows(const ViewContext& context) {
 
 namespace {
 
-constexpr float largest_share = 0.2f; // of the view, that an open legend takes unasked
+constexpr float largest_share = 0.2f, // of the view, that an open legend takes unasked
+    least_height = 220;               // points, of a view in which it is open unasked
 
-// How much of the loads' arrows, of the drawn pose's outline and, where there are no arrows over them, of the
-// bodies lies in a part of the view: fifths of an arrow, and solids.
-int shown_within(const ViewState& state, const PanelRect& view, ImVec2 from, ImVec2 to) {
+// How much of the loads' arrows, of the drawn pose's outline and of the bodies lies in each of two parts of
+// the view, of the same size, with their upper left corners there: as many solids, and of arrows a hundredth
+// of the view's height counts as one.
+std::array<float, 2> shown_within(const ViewState& state, const PanelRect& view,
+                                  const std::array<ImVec2, 2>& corners, ImVec2 part) {
   const ShownScene& shown = state.scene;
-  constexpr std::size_t many = 300; // solids, nine points of each, to be looked at in every frame
-  if (!shown.scene) return 0;
-  const ViewSize size{static_cast<double>(view.width), static_cast<double>(view.height)};
-  const auto is_within = [&](const Vec3& point) {
-    const auto at = state.camera.project(point, size);
-    if (!at) return false;
-    const float x = view.x + static_cast<float>(at->x()), y = view.y + static_cast<float>(at->y());
-    return x > from.x && x < to.x && y > from.y && y < to.y;
+  std::array<float, 2> within{};
+  if (!shown.scene) return within;
+  const Projection project =
+      state.camera.projection({static_cast<double>(view.width), static_cast<double>(view.height)});
+  using Inside = std::array<bool, 2>;
+  const auto inside_which = [&](const Vec2& at) {
+    Inside inside{};
+    for (const std::size_t k : {0u, 1u}) {
+      const float x = view.x + static_cast<float>(at.x()) - corners[k].x,
+                  y = view.y + static_cast<float>(at.y()) - corners[k].y;
+      inside[k] = x > 0 && x < part.x && y > 0 && y < part.y;
+    }
+    return inside;
   };
-  int within = 0;
-  for (const LoadArrow& arrow : shown.scene->arrows.arrows)
-    for (const double part : {0.2, 0.4, 0.6, 0.8, 1.})
-      within += is_within(arrow.from + part * (arrow.to - arrow.from)) ? 1 : 0;
+  for (const LoadArrow& arrow : shown.scene->arrows.arrows) {
+    const auto from = project(arrow.from), to = project(arrow.to);
+    if (!from || !to) continue;
+    const Vec2 along = *to - *from;
+    const float fifth = 20 * static_cast<float>(along.norm()) / view.height;
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+      const Inside inside = inside_which(*from + share * along);
+      for (const std::size_t k : {0u, 1u})
+        if (inside[k]) within[k] += fifth;
+    }
+  }
   const auto add_solid = [&](const Instance& solid) {
-    const Bounds bounds = instance_bounds(solid);
-    bool touched = is_within(solid.position);
-    for (int corner = 0; corner < 8 && !touched; ++corner)
-      touched = is_within({(corner & 1 ? bounds.upper : bounds.lower).x(),
-                           (corner & 2 ? bounds.upper : bounds.lower).y(),
-                           (corner & 4 ? bounds.upper : bounds.lower).z()});
-    within += touched ? 1 : 0;
+    Inside touched{};
+    const Vec3 reach = solid.extent + Vec3::Constant(solid.round);
+    const auto look = [&](const Vec3& share) {
+      const auto at = project(solid.position + solid.rotation * reach.cwiseProduct(share));
+      if (!at) return;
+      const Inside inside = inside_which(*at);
+      for (const std::size_t k : {0u, 1u})
+        touched[k] = touched[k] || inside[k];
+    };
+    // Along its axes, since a long bar lies across a part with both of its ends outside, and around them.
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double along : {-1., -0.75, -0.5, -0.25, 0., 0.25, 0.5, 0.75, 1.})
+        look(along * Vec3::Unit(axis));
+      for (const double side : {-0.7, 0.7})
+        for (const double other : {-0.7, 0.7})
+          look(side * Vec3::Unit(axis) + other * Vec3::Unit((axis + 1) % 3));
+    }
+    for (const std::size_t k : {0u, 1u})
+      if (touched[k]) within[k] += 1;
   };
-  if (shown.scene->drawn.size() + shown.scene->solid.instances.size() > many) return within;
-  std::ranges::for_each(shown.scene->drawn, add_solid);
-  if (!shown.source.loads)
-    for (const Instance& solid : shown.scene->solid.instances)
-      if (solid.part.kind == PartKind::body) add_solid(solid);
+  constexpr std::size_t many = 300; // solids; of more, some: they are looked at in every frame
+  const auto& solids = shown.scene->solid.instances;
+  const std::size_t step = 1 + (shown.scene->drawn.size() + solids.size()) / many;
+  for (std::size_t i = 0; i < shown.scene->drawn.size(); i += step)
+    add_solid(shown.scene->drawn[i]);
+  for (std::size_t i = 0; i < solids.size(); i += step)
+    if (solids[i].part.kind == PartKind::body) add_solid(solids[i]);
   return within;
 }
 
 } // namespace
 
-// The corner of the view in which a legend of this size hides the least, the upper one where that is all the
-// same. It does not jump while the view is turned or something moves in it.
-float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size) {
+// The corner of the view that it is in, the upper one at first, until a legend of this size hides something
+// there and less in the other. It does not jump while the view is turned or something moves in it,
+// nor while the wheel zooms, which brings one thing after another under both.
+float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size, std::size_t rows) {
   const Ui& ui = context.ui;
   const ViewState& state = context.view;
   const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
@@ -141,11 +172,16 @@ float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size
   const float bottom =
       explored == ui.widgets.end() ? view.y + view.height - 44 * s : explored->second.from.y - 14 * s;
   const float upper = view.y + 10 * s, lower = bottom - size.y;
-  const auto hidden = [&](float top) {
-    return shown_within(state, view, {left, top}, {left + size.x, top + size.y});
-  };
-  if (!ImGui::IsAnyMouseDown() && !in_motion(context.session, state) && state.legend)
-    low_ = lower > upper && hidden(lower) < hidden(upper);
+  if (lower <= upper) return upper;
+  if (ImGui::GetIO().MouseWheel != 0) zoomed_ = {state.camera, rows};
+  const bool zooms = zoomed_ && *zoomed_ == std::pair(state.camera, rows);
+  if (!zooms && !ImGui::IsAnyMouseDown() && !in_motion(context.session, state) && state.legend) {
+    const float clear = 6 * s; // about it
+    const auto hidden =
+        shown_within(state, view, {ImVec2(left - clear, upper - clear), ImVec2(left - clear, lower - clear)},
+                     {size.x + 2 * clear, size.y + 2 * clear});
+    if (hidden[low_ ? 0 : 1] < hidden[low_ ? 1 : 0]) low_ = !low_;
+  }
   return low_ ? lower : upper;
 }
 
@@ -176,12 +212,14 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
   const auto tools = context.ui.widgets.find("tool strip");
   const bool over_tools = tools != context.ui.widgets.end() &&
                           view.x + view.width - 10 * s - whole.x < tools->second.to.x + 4 * s;
-  const bool crowded = over_tools || whole.x * whole.y > largest_share * view.width * view.height;
+  const bool crowded = over_tools || view.height < least_height * s ||
+                       whole.x * whole.y > largest_share * view.width * view.height;
   const bool open = !folds || (crowded ? anyway_ : context.view.legend);
   const std::vector<LegendRow> shown = open ? rows : std::vector<LegendRow>();
   const ImVec2 size = size_of(shown);
-  ImGui::SetNextWindowPos({std::round(view.x + view.width - 10 * s), std::round(top(context, view, size))},
-                          ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowPos(
+      {std::round(view.x + view.width - 10 * s), std::round(top(context, view, size, shown.size()))},
+      ImGuiCond_Always, {1, 0});
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);

@@ -3,11 +3,15 @@
 
 #include "app/ui/layout.hpp"
 #include "app/ui/view_context.hpp"
+#include "app/viewport/camera.hpp"
 #include "app/viewport/load_arrows.hpp"
 
 #include <imgui.h>
 
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flyball {
@@ -27,17 +31,18 @@ struct LegendRow {
 // What is in the view now; nothing for an empty document.
 std::vector<LegendRow> legend_rows(const ViewContext& context);
 
-// A small window in a right corner of the view, the upper one unless it hides more there of bodies, of the
-// drawn pose or of loads' arrows. A click on its title folds it.
+// A small window in a right corner of the view, the upper one at first; it goes to the other where it hides
+// less there of bodies, of the drawn pose and of loads' arrows. A click on its title folds it.
 class Legend {
  public:
   void draw(const ViewContext& context, const PanelRect& view, bool folds = true);
 
  private:
-  float top(const ViewContext& context, const PanelRect& view, ImVec2 size);
+  float top(const ViewContext& context, const PanelRect& view, ImVec2 size, std::size_t rows);
 
-  bool low_ = false;    // in the lower corner, where it hides less
-  bool anyway_ = false; // open also where it covers much of the view
+  bool low_ = false;                                         // in the lower corner
+  std::optional<std::pair<ViewCamera, std::size_t>> zoomed_; // camera and rows when the wheel last turned
+  bool anyway_ = false;                                      // open also where it covers much of the view
 };
 
 } // namespace flyball
