@@ -1,5 +1,6 @@
 // The modes of the state that is shown, moving in the view, and the Campbell diagram.
 #include "robot.hpp"
+#include "session_wait.hpp"
 
 #include "app/session/campbell.hpp"
 #include "app/session/coordinate_words.hpp"
@@ -462,7 +463,11 @@ TEST_CASE("why there is no Campbell diagram is said in the units and names that 
 }
 
 TEST_CASE("where the balance turns with the drives the modes' panel leads to the response") {
-  ModesRobot robot("horizontal_rotor");
+  Robot robot(wide, LiveSolver::Mode::background); // the curve that is led to takes seconds
+  open_scene(robot.app.session, shipped_file("horizontal_rotor"));
+  robot.key('O');
+  REQUIRE(
+      steps_until([&] { robot.frames(1); }, [&] { return robot.app.ui.widgets.contains("modes/response"); }));
   robot.click("modes/response");
   robot.frames(2);
   CHECK(robot.app.session.study.open == StudyKind::response);

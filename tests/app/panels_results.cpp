@@ -81,20 +81,10 @@ TEST_CASE("a right click copies a result, and of a reaction all its components")
   App& app = robot.app;
   app.panels->results.sections().reactions = true;
   robot.frames(3);
-  const auto copied = [&](const std::string& widget) {
-    ImGui::SetClipboardText("nothing");
-    const WidgetRect row = robot.widget(widget);
-    const ImVec2 at(row.from.x + 10, row.center().y);
-    robot.click(at, 1);
-    robot.frames(2);
-    robot.click(ImVec2{at.x + 20, at.y + 16}); // the menu's only entry
-    robot.frames(2);
-    return std::string(ImGui::GetClipboardText());
-  };
-  CHECK(copied("results/slide").starts_with("0.15001745"));
+  CHECK(robot.copied("results/slide").starts_with("0.15001745"));
   robot.wheel("results/slide", -60); // what bears the joints lies below
   robot.frames(3);
-  const std::string bears = copied("results/reaction/spin");
+  const std::string bears = robot.copied("results/reaction/spin");
   CHECK(bears.starts_with("0\t1990.7"));
   CHECK(bears.ends_with("\tN"));
 }

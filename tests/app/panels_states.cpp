@@ -90,21 +90,11 @@ TEST_CASE("the conical pendulum's four states are listed: two stable ones aside,
 
 TEST_CASE("where speeds were looked for is told in their unit") {
   StatesRobot robot("governor_engine");
-  const auto copied = [&](const std::string& coordinate) {
-    ImGui::SetClipboardText("nothing");
-    const WidgetRect row = robot.widget("states/bound/" + coordinate);
-    const ImVec2 at(row.from.x + 10, row.center().y);
-    robot.click(at, 1);
-    robot.frames(2);
-    robot.click(ImVec2{at.x + 20, at.y + 16}); // the menu's only entry
-    robot.frames(2);
-    return std::string(ImGui::GetClipboardText());
-  };
-  CHECK(copied("spin").ends_with(" rad/s"));
-  CHECK(copied("arm1").ends_with(" °"));
+  CHECK(robot.copied("states/bound/spin").ends_with(" rad/s"));
+  CHECK(robot.copied("states/bound/arm1").ends_with(" °"));
   robot.app.session.units.speed = SpeedUnit::rpm;
   robot.frames(2);
-  CHECK(copied("spin").ends_with(" rpm"));
+  CHECK(robot.copied("states/bound/spin").ends_with(" rpm"));
 }
 
 TEST_CASE("a click on a row puts the mechanism into that state, stable or not") {

@@ -181,6 +181,17 @@ void Robot::type(const std::string& text) {
   frames(1);
 }
 
+std::string Robot::copied(const std::string& row) {
+  ImGui::SetClipboardText("nothing");
+  const WidgetRect at = widget(row);
+  const ImVec2 left(at.from.x + 10, at.center().y);
+  click(left, 1);
+  frames(2);
+  click(ImVec2{left.x + 20, left.y + 16});
+  frames(2);
+  return ImGui::GetClipboardText();
+}
+
 Image Robot::picture() {
   Framebuffer target(size.width, size.height, 1);
   stage.render(app.ui, target);

@@ -48,6 +48,8 @@ class Robot {
   // An empty document, looked at from the front, `height` (m) of it in view around the origin.
   void begin_empty(double height);
   void type(const std::string& text);
+  // What the only entry of the row's menu, by a right click near its left end, puts on the clipboard.
+  std::string copied(const std::string& row);
   Image picture();
 
  private:
