@@ -272,6 +272,12 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
   return controls;
 }
 
+constexpr const char* as_drawn = "drawn "; // a speed
+
+void tell_drawn_speed(const Mechanism& mechanism, ParameterControl& control) {
+  if (is_drawn_speed(mechanism, control.address)) control.what = as_drawn + control.what;
+}
+
 } // namespace
 
 std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, const Mechanism& file,
@@ -292,8 +298,10 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
   }
   for (ParameterControl& control : automatic_controls(mechanism, file, units))
     if (!pinned.contains(control.address)) controls.push_back(std::move(control));
-  for (ParameterControl& control : controls)
+  for (ParameterControl& control : controls) {
     set_step(control);
+    tell_drawn_speed(mechanism, control);
+  }
   std::ranges::stable_sort(controls, {}, &ParameterControl::group);
   return controls;
 }
@@ -306,6 +314,7 @@ std::optional<ParameterControl> number_control(const Mechanism& mechanism, const
                                            *value, find_number(file, address));
   set_range(control, range_of(mechanism, address, control.file_value, control.unit, units));
   set_step(control);
+  tell_drawn_speed(mechanism, control);
   return control;
 }
 
@@ -348,6 +357,23 @@ std::string parameter_phrase(std::string_view address) {
   const bool drive = address.find(".drive") != std::string_view::npos;
   if (drive && what.starts_with("load")) return what + " on " + owner; // as plots call them
   return (drive && what.starts_with("torque") ? "drive " : "") + what + " of " + owner;
+}
+
+bool is_drawn_speed(const Mechanism& mechanism, const std::string& address) {
+  if (!address.starts_with("joints.") || !address.ends_with(".speed")) return false;
+  const int index = joint_index(mechanism, split(address)[1]);
+  if (index < 0) return false;
+  const Joint& joint = mechanism.joints[static_cast<std::size_t>(index)];
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
+    if (drive_speed_address(joint, i) == address) {
+      const std::optional<Drive>& drive = joint.coordinates[i].drive;
+      return drive && !drive->torque && drive->keeps == DriveKeeps::momentum;
+    }
+  return false;
+}
+
+std::string number_phrase(const Mechanism& mechanism, const std::string& address) {
+  return (is_drawn_speed(mechanism, address) ? as_drawn : "") + parameter_phrase(address);
 }
 
 std::string with_phrase(std::string sentence, const std::string& address) {

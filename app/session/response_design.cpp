@@ -190,7 +190,7 @@ std::string design_words(const Session& session) {
   return with_phrase(design_message(found->result, of.from, of.to, true,
                                     {.wanted = found->of.goal.title,
                                      .wanted_unit = wanted.text,
-                                     .varied = parameter_phrase(of.address),
+                                     .varied = number_phrase(*of.mechanism, of.address),
                                      .varied_unit = varied.text,
                                      .shown = [&](double si) { return wanted.shown(si); },
                                      .shown_varied = [&](double si) { return varied.shown(si); }}),

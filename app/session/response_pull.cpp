@@ -19,7 +19,7 @@ std::string pull_words(const Session& session) {
   if (const std::string refusal = goal_refusal(session); !refusal.empty())
     return "Pulled up or down, the curve would go along. " + refusal;
   const std::string goal = pulled_goal(session), &address = session.study.response.choice.address,
-                    phrase = parameter_phrase(address);
+                    phrase = number_phrase(session.mechanism(), address);
   if (!another_may_move(session, address))
     return "Pull up or down to where " + goal + " should be: " + phrase +
            " follows. No other pinned slider may move.";

@@ -4,9 +4,12 @@
 #include "app/document/create.hpp"
 #include "app/document/formula_edits.hpp"
 #include "app/document/turns.hpp"
+#include "app/session/parameter_list.hpp"
+#include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace flyball;
@@ -488,4 +491,30 @@ TEST_CASE("a quaternion given otherwise is shown, and a turn that is typed takes
   CHECK(d.app.session.document.position() == steps + 1);
   d.key('Z', true);
   CHECK(formula_at(d.m(), "bodies.ball1.rotation.3") == "0.5");
+}
+
+TEST_CASE("the slider, the choice and the axis of a kept momentum say that the speed is the drawn one") {
+  Desk d("free_top");
+  const auto slider = [&](const std::string& address) {
+    return *std::ranges::find(d.app.session.parameters, address, &ParameterControl::address);
+  };
+  const std::string spin = "joints.spin.drive.speed";
+  CHECK(slider(spin).what == "drawn speed");
+  CHECK(slider(spin).unit == "rad/s");
+  CHECK(number_phrase(d.m(), spin) == "drawn speed of spin");
+  d.key('C');
+  d.frames(3);
+  d.click("response/parameter");
+  d.click("response/parameter/drawn speed of spin");
+  d.frames(3);
+  CHECK(d.app.session.study.response.choice.address == spin);
+  CHECK(d.app.panels->studies.shown().response.plot.x.label == "drawn speed of spin");
+  // Once it is prescribed, the speed is what it has.
+  edit(d.app.session, "Prescribe", [](Mechanism& next, Selection&) {
+    for (Joint& joint : next.joints)
+      for (Coordinate& coordinate : joint.coordinates)
+        if (coordinate.drive) coordinate.drive->keeps = DriveKeeps::speed;
+  });
+  d.frames(2);
+  CHECK(slider(spin).what == "speed");
 }

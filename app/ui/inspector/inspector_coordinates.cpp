@@ -229,7 +229,10 @@ struct CoordinateRows {
                     now ? std::optional(now->load) : std::nullopt, drive.load.value_or(0), unit,
                     "What acts against it; likewise.");
     }
-    number(drive.torque ? "Search from" : "Speed", key("drive") + ".speed", drive.speed, value_unit() + "/s",
+    number(drive.torque         ? "Search from"
+           : finds_speed(drive) ? "Drawn speed"
+                                : "Speed",
+           key("drive") + ".speed", drive.speed, value_unit() + "/s",
            drive.torque ? "Where the search for the steady speed begins."
            : finds_speed(drive)
                ? "Makes, in the drawn pose, the momentum that is kept; the steady speed is found."

@@ -376,7 +376,8 @@ std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, cons
   return choose_among(ui, name, options, chosen);
 }
 
-std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, const std::string& label,
+std::optional<std::string> number_choice_row(const Mechanism& mechanism, Ui& ui, const std::string& name,
+                                             const std::string& label,
                                              const std::function<std::vector<std::string>()>& addresses,
                                              const std::string& chosen, const char* help) {
   if (!begin_choice(ui, name, label, chosen, help)) return std::nullopt;
@@ -386,7 +387,7 @@ std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, co
   std::unordered_set<std::string> taken;
   for (const std::string& address : all) {
     // Numbers that would be called the same go by their address.
-    std::string phrase = parameter_phrase(address);
+    std::string phrase = number_phrase(mechanism, address);
     phrases.push_back(taken.insert(phrase).second ? std::move(phrase) : address);
   }
   const auto other = choose_among(ui, name, phrases, chosen);

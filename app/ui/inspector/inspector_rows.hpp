@@ -61,9 +61,10 @@ std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std
 std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                            std::span<const std::string> options, const std::string& chosen,
                                            const char* help);
-// One of the numbers at these addresses, which are asked for while the list is open, by their phrases;
-// returns an address. `chosen` is what stands there.
-std::optional<std::string> number_choice_row(Ui& ui, const std::string& name, const std::string& label,
+// One of the numbers at these addresses, which are asked for while the list is open, by their phrases
+// (number_phrase()); returns an address. `chosen` is what stands there.
+std::optional<std::string> number_choice_row(const Mechanism& mechanism, Ui& ui, const std::string& name,
+                                             const std::string& label,
                                              const std::function<std::vector<std::string>()>& addresses,
                                              const std::string& chosen, const char* help);
 // A tick, or a bar where it is `mixed` among several parts; `refused` says why it cannot be set. Returns

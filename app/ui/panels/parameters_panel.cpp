@@ -188,11 +188,14 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
     ImGui::SameLine();
   }
   ImGui::SetCursorPosX(start + value_at);
+  std::string help = "Click to type a number, with a unit if you like.";
+  if (is_drawn_speed(session.mechanism(), control.address))
+    help = "In the drawn pose it makes the momentum that is kept; the steady speed is found. " + help;
   quantity_field(session, ui,
                  {.name = value_name,
                   .value = control.value,
                   .unit = control.unit,
-                  .help = "Click to type a number, with a unit if you like.",
+                  .help = help,
                   .address = control.address,
                   .set = set,
                   .framed = false,

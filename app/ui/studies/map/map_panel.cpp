@@ -41,8 +41,9 @@ void axis_choice(Session& session, Ui& ui, MapView& drawn, std::size_t which) {
     std::erase(all, map.choice.axes[1 - which].address);
     return all;
   };
-  if (const auto chosen = number_choice_row(ui, name, which == 0 ? "Across" : "Up", addresses,
-                                            parameter_phrase(axis.address), "The number along this axis."))
+  if (const auto chosen =
+          number_choice_row(session.mechanism(), ui, name, which == 0 ? "Across" : "Up", addresses,
+                            number_phrase(session.mechanism(), axis.address), "The number along this axis."))
     later(ui, [&session, &drawn, which, address = *chosen] {
       session.study.map.choice.axes[which] = map_axis(session, address);
       fit_plot(drawn.view);

@@ -147,7 +147,7 @@ void draw_map(const Session& session, MapView& drawn) {
   if (made) return show_marker();
   Plot plot;
   const auto axis_for = [&](const MapAxis& axis) {
-    return PlotAxis{.label = parameter_phrase(axis.address),
+    return PlotAxis{.label = number_phrase(session.mechanism(), axis.address),
                     .unit = axis_unit(map, axis),
                     .range = PlotRange{axis.from, axis.to},
                     .room = 0};

@@ -15,7 +15,7 @@ namespace {
 Plot plot_of(const ResonanceStudy::Found& found, const ResponseQuantity& quantity) {
   const ResponseRequest& of = found.of;
   Plot plot;
-  plot.x = {.label = parameter_phrase(of.address),
+  plot.x = {.label = number_phrase(*of.mechanism, of.address),
             .unit = parameter_unit(*of.mechanism, of.address),
             .logarithmic = of.logarithmic,
             .range = PlotRange{std::min(of.from, of.to), std::max(of.from, of.to)},

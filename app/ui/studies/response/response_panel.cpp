@@ -32,8 +32,9 @@ constexpr double curve_patience = 0.25;       // s: a shorter wait is not worth 
 
 void parameter_choice(Session& session, Ui& ui) {
   if (const auto other = number_choice_row(
-          ui, "response/parameter", "Vary", [&] { return variable_numbers(session, Dampers::with); },
-          parameter_phrase(session.study.response.choice.address),
+          session.mechanism(), ui, "response/parameter", "Vary",
+          [&] { return variable_numbers(session, Dampers::with); },
+          number_phrase(session.mechanism(), session.study.response.choice.address),
           "The number along the plot: of a slider, or any other."))
     choose_response(session, *other);
 }
@@ -193,7 +194,7 @@ void ribbon_choice(Session& session, Ui& ui) {
   if (!shown || !std::ranges::all_of(shown->result.points, empty)) return;
   paragraph(
       "No band is drawn here: friction holds nothing of this curve's states, they are unstable, or it holds "
-      "them past folds of the balance, as at any angle, which the results tell.",
+      "them at any place, which the results tell.",
       colors_of(ui).dim);
   note_widget(ui.widgets, "response/ribbon/none");
 }
@@ -413,7 +414,7 @@ void design_rows(Session& session, Ui& ui, ResponseView& drawn) {
     choose_design(session, first_goal(session, goals));
     chosen = std::ranges::find(goals, design.coordinate, &DesignGoal::key);
   }
-  heading(ui, ("Find the " + parameter_phrase(control->address)).c_str());
+  heading(ui, ("Find the " + number_phrase(session.mechanism(), control->address)).c_str());
   help_on_hover("Solves for the number so that a coordinate, a speed that is found, a measure, a force or a "
                 "torque has the value that is asked for.");
   if (const auto other = name_choice_row(ui, "response/design", "so that", design_goals(session).titles,

@@ -199,7 +199,7 @@ Plot response_plot(const ResponseCurve::Found& found, const ResponseQuantity& qu
   Plot plot;
   pieces.clear();
   const std::string unit = parameter_unit(*of.mechanism, of.address);
-  plot.x = {.label = parameter_phrase(of.address),
+  plot.x = {.label = number_phrase(*of.mechanism, of.address),
             .unit = unit,
             .logarithmic = of.logarithmic,
             .range = PlotRange{std::min(of.from, of.to), std::max(of.from, of.to)},

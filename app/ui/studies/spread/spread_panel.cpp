@@ -56,7 +56,7 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
   const std::string unit = parameter_unit(session.mechanism(), chosen.address),
                     shown = shown_unit(unit, session.units).text;
   ImGui::AlignTextToFramePadding();
-  clipped_text(parameter_phrase(chosen.address), 112 * s);
+  clipped_text(number_phrase(session.mechanism(), chosen.address), 112 * s);
   ImGui::SameLine(0, 0);
   ImGui::SetCursorPosX(start + 116 * s);
   distribution_choice(ui, name + "/distribution", chosen, 92 * s);
@@ -99,8 +99,8 @@ void tolerance_row(Session& session, Ui& ui, std::size_t i) {
 
 void another_tolerance(Session& session, Ui& ui) {
   if (const auto other = number_choice_row(
-          ui, "spread/add", "Add", [&] { return numbers_without_tolerance(session); }, "another number…",
-          "A number that is to have a tolerance, too."))
+          session.mechanism(), ui, "spread/add", "Add", [&] { return numbers_without_tolerance(session); },
+          "another number…", "A number that is to have a tolerance, too."))
     later(ui, [&session, address = *other] { add_tolerance(session, address); });
 }
 
