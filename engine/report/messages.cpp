@@ -252,19 +252,7 @@ std::string message(const AllSolutions& all) {
 
 namespace {
 
-// Whether loops that stay closed at one phase only are drawn where they leave rates open, which are found by
-// them elsewhere.
-bool drawn_at_change_point(const ReportInput& in, Workspace& w) {
-  evaluate(in.problem, in.found.z, 0, w);
-  factor_constraints(in.problem, w);
-  return at_singular_loops(in.problem, in.found.z, w);
-}
-
-std::string open_loop_message(const ReportInput& in, Workspace& w) {
-  if (drawn_at_change_point(in, w))
-    return "No steady state was found: the loop of \"" + cut_name(in, in.existence.worst_cut) +
-           "\" is drawn at a change point, where its linkage could part into branches and does not tell at "
-           "which rates it turns. Drawn with the drives turned on a little it may have a steady state.";
+std::string open_loop_message(const ReportInput& in) {
   const bool turns = loops_turn_with_drives(in.problem.system, in.problem.parameters);
   std::string text = turns ? "No steady state was found" : "No steady state";
   text += ": as the drives turn, \"" + cut_name(in, in.existence.worst_cut) +
@@ -297,12 +285,30 @@ std::string rubbing_message(const ReportInput& in) {
 
 } // namespace
 
+std::string change_point_message(const ReportInput& in) {
+  const System& system = in.problem.system;
+  std::vector<int> suspects; // cuts
+  if (in.found.status == Status::not_converged && in.found.remark != Remark::cancelled) {
+    for (std::size_t c = 0; c < system.cuts.size(); ++c)
+      if (system.cuts[c].by_rates && system.cuts[c].type != JointType::gear)
+        suspects.push_back(static_cast<int>(c));
+  } else if (in.found.status == Status::converged && in.existence.loops_open) {
+    suspects = {in.existence.worst_cut};
+  }
+  const auto flat = std::ranges::find_if(
+      suspects, [&](int cut) { return is_drawn_at_change_point(in.mechanism, system, cut); });
+  if (flat == suspects.end()) return {};
+  return "No steady state was found: the loop of \"" + cut_name(in, *flat) +
+         "\" is drawn at a change point, where its linkage could part into branches and does not tell at "
+         "which rates it turns. Drawn with the drives turned on a little it may have a steady state.";
+}
+
 std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::infeasible)
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
            "\" stays open however the other coordinates are chosen.";
   if (in.found.status == Status::not_converged) return message(in.found, in.problem);
-  if (in.existence.loops_open) return open_loop_message(in, w);
+  if (in.existence.loops_open) return open_loop_message(in);
   if (in.existence.pushed >= 0) return lost_momentum_message(in, w);
   if (in.existence.rubs >= 0) return rubbing_message(in);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +

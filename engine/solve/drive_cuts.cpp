@@ -228,7 +228,7 @@ void expect_no_loop_on_momenta(const System& system, const Mechanism& mechanism,
       if (!pulled && !(finds_speed(link) && turns_others(c, link.v))) continue;
       const std::string& drive = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].name;
       throw SceneError("joints." + drive + ".drive.keeps",
-                       "expected speed, or no loop that ties " + drive + " to what others drive: through " +
+                       "expected speed, or no loop that makes others turn with " + drive + ": through " +
                            mechanism.joints[static_cast<std::size_t>(cut.joint)].name +
                            " its momentum passes to them");
     }

@@ -11,4 +11,9 @@ namespace flyball {
 // and factored in the workspace; of large loops, which are factored as sparse ones, it is not known: false.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w);
 
+// Whether the loop of a cut joint (in System::cuts) is drawn in such a pose, a change point, or so near to it
+// that rounding decides: there it does not tell at which rates it turns with what drives it. Of a mechanism
+// as compile_for_drives() compiles it; of one with many coordinates it is not known: false.
+bool is_drawn_at_change_point(const Mechanism& mechanism, const System& system, int cut);
+
 } // namespace flyball
