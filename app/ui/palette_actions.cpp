@@ -1,6 +1,8 @@
 #include "app/ui/palette_actions.hpp"
 
+#include "app/document/references.hpp"
 #include "app/ui/app.hpp"
+#include "app/ui/camera_glide.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/shown_scene.hpp"
@@ -8,6 +10,8 @@
 #include "engine/mechanism/address.hpp"
 
 #include <algorithm>
+#include <span>
+#include <unordered_set>
 
 namespace flyball {
 
@@ -24,22 +28,62 @@ Part part_of_address(const std::string& address) {
   return {};
 }
 
+bool names(std::span<const std::string> all, const std::string& one) {
+  return std::ranges::find(all, one) != all.end();
+}
+
+// The part with what it is joined to: of a body those that a joint, spring or bearing holds to it, of a joint
+// or force its bodies, of a gear those of its joints.
+std::unordered_set<std::string> bodies_about(const Mechanism& mechanism, const Part& part) {
+  std::unordered_set<std::string> bodies;
+  const auto take = [&](const auto& of, PartKind kind) {
+    const auto held = bodies_of(of);
+    if ((part.kind == kind && of.name == part.name) ||
+        (part.kind == PartKind::body && names(held, part.name)))
+      bodies.insert(held.begin(), held.end());
+  };
+  for (const Force& force : mechanism.forces)
+    take(force, PartKind::force);
+  for (const Joint& joint : mechanism.joints) {
+    take(joint, PartKind::joint);
+    if (part.kind != PartKind::joint || joint.name != part.name || joint.type != JointType::gear) continue;
+    for (const std::string& end : joint.joints)
+      if (const int i = joint_index(mechanism, joint_of_end(end)); i >= 0)
+        for (const std::string& body : bodies_of(mechanism.joints[static_cast<std::size_t>(i)]))
+          bodies.insert(body);
+  }
+  return bodies;
+}
+
+// The part in the middle of the view, and about it what it is joined to, as far as the whole would be seen.
 void fit_part(App& app, const Part& part) {
-  const PartId id = find_part(*shown_mechanism(app.session, app.tool), part);
+  const Mechanism& mechanism = *shown_mechanism(app.session, app.tool);
+  const PartId id = find_part(mechanism, part);
   const SceneList& scene = shown_scene(app.context())->solid;
-  Bounds bounds;
-  for (const Instance& instance : scene.instances)
-    if (instance.part == id) bounds.add(instance_bounds(instance));
-  if (id.kind == PartKind::none || bounds.empty) return;
-  // With something of what is around it.
-  const Vec3 around = Vec3::Constant(0.12 * (scene.bounds.upper - scene.bounds.lower).norm());
-  const Vec3 middle = bounds.center();
-  bounds.add(Vec3(middle - around));
-  bounds.add(Vec3(middle + around));
-  const WidgetRect& view = app.ui.keyboard.view;
-  if (view.to.x <= view.from.x) return;
-  app.view.camera.fit(
-      bounds, {static_cast<double>(view.to.x - view.from.x), static_cast<double>(view.to.y - view.from.y)});
+  const std::unordered_set<std::string> about = bodies_about(mechanism, part);
+  Bounds own, all;
+  for (const Instance& instance : scene.instances) {
+    const bool is_own = instance.part == id;
+    const bool joined = instance.part.kind == PartKind::body && instance.part.index >= 0 &&
+                        about.contains(mechanism.bodies[static_cast<std::size_t>(instance.part.index)].name);
+    if (is_own) own.add(instance_bounds(instance));
+    if (is_own || joined) all.add(instance_bounds(instance));
+  }
+  const ViewSize view = app.view.size;
+  if (id.kind == PartKind::none || own.empty || !(view.width > 1)) return;
+  const Vec3 middle = own.center();
+  // Of what is joined to nothing, something of what else there is.
+  const Vec3 least = Vec3::Constant(0.12 * (scene.bounds.upper - scene.bounds.lower).norm());
+  const Vec3 reach = (all.upper - middle).cwiseMax(middle - all.lower).cwiseMax(least);
+  Bounds shown;
+  shown.add(Vec3(middle - reach));
+  shown.add(Vec3(middle + reach));
+  ViewCamera& camera = glide_goal(app.view);
+  camera.fit(scene.bounds, view);
+  const double whole = camera.distance;
+  camera.fit(shown, view);
+  camera.target = middle;
+  camera.distance = std::min(camera.distance, whole);
   app.view.fit = false;
 }
 

@@ -71,12 +71,34 @@ TEST_CASE("a part that is found is selected and brought into view") {
   robot.frames(2);
   CHECK_FALSE(app.panels->palette.showing());
   CHECK(app.session.selection().parts == std::vector{Part{PartKind::body, "ball1"}});
-  CHECK(app.view.camera.distance < before.distance);
+  CHECK(app.view.camera.distance <= before.distance * (1 + 1e-9));
   const int ball = body_index(app.session.mechanism(), "ball1");
   const ImVec2 at = robot.pixel(app.session.poses[static_cast<std::size_t>(ball)].position);
-  const ImVec2 middle = robot.widget("view").center();
+  const WidgetRect view = robot.widget("view");
+  const ImVec2 middle = view.center();
   CHECK(std::abs(at.x - middle.x) < 160); // its arm, too, is in view
   CHECK(std::abs(at.y - middle.y) < 160);
+  // And the spindle that it hangs on, from end to end.
+  for (const double height : {0.23, -0.08}) {
+    const ImVec2 end = robot.pixel(Vec3(0, height, 0));
+    CHECK((end.x > view.from.x && end.x < view.to.x));
+    CHECK((end.y > view.from.y && end.y < view.to.y));
+  }
+}
+
+TEST_CASE("a small part that is found stands in the middle of what it is joined to") {
+  Finder robot;
+  robot.find("arm1");
+  REQUIRE(robot.entry().name == "part/joint/arm1");
+  robot.key(key_enter);
+  robot.frames(3);
+  const WidgetRect view = robot.widget("view");
+  const ImVec2 at = robot.pixel(Vec3(0, 0.2, 0));
+  CHECK(at.x == Approx(view.center().x).margin(20));
+  CHECK(at.y == Approx(view.center().y).margin(20));
+  const ImVec2 foot = robot.pixel(Vec3(0, -0.08, 0));
+  CHECK(foot.y > view.center().y + 50);
+  CHECK(foot.y < view.to.y);
 }
 
 TEST_CASE("a spring that only damps is called a damper") {
