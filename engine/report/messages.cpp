@@ -95,8 +95,17 @@ bool pulled_by_law(const System& system, const Unbounded& found) {
   });
 }
 
+// Of what runs away, beside an unstable state or where there is none. `rubs`: dry friction may hold it.
+std::string goes_on(bool one, bool unstable, bool rubs) {
+  return std::string(rubs ? (one ? "where it slips " : "where they slip ") : "") +
+         (one ? "it goes" : "they go") + " on without end" +
+         (rubs       ? ". "
+          : unstable ? " from the drawn pose. "
+                     : ", so there is no steady state to find. ");
+}
+
 // Of slides that springs hold, which the centrifugal force outgrows.
-std::string softer_springs(const Unbounded& found, bool unstable) {
+std::string softer_springs(const Unbounded& found, bool unstable, bool rubs) {
   constexpr double noticeable = 1e-4;
   const bool one = found.softened.size() == 1;
   const auto list = [&](double Softening::*which) {
@@ -113,8 +122,7 @@ std::string softer_springs(const Unbounded& found, bool unstable) {
           : softer == 0                        ? "hardly stiffer"
                                                : "softer or hardly stiffer") +
          " than the centrifugal force, which at this speed grows by " + list(&Softening::driven) + ": " +
-         (one ? "it goes" : "they go") + " on without end" +
-         (unstable ? " from the drawn pose. " : ", so there is no steady state to find. ") +
+         goes_on(one, unstable, rubs) +
          (one ? "It needs a stiffer spring, a stop" : "They need stiffer springs, stops") +
          " or a lower speed.";
 }
@@ -439,27 +447,23 @@ void explain_unbounded(const Problem& problem, const Mechanism& mechanism, const
   }
   out.unheld = found.coordinates;
   out.unheld_by_weight = found.by_weight;
-  if (!found.softened.empty() && !pulled_by_law(problem.system, found)) {
-    const std::string words = softer_springs(found, unstable);
-    out.message = unstable ? out.message + " " + words : words;
-    return;
-  }
   // Beside an unstable state: where it is drawn, or further on, friction may hold it all the same.
   const bool rubs =
       unstable && std::ranges::any_of(find_frictions(mechanism), [&](CoordinateReference at) {
         return std::ranges::find(found.coordinates, mechanism.joints[static_cast<std::size_t>(at.joint)].name,
                                  &UnheldCoordinate::joint) != found.coordinates.end();
       });
+  if (!found.softened.empty() && !pulled_by_law(problem.system, found)) {
+    const std::string words = softer_springs(found, unstable, rubs);
+    out.message = unstable ? out.message + " " + words : words;
+    return;
+  }
   const std::string words =
       (rubs ? "Nothing but dry friction holds " : "Nothing holds ") + names_of(found) + " against " +
       (found.by_weight    ? "the weight"
        : found.by_inertia ? "the centrifugal force"
                           : "the forces on it") +
-      ": " + (rubs ? "where it slips " : "") + (one ? "it goes" : "they go") + " on without end" +
-      (rubs       ? ". "
-       : unstable ? " from the drawn pose. "
-                  : ", so there is no steady state to find. ") +
-      (one ? "It needs a spring" : "They need springs") +
+      ": " + goes_on(one, unstable, rubs) + (one ? "It needs a spring" : "They need springs") +
       (pulled_by_law(problem.system, found) ? " whose force grows with its deflection," : "") +
       (one ? " or a stop" : " or stops") + (found.by_weight ? ", or no gravity." : ".");
   out.message = unstable ? out.message + " " + words : words;

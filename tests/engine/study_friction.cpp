@@ -179,6 +179,19 @@ TEST_CASE("what runs away once it slips is not said to do so where friction hold
       s.message.find("Nothing but dry friction holds slide against the centrifugal force: where it slips it "
                      "goes on without end.") != std::string::npos);
   CHECK_THAT(extent(report_friction(bead, s).band, "slide").high, WithinRel(30 / (0.5 * 2 * 2), 1e-12));
+
+  // Nor beside a spring that the centrifugal force, growing by m n^2 = 450 N/m, outgrows: from where it is
+  // drawn it is pushed by 92.5 N.
+  const Mechanism soft = bead_on_rod(30, 200);
+  const Solution softer = Analysis(soft).solve();
+  INFO(softer.message);
+  CHECK(softer.stable == false);
+  CHECK(softer.message.find("softer than the centrifugal force") != std::string::npos);
+  CHECK(softer.message.find(": where it slips it goes on without end. It needs a stiffer spring") !=
+        std::string::npos);
+  const FrictionReport report = report_friction(soft, softer);
+  CHECK_THAT(report.drawn.takes.value(), WithinRel(92.5 / 200, 1e-12));
+  CHECK_THAT(extent(report.band, "slide").high, WithinRel((200 - 400 * 0.2) / 50, 1e-12));
 }
 
 TEST_CASE("two hinges with friction: each coordinate has corners of its own") {
