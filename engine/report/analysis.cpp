@@ -280,15 +280,14 @@ struct Analysis::State {
   // Why there is no steady state.
   void explain(const Problem& problem, const Stability& stability, Solution& out) {
     const ReportInput input{*mechanism, problem, steady.found, steady.existence, stability};
-    const std::string at_change_point = change_point_message(input);
-    out.message = at_change_point.empty() ? failure_message(input, steady.elsewhere()) : at_change_point;
+    out.message = failure_message(input, steady.elsewhere());
     if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
     out.residual = steady.history.empty() ? 0 : steady.history.back();
     explain_unbounded(problem, *mechanism, steady.start, steady.elsewhere(), out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
                        weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
     if (system.torques.empty() || out.status != Status::not_converged || problem.cancelled() ||
-        !at_change_point.empty())
+        !change_point_message(input).empty())
       return;
     if (const std::string why = missing_speed_message(*mechanism, problem, steady.elsewhere()); !why.empty())
       out.message = why + " " + out.message;

@@ -312,6 +312,7 @@ std::string change_point_message(const ReportInput& in) {
 }
 
 std::string failure_message(const ReportInput& in, Workspace& w) {
+  if (std::string flat = change_point_message(in); !flat.empty()) return flat;
   if (in.found.status == Status::infeasible)
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
            "\" stays open however the other coordinates are chosen.";

@@ -23,7 +23,7 @@ std::string message(const AllSolutions& all);
 // help. Empty where none is.
 std::string change_point_message(const ReportInput& input);
 
-// Why else there is no answer, naming the part that is to blame.
+// That, or why else there is no answer, naming the part that is to blame.
 std::string failure_message(const ReportInput& input, Workspace& w);
 
 // Of a converged solution whose other parts are filled; `rank`: of the constraint equations.
