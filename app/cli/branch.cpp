@@ -20,6 +20,7 @@
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/friction_branches.hpp"
+#include "engine/study/ribbon_tips.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -46,14 +47,20 @@ PlottedQuantity plotted_quantity(const Mechanism& m, const ResponseDiagram& d, c
                    known.empty() ? "there is no free coordinate to draw" : "expected one of " + known);
 }
 
-// Of each branch the bands at all its points; their time is the diagram's, too.
-Ribbons follow_ribbons(const Mechanism& mechanism, const std::string& address, ResponseDiagram& diagram,
-                       const ReportProgress& progress) {
+struct Bands {
+  Ribbons ribbons, tips; // of each branch at all its points; beyond its folds
+};
+
+// Their time is the diagram's, too.
+Bands find_bands(const Mechanism& mechanism, const Range& range, ResponseDiagram& diagram,
+                 const ReportProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  Ribbons out =
-      friction_ribbons(mechanism, address, diagram, nullptr, [&](std::size_t done, std::size_t all) {
+  Bands out;
+  out.ribbons =
+      friction_ribbons(mechanism, range.address, diagram, nullptr, [&](std::size_t done, std::size_t all) {
         report_progress(progress, "friction", static_cast<double>(done) / static_cast<double>(all));
       });
+  out.tips = ribbon_tips(mechanism, range.address, range.from, range.to, diagram);
   diagram.run_time_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
 }
@@ -143,15 +150,14 @@ void add_branch(CLI::App& app, Ending& ending) {
     const Mechanism mechanism = options->scene.load();
     const Range range = parse_range(mechanism, "--vary", options->vary);
     ResponseDiagram diagram;
-    Ribbons ribbons;
+    Bands bands;
     HopfPoints hunting;
     try {
       BranchOptions follow;
       follow.all = options->all;
       follow.progress = progress->reporter();
       diagram = follow_response(mechanism, range.address, range.from, range.to, follow);
-      if (has_friction(mechanism))
-        ribbons = follow_ribbons(mechanism, range.address, diagram, follow.progress);
+      if (has_friction(mechanism)) bands = find_bands(mechanism, range, diagram, follow.progress);
       hunting = describe_hunting(mechanism, range.address, diagram);
     } catch (const SceneError& error) {
       throw options->scene.in_file(error);
@@ -161,8 +167,14 @@ void add_branch(CLI::App& app, Ending& ending) {
     if ((!options->svg.empty() || !options->png.empty()) && any) {
       const PlottedQuantity shown = plotted_quantity(mechanism, diagram, options->plot);
       Plot plot = branch_plot(mechanism, range.address, diagram, shown);
-      for (const std::vector<RibbonPoint>& ribbon : ribbons)
-        add_ribbon(plot, ribbon, plotted_name(diagram.branches.front().points.front(), shown));
+      const std::string name = plotted_name(diagram.branches.front().points.front(), shown);
+      for (std::size_t k = 0; k < bands.ribbons.size(); ++k) {
+        std::vector<RibbonPoint> ribbon = bands.ribbons[k];
+        add_meetings(mechanism, range.address, ribbon_places(diagram.branches[k]), ribbon);
+        add_ribbon(plot, ribbon, name);
+      }
+      for (const std::vector<RibbonPoint>& tip : bands.tips)
+        add_ribbon(plot, tip, name);
       if (!options->svg.empty()) write_bytes(options->svg, to_svg(plot));
       if (!options->png.empty()) {
         const OffscreenContext context;
@@ -171,9 +183,10 @@ void add_branch(CLI::App& app, Ending& ending) {
     }
     // Files of earlier runs are not replaced by empty ones.
     if (!options->csv.empty() && !diagram.branches.empty())
-      write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram, ribbons));
+      write_bytes(options->csv, diagram_csv(mechanism, range.address, diagram, bands.ribbons));
     if (options->json) {
-      nlohmann::ordered_json told = diagram_json(diagram, ribbons, hunting);
+      nlohmann::ordered_json told = diagram_json(diagram, bands.ribbons, hunting);
+      if (!bands.tips.empty()) told["bands_beyond_folds"] = tips_json(bands.tips);
       told["run_time_s"] = diagram.run_time_s;
       print_json(with_warnings(std::move(told), mechanism));
     } else if (options->csv.empty() && options->svg != "-" && options->png != "-") // else it is theirs

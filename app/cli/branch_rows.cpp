@@ -65,7 +65,24 @@ std::string note(const ResponseBranch& branch, std::size_t point) {
   return csv_field(printable(out));
 }
 
+Json band_json(const RibbonPoint& point) {
+  Json out = Json::object();
+  for (const BandExtent& extent : point.extents)
+    out[extent.name] = {number_json(extent.low), number_json(extent.high)};
+  return out;
+}
+
 } // namespace
+
+Json tips_json(const Ribbons& tips) {
+  Json out = Json::array();
+  for (const std::vector<RibbonPoint>& tip : tips) {
+    Json& points = out.emplace_back(Json::array());
+    for (const RibbonPoint& point : tip)
+      points.push_back({{"parameter", point.number}, {"band", band_json(point)}});
+  }
+  return out;
+}
 
 Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPoints& hunting) {
   Json out = {{"status", word(d.status)},
@@ -77,11 +94,8 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
     Json points = Json::array();
     for (const ResponsePoint& p : b.points)
       points.push_back(point_json(p));
-    for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i) {
-      Json& band = points[i]["band"] = Json::object();
-      for (const BandExtent& extent : ribbons[k][i].extents)
-        band[extent.name] = {number_json(extent.low), number_json(extent.high)};
-    }
+    for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i)
+      points[i]["band"] = band_json(ribbons[k][i]);
     if (k < ribbons.size() && !ribbons[k].empty())
       for (const BandExtent& extent : ribbons[k].front().extents)
         for (std::size_t i = 0; const HysteresisPoint& way : hysteresis(ribbons[k], extent.name))

@@ -20,6 +20,8 @@ using Ribbons = std::vector<std::vector<RibbonPoint>>;
 // `hunting` tells have that as "hunting".
 nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons,
                                     const HopfPoints& hunting);
+// Of each the points from beside a fold outwards: {`parameter`, `band`}.
+nlohmann::ordered_json tips_json(const Ribbons& tips);
 // All of a table: branch, parameter, values, `stable`, `special`; with ribbons then
 // `rests_on_friction` (see friction_word()), and `NAME.low` and `NAME.high` of each value.
 std::string diagram_csv(const Mechanism& mechanism, const std::string& address,

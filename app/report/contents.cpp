@@ -14,8 +14,8 @@
 #include "engine/report/friction_state.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/friction_branches.hpp"
-#include "engine/study/friction_ribbon.hpp"
 #include "engine/study/resonance_curve.hpp"
+#include "engine/study/ribbon_tips.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +113,11 @@ ReportCurve follow(const ReportContents& contents, const Slider& over, const Rep
   if (diagram->branches.empty() || diagram->branches.front().points.empty()) return out;
   std::vector<std::vector<RibbonPoint>> ribbons;
   if (has_friction(m)) ribbons = friction_ribbons(m, over.parameter, *diagram, options.cancel);
+  for (std::size_t k = 0; k < ribbons.size(); ++k)
+    add_meetings(m, over.parameter, ribbon_places(diagram->branches[k]), ribbons[k], options.cancel);
+  for (std::vector<RibbonPoint>& tip :
+       ribbon_tips(m, over.parameter, over.from, over.to, *diagram, options.cancel))
+    ribbons.push_back(std::move(tip));
   for (const PlottedQuantity& shown : plotted_quantities(m, *diagram, options.plotted)) {
     Plot plot = branch_plot(m, over.parameter, *diagram, shown);
     const ResponsePoint& first = diagram->branches.front().points.front();

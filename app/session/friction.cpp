@@ -2,6 +2,7 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/study/ribbon_tips.hpp"
 
 namespace flyball {
 namespace {
@@ -13,15 +14,19 @@ FrictionReport find_friction(const FrictionRequest& request, const TaskContext<F
 FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRibbon>& context) {
   const ResponseRequest& of = request.curve->of;
   FoundRibbon found;
+  const auto add = [&](const std::vector<RibbonPoint>& points) {
+    found.stretches.push_back({found.points.size(), points.size()});
+    found.points.insert(found.points.end(), points.begin(), points.end());
+  };
   for (const BandRun& run : band_runs(*request.curve, BandOf::not_unstable)) {
     std::vector<RibbonPlace> places;
     for (const ResponsePoint* state : run.states)
       places.push_back({state->parameter, start_values(state->coordinates)});
-    const std::vector<RibbonPoint> points =
-        friction_ribbon_at_bends(*of.mechanism, of.address, places, run.apart, &context.cancel);
-    found.stretches.push_back({found.points.size(), points.size()});
-    found.points.insert(found.points.end(), points.begin(), points.end());
+    add(friction_ribbon_at_bends(*of.mechanism, of.address, places, run.apart, &context.cancel));
   }
+  for (const std::vector<RibbonPoint>& tip :
+       ribbon_tips(*of.mechanism, of.address, of.from, of.to, request.curve->result.diagram, &context.cancel))
+    add(tip);
   return found;
 }
 

@@ -361,8 +361,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     band.whole = !box.lost();
     if (band.whole) {
       band.message = free.size() > 1 ? "Each extent is an extremum nearby: rates tell of none beyond." : "";
-    } else if (free.size() == 1 && options.through_folds &&
-               follow(mechanism, free.front(), state, options.cancel, band)) {
+    } else if (free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
       if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
     } else {

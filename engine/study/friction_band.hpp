@@ -36,8 +36,6 @@ struct FrictionBand {
 struct FrictionBandOptions {
   // The state that it is about, as of SolveOptions; empty: what a solve answers.
   std::vector<std::pair<std::string, double>> start{};
-  // Of a single joint with friction: to be followed through folds.
-  bool through_folds = true;
   bool errors = true; // of the extents, two solves each
   const std::atomic<bool>* cancel = nullptr;
 };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace flyball {
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double line_error = 0.01;      // see friction_ribbon_at_bends()
 constexpr std::size_t most_points = 200; // of it
+constexpr double meeting_error = 1e-3;   // of the way between two places
+constexpr double edge_jump = 0.1;        // of a band's height
 
 // Lower ones first.
 double edge(const RibbonPoint& point, std::size_t e) {
@@ -45,11 +48,16 @@ RibbonPoint ribbon_point(const Mechanism& mechanism, const std::string& address,
                          const std::atomic<bool>* cancel) {
   FrictionBandOptions options;
   options.start = place.start;
-  options.through_folds = options.errors = false;
+  options.errors = false;
   options.cancel = cancel;
   RibbonPoint point{place.number, {}};
   FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);
-  if (band.found && band.whole) point.extents = std::move(band.extents);
+  const bool bounded = std::ranges::all_of(band.extents, [](const BandExtent& extent) {
+    return std::isfinite(extent.low) && std::isfinite(extent.high);
+  });
+  if (!band.found || !bounded || (!band.whole && !band.folds)) return point;
+  point.extents = std::move(band.extents);
+  point.folds = band.folds;
   return point;
 }
 
@@ -84,6 +92,17 @@ bool bends(const RibbonPoint& before, const RibbonPoint& point, const RibbonPoin
   return false;
 }
 
+// Whether another band may meet these between two points: past a fold, where their edges jump.
+bool bands_meet(const RibbonPoint& a, const RibbonPoint& b) {
+  if ((!a.folds && !b.folds) || a.extents.size() != b.extents.size()) return false;
+  for (std::size_t i = 0; i < a.extents.size(); ++i) {
+    const BandExtent &from = a.extents[i], &to = b.extents[i];
+    const double least = edge_jump * std::min(from.high - from.low, to.high - to.low);
+    if (std::abs(to.low - from.low) > least || std::abs(to.high - from.high) > least) return true;
+  }
+  return false;
+}
+
 } // namespace
 
 std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::string& address,
@@ -97,6 +116,32 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
   }
   add_slow_change(mechanism, address, places, cancel, out);
   return out;
+}
+
+void add_meetings(const Mechanism& mechanism, const std::string& address, std::span<const RibbonPlace> places,
+                  std::vector<RibbonPoint>& points, const std::atomic<bool>* cancel) {
+  std::vector<RibbonPoint> out;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0 && bands_meet(out.back(), points[i]) && out.back().number != points[i].number) {
+      RibbonPoint before = out.back(), after = points[i];
+      const double close = meeting_error * std::abs(after.number - before.number);
+      bool jumps = true;
+      while (jumps && std::abs(after.number - before.number) > close && !is_cancelled(cancel)) {
+        const double middle = std::midpoint(before.number, after.number);
+        RibbonPoint there = ribbon_point(mechanism, address, {middle, places[i].start}, cancel);
+        const bool earlier = bands_meet(before, there);
+        jumps = earlier || bands_meet(there, after);
+        (earlier ? after : before) = std::move(there);
+      }
+      if (jumps) {
+        after.meets = true;
+        out.push_back(std::move(before));
+        out.push_back(std::move(after));
+      }
+    }
+    out.push_back(std::move(points[i]));
+  }
+  points = std::move(out);
 }
 
 std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, const std::string& address,
@@ -127,7 +172,15 @@ std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, co
     there.push_back(places[i]);
   }
   add_slow_change(mechanism, address, there, cancel, out);
+  add_meetings(mechanism, address, there, out, cancel);
   return out;
+}
+
+std::vector<RibbonPlace> ribbon_places(const ResponseBranch& branch) {
+  std::vector<RibbonPlace> places;
+  for (const ResponsePoint& point : branch.points)
+    places.push_back({point.parameter, start_values(point.coordinates)});
+  return places;
 }
 
 std::vector<std::vector<RibbonPoint>>
@@ -136,9 +189,7 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
                  const std::function<void(std::size_t, std::size_t)>& progress) {
   std::vector<std::vector<RibbonPoint>> out;
   for (const ResponseBranch& branch : diagram.branches) {
-    std::vector<RibbonPlace> places;
-    for (const ResponsePoint& point : branch.points)
-      places.push_back({point.parameter, start_values(point.coordinates)});
+    const std::vector<RibbonPlace> places = ribbon_places(branch);
     if (!branch.points.empty() && !branch.points.front().frictions.empty()) { // it has no band
       out.emplace_back();
       for (const RibbonPlace& place : places)

@@ -23,10 +23,14 @@ struct HysteresisPoint {
 
 struct RibbonPoint {
   double number = 0;
-  std::vector<BandExtent> extents; // empty where there is no band, as at a fold
+  std::vector<BandExtent> extents; // empty where there is no band, or none with bounds
   // By extent, of several joints with friction that move by themselves (slow_change.hpp); else empty.
   std::vector<HysteresisPoint> slow{};
   std::string no_way{}; // of the first point: why several such joints have none
+  // Of a single joint with friction: it passes folds of the balance, beyond which friction alone holds, and
+  // may so reach from one branch to another.
+  bool folds = false;
+  bool meets = false; // its band does not go on from that of the point before: see add_meetings()
 };
 
 // `progress`: places done. Cancelled, points are missing at the end. Throws SceneError for a number that the
@@ -36,15 +40,23 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
                                          const std::atomic<bool>* cancel = nullptr,
                                          const std::function<void(std::size_t done)>& progress = {});
 
+// Adds to the points at all places two where bands meet between them: at numbers that no one tells apart in a
+// picture, one with the band of several branches and one with that of one of them.
+void add_meetings(const Mechanism& mechanism, const std::string& address, std::span<const RibbonPlace> places,
+                  std::vector<RibbonPoint>& points, const std::atomic<bool>* cancel = nullptr);
+
 // The same at some of the places, and at those between where an edge bends or the band ends: until a line
-// between neighbours leaves out no more than a hundredth of an edge's height, as far as there are places.
+// between neighbours leaves out no more than a hundredth of an edge's height, as far as there are places; and
+// where bands meet.
 // `first`: with which it begins, ascending, both ends among them.
 std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, const std::string& address,
                                                   std::span<const RibbonPlace> places,
                                                   std::span<const std::size_t> first,
                                                   const std::atomic<bool>* cancel = nullptr);
 
-// The same at all points of each branch that was followed over this number.
+std::vector<RibbonPlace> ribbon_places(const ResponseBranch& branch);
+
+// Bands at all points of each branch that was followed over this number.
 std::vector<std::vector<RibbonPoint>>
 friction_ribbons(const Mechanism& mechanism, const std::string& address, const ResponseDiagram& diagram,
                  const std::atomic<bool>* cancel = nullptr,

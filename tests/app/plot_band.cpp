@@ -2,6 +2,7 @@
 #include "app/plot/axis.hpp"
 #include "app/plot/csv.hpp"
 #include "app/plot/nearest.hpp"
+#include "app/plot/ribbon_plot.hpp"
 #include "app/plot/spread_plot.hpp"
 #include "app/plot/svg.hpp"
 #include "tests/catch.hpp"
@@ -150,4 +151,32 @@ TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
     CHECK(flat.curves[0].points[0] == std::array<double, 2>{3, 0});
     CHECK(flat.curves[0].points[1] == std::array<double, 2>{3, 1000});
   }
+}
+
+TEST_CASE("a ribbon of friction that several branches share is drawn once") {
+  const auto point = [](double number, double low, double high, bool folds, bool meets = false) {
+    RibbonPoint out{.number = number, .extents = {}, .folds = folds, .meets = meets};
+    out.extents.push_back({"x", "m", high, low, high, {}, {}, {}, !folds});
+    return out;
+  };
+  // Up to 2 the band is that of both branches.
+  const std::vector<RibbonPoint> upper{point(0, -1, 1, true), point(1, -1.2, 1.2, true),
+                                       point(2, -1.4, 1.4, true), point(2, 1, 1.4, false, true),
+                                       point(3, 1.5, 1.6, false)},
+      lower{point(0.5, -1.1, 1.1, true), point(1.5, -1.3, 1.3, true), point(2, -1.4, 1.4, true),
+            point(2, -1.4, -1, false, true), point(3, -1.6, -1.5, false)};
+  Plot plot;
+  add_ribbon(plot, upper, "x");
+  add_ribbon(plot, lower, "x");
+  REQUIRE(plot.bands.size() == 3);
+  CHECK(plot.bands[0].points ==
+        std::vector<std::array<double, 3>>{{0, -1, 1}, {1, -1.2, 1.2}, {2, -1.4, 1.4}});
+  CHECK(plot.bands[1].points == std::vector<std::array<double, 3>>{{2, 1, 1.4}, {3, 1.5, 1.6}});
+  CHECK(plot.bands[2].points == std::vector<std::array<double, 3>>{{2, -1.4, -1}, {3, -1.6, -1.5}});
+  // A slow change is known along each branch by itself alone.
+  CHECK(std::ranges::count(plot.curves, "slow rise and fall", &PlotCurve::name) == 2);
+  CHECK(std::ranges::count(plot.curves, "edge as it rises", &PlotCurve::name) == 3);
+  // None of another name.
+  add_ribbon(plot, upper, "y");
+  CHECK(plot.bands.size() == 3);
 }

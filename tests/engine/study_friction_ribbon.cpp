@@ -4,6 +4,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/friction_ribbon.hpp"
+#include "engine/study/ribbon_tips.hpp"
 #include "engine/study/slow_change.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -46,7 +48,114 @@ Mechanism two_blocks(double base, double u1, double u2, std::optional<double> sp
       at(u1) + ", " + at(1 + u2) + R"(], "stiffness": 50, "free_length": 1}]})");
 }
 
+// A pendulum of 1 kg and 1 m on an axle across a shaft that turns upright, with friction (N m), and with a
+// soft spring wound so far that it pulls with 0.2 N m to one side where that is wanted.
+Mechanism pendulum_on_shaft(double limit, bool tilted) {
+  return read_scene(R"({"flyball": 1, "name": "Pendulum on a shaft", "gravity": [0, 0, -10],
+    "bodies": [{"name": "hoop", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.1, 0.1]},
+      {"name": "bob", "mass": 1, "position": [0, 0, -1]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "hoop"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "drive": {"speed": 2}},
+      {"name": "swing", "type": "revolute", "bodies": ["hoop", "bob"], "at": [0, 0, 0], "axis": [0, 1, 0],
+      "damping": 0.2, )" +
+                    std::string(tilted ? R"("spring": {"stiffness": 0.001, "free": 200}, )" : "") +
+                    R"("friction": {"limit": )" + number_text(limit) + "}}]}");
+}
+
+// What holding it at an angle takes, in N m.
+double holding_moment(double speed, double angle, bool tilted) {
+  return 10 * std::sin(angle) - speed * speed * std::sin(angle) * std::cos(angle) +
+         (tilted ? 0.001 * (angle - 200) : 0);
+}
+
+// The angles about one that friction holds without a gap, by steps and halvings.
+std::pair<double, double> held_angles(double speed, double angle, double limit, bool tilted) {
+  const auto end = [&](double step) {
+    double held = angle;
+    while (std::abs(holding_moment(speed, held + step, tilted)) <= limit)
+      held += step;
+    double beyond = held + step;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = std::midpoint(held, beyond);
+      (std::abs(holding_moment(speed, middle, tilted)) <= limit ? held : beyond) = middle;
+    }
+    return held;
+  };
+  return {end(-1e-4), end(1e-4)};
+}
+
+const std::string shaft_speed = "joints.spin.drive.speed";
+
 } // namespace
+
+TEST_CASE("bands of a pendulum on a shaft grow together past folds of the balance") {
+  const bool tilted = GENERATE(false, true);
+  const double limit = 0.5;
+  const Mechanism m = pendulum_on_shaft(limit, tilted);
+  BranchOptions options;
+  options.all = true;
+  const ResponseDiagram diagram = follow_branches(m, shaft_speed, 1, 5, options);
+  const std::vector<std::vector<RibbonPoint>> ribbons = friction_ribbons(m, shaft_speed, diagram);
+  int folds = 0, without = 0, meetings = 0;
+  for (std::size_t k = 0; k < ribbons.size(); ++k) {
+    for (std::size_t i = 0; i < ribbons[k].size(); ++i) {
+      const ResponsePoint& state = diagram.branches[k].points[i];
+      const BandExtent* swing = find_extent(ribbons[k][i], "swing");
+      folds += ribbons[k][i].folds;
+      without += !swing; // at the crossing the state is singular
+      if (!swing) continue;
+      const double angle = state.coordinates[1].value;
+      const auto [low, high] = held_angles(state.parameter, angle, limit, tilted);
+      CAPTURE(state.parameter, angle);
+      CHECK_THAT(swing->low, WithinAbs(low, 1e-9));
+      CHECK_THAT(swing->high, WithinAbs(high, 1e-9));
+    }
+    // Where they meet the band of a branch jumps from one point to the next, which is told closely.
+    std::vector<RibbonPoint> points = ribbons[k];
+    add_meetings(m, shaft_speed, ribbon_places(diagram.branches[k]), points);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      if (!points[i].meets) continue;
+      ++meetings;
+      CHECK(std::abs(points[i].number - points[i - 1].number) < 1e-4);
+      const BandExtent &a = *find_extent(points[i - 1], "swing"), &b = *find_extent(points[i], "swing");
+      CHECK(std::max(std::abs(a.low - b.low), std::abs(a.high - b.high)) > 0.1);
+    }
+  }
+  CHECK(folds > 20);
+  CHECK(without <= 2);
+  CHECK(meetings == (tilted ? 5 : 3)); // along each branch, there and back over a fold
+}
+
+TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band folds") {
+  const double limit = 0.05;
+  const Mechanism m = pendulum_on_shaft(limit, true);
+  BranchOptions options;
+  options.all = true;
+  const ResponseDiagram diagram = follow_branches(m, shaft_speed, 2.8, 4.2, options);
+  const auto fold = std::ranges::find(diagram.special, SpecialPointType::fold, &SpecialPoint::type);
+  REQUIRE(fold != diagram.special.end());
+  const std::vector<std::vector<RibbonPoint>> tips = ribbon_tips(m, shaft_speed, 2.8, 4.2, diagram);
+  REQUIRE(tips.size() == 1);
+  const std::vector<RibbonPoint>& tip = tips.front();
+  REQUIRE(tip.size() > 5);
+  CHECK(tip.front().number > fold->at.parameter);
+  double last = tip.front().number + 1;
+  for (const RibbonPoint& point : tip) {
+    CHECK(point.number < last); // outwards
+    last = point.number;
+    const BandExtent& swing = *find_extent(point, "swing");
+    const auto [low, high] = held_angles(point.number, std::midpoint(swing.low, swing.high), limit, true);
+    CAPTURE(point.number);
+    CHECK_THAT(swing.low, WithinAbs(low, 1e-9));
+    CHECK_THAT(swing.high, WithinAbs(high, 1e-9));
+  }
+  // A little farther nothing there is held.
+  CHECK(last < fold->at.parameter - 0.02);
+  for (double angle = -0.5; angle < 0; angle += 1e-3)
+    CHECK(std::abs(holding_moment(last - 1e-3, angle, true)) > limit);
+  // None where the band reaches the branch beyond.
+  CHECK(ribbon_tips(pendulum_on_shaft(0.5, true), shaft_speed, 2.8, 4.2, diagram).empty());
+}
 
 TEST_CASE("a speed that rises and falls slowly leads a bead round a loop") {
   const double m = 0.5, k = 400, r0 = 0.2, limit = 1.25;
