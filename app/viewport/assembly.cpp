@@ -335,8 +335,6 @@ bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit) {
   return (drawn - shaft.origin).cross(shaft.direction).norm() < 0.6 * unit;
 }
 
-namespace {
-
 bool is_geared(const Mechanism& mechanism, const std::string& joint) {
   return std::ranges::any_of(mechanism.joints, [&](const Joint& gear) {
     return gear.type == JointType::gear && std::ranges::any_of(gear.joints, [&](const std::string& end) {
@@ -344,6 +342,8 @@ bool is_geared(const Mechanism& mechanism, const std::string& joint) {
            });
   });
 }
+
+namespace {
 
 std::optional<Shaft> find_shaft(const Assembly& assembly, std::size_t b) {
   const std::vector<Attachment>& attachments = assembly.attachments[b];

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace flyball {
@@ -89,6 +90,8 @@ bool has_anchor(const Coordinate& coordinate);
 std::optional<Shaft> shaft_of(const Assembly& assembly, int body);
 // Whether it has the base of a wheel or turntable, by the size of glyphs.
 bool is_broad(const Shaft& shaft, double unit);
+// Whether a gear, belt, rack or screw ties the joint to another.
+bool is_geared(const Mechanism& mechanism, const std::string& joint);
 // Whether a point of the drawn pose lies on its axis, by the size of glyphs.
 bool on_axis(const Shaft& shaft, const Vec3& drawn, double unit);
 

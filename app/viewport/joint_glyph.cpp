@@ -1,7 +1,10 @@
 #include "app/viewport/glyphs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 namespace flyball {
 
@@ -265,6 +268,90 @@ void draw_cut_mark(Sketch& sketch, const Assembly& assembly, std::size_t index, 
     sketch.disc(0.5 * (a + b) + side * 0.38 * u * along, along, 0.13 * u, 0.95 * u, 0.08 * u);
 }
 
+namespace {
+
+// Of a point of the drawn pose, m.
+bool is_inside(const Shape& shape, const Body& body, const Vec3& point) {
+  const Vec3 d = point - shape.at.value_or(body.position);
+  switch (shape.type) {
+  case ShapeType::sphere: return d.norm() < shape.radius;
+  case ShapeType::box:
+    return ((body.rotation.conjugate() * d).cwiseAbs().array() < 0.5 * shape.size.array()).all();
+  default: break;
+  }
+  const Vec3 line = shape.to - shape.from, from = point - shape.from;
+  const double along = from.dot(line), square = line.squaredNorm();
+  return along > 0 && along < square &&
+         from.squaredNorm() * square - along * along < shape.radius * shape.radius * square;
+}
+
+// How far the shape reaches along an axis from a point of it (m), either way.
+std::array<double, 2> reach_of(const Shape& shape, const Body& body, const Vec3& origin, const Vec3& axis) {
+  const bool line = shape.type == ShapeType::cylinder || shape.type == ShapeType::capsule;
+  const Vec3 at = shape.at.value_or(body.position);
+  const double from = axis.dot((line ? shape.from : at) - origin),
+               to = axis.dot((line ? shape.to : at) - origin);
+  double around = shape.radius;
+  if (shape.type == ShapeType::box)
+    around = 0.5 * (body.rotation.conjugate() * axis).cwiseAbs().dot(shape.size);
+  if (shape.type == ShapeType::cylinder)
+    around *= axis.cross((shape.to - shape.from).stableNormalized()).norm();
+  return {std::min(from, to) - around, std::max(from, to) + around};
+}
+
+// Where a ring about a joint's axis is drawn.
+struct RingPlace {
+  double along = 0;  // m, from the joint
+  double radius = 0; // m
+};
+
+// Beside the joint, or where that is within a disc of its bodies, round it; within something else, beyond
+// that. `axis` is of unit length, in the drawn pose.
+RingPlace ring_in_sight(const Assembly& assembly, std::size_t index, const Vec3& axis) {
+  const Joint& joint = assembly.mechanism.joints[index];
+  const double u = assembly.scale.unit;
+  const RingPlace beside{1.9 * u, 2.7 * u};
+  const Vec3 across = axis.unitOrthogonal(), other = axis.cross(across);
+  const auto hides = [&](const Shape& shape, const Body& body, const RingPlace& ring) {
+    constexpr int points = 8, most = 4; // of a ring that is seen
+    int inside = 0;
+    for (int i = 0; i < points; ++i) {
+      const double angle = 2 * std::numbers::pi * i / points;
+      inside += is_inside(shape, body,
+                          joint.at + ring.along * axis +
+                              ring.radius * (std::cos(angle) * across + std::sin(angle) * other));
+    }
+    return inside > most;
+  };
+  RingPlace ring = beside;
+  bool round = !is_geared(assembly.mechanism, joint.name); // teeth would hide it there
+  constexpr int tries = 6;
+  for (int i = 0; i < tries; ++i) {
+    std::optional<RingPlace> rim;
+    double beyond = ring.along;
+    for (const int b : assembly.joint_bodies[index]) {
+      if (b < 0) continue;
+      const Body& body = assembly.mechanism.bodies[static_cast<std::size_t>(b)];
+      for (const Shape& shape : body.shapes) {
+        if (!hides(shape, body, ring)) continue;
+        const auto [low, high] = reach_of(shape, body, joint.at, axis);
+        beyond = std::max(beyond, high + 0.9 * u);
+        const bool disc = shape.type == ShapeType::cylinder && high - low < 2 * shape.radius &&
+                          axis.cross(shape.from - joint.at).norm() < 0.3 * u &&
+                          axis.cross(shape.to - joint.at).norm() < 0.3 * u;
+        if (disc && (!rim || shape.radius > rim->radius)) rim = RingPlace{0.5 * (low + high), shape.radius};
+      }
+    }
+    if (beyond == ring.along) break;
+    ring =
+        rim && round ? RingPlace{rim->along, 1.1 * rim->radius + 0.4 * u} : RingPlace{beyond, beside.radius};
+    if (rim) round = false;
+  }
+  return ring;
+}
+
+} // namespace
+
 void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, const Palette& colors) {
   const Joint& joint = assembly.mechanism.joints[index];
   const double u = assembly.scale.unit;
@@ -284,8 +371,10 @@ void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, co
       sketch.arrow(beside - 2.5 * u * forward, beside + 2.5 * u * forward, 0.24 * u);
       continue;
     }
-    Vec3 center = p.at + 1.9 * u * axis;
-    double radius = 2.7 * u;
+    const RingPlace ring =
+        along.end == 0 ? ring_in_sight(assembly, index, along.axis) : RingPlace{1.9 * u, 2.7 * u};
+    Vec3 center = p.at + ring.along * axis;
+    double radius = ring.radius;
     for (const int body : {p.parent, p.child}) {
       const auto shaft = shaft_of(assembly, body);
       if (!shaft || shaft->joint != static_cast<int>(index)) continue;
@@ -293,7 +382,7 @@ void draw_drives(Sketch& sketch, const Assembly& assembly, std::size_t index, co
       const bool broad = is_broad(*shaft, u);
       center =
           shaft->origin + (shaft->from + (broad ? 0.5 * shaft->base_height : 3.4 * u)) * shaft->direction;
-      if (broad) radius = 1.1 * shaft->base + 0.4 * u;
+      radius = broad ? 1.1 * shaft->base + 0.4 * u : 2.7 * u;
     }
     const double wire = std::max(0.24 * u, 0.02 * radius);
     if (speed == 0)

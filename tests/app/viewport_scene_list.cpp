@@ -251,6 +251,33 @@ TEST_CASE("the joint and the drive of a disc that faces the eye are seen") {
   CHECK(bounds_of_role(Role::drive).upper.x() == Approx(alone).epsilon(0.1));
 }
 
+TEST_CASE("the drive of a thick disc in a housing is seen") {
+  Mechanism m;
+  m.bodies = {body("housing", 1), body("disc", 1)};
+  Shape wheel;
+  wheel.type = ShapeType::cylinder;
+  wheel.radius = 0.1;
+  wheel.from = {-0.03, 0, 0};
+  wheel.to = {0.03, 0, 0};
+  m.bodies[1].shapes = {wheel};
+  m.joints = {prismatic("up", "ground", "housing", {0, -0.12, 0}, {0, 1, 0}),
+              revolute("spin", "housing", "disc", {0, 0, 0}, {1, 0, 0})};
+  m.joints[1].coordinates[0].drive = Drive{50};
+  const auto sign = [&] {
+    Bounds all;
+    for (const Instance& i : build_scene(m, {}).instances)
+      if (i.role == Role::drive) all.add(instance_bounds(i));
+    return all;
+  };
+  CHECK(sign().upper.y() > 0.1); // round it
+  // In a block it stands before that.
+  wheel.type = ShapeType::box;
+  wheel.size = {0.06, 0.2, 0.2};
+  wheel.at = Vec3(0, 0, 0);
+  m.bodies[1].shapes = {wheel};
+  CHECK(sign().lower.x() > 0.03);
+}
+
 TEST_CASE("parts move with the poses and keep their size") {
   const Mechanism m = governor();
   std::vector<Pose> poses = drawn_poses(m);
