@@ -65,8 +65,10 @@ class Collector {
   }
 
   void drives() {
-    for (const DriveTorque& t : solution_.drive_torques)
-      along_coordinate(LoadKind::drive, t.joint, t.index, t.value);
+    for (const DriveTorque& t : solution_.drive_torques) {
+      along_coordinate(LoadKind::drive, t.joint, t.index, given_by(t));
+      along_coordinate(LoadKind::applied, t.joint, t.index, given_by_load(t));
+    }
   }
 
   // What springs and stops of joints exert along their coordinates.
@@ -192,6 +194,11 @@ class Collector {
     return force;
   }
 
+  // Of a drive by torque, what it gives and what its load does, which in the steady state often leave
+  // nothing.
+  static double given_by(const DriveTorque& t) { return t.given ? t.given->torque : t.value; }
+  static double given_by_load(const DriveTorque& t) { return t.given ? t.value - t.given->torque : 0; }
+
   // What acts along a coordinate of a hinge or slide, whose guide itself does nothing there.
   struct Acting {
     LoadKind kind = LoadKind::drive;
@@ -205,8 +212,11 @@ class Collector {
       acting_[j].push_back({index, {kind, value, part_at(PartKind::joint, of)}});
     };
     for (const DriveTorque& t : solution_.drive_torques)
-      if (const auto at = joints_.find(t.joint); at != joints_.end())
-        add_at(at->second, t.index, LoadKind::drive, t.value, at->second);
+      if (const auto at = joints_.find(t.joint); at != joints_.end()) {
+        add_at(at->second, t.index, LoadKind::drive, given_by(t), at->second);
+        if (const double load = given_by_load(t); load != 0)
+          add_at(at->second, t.index, LoadKind::applied, load, at->second);
+      }
     for (const CoordinateSolution& c : solution_.coordinates)
       if (const auto at = joints_.find(c.joint); at != joints_.end())
         add_at(at->second, c.index, LoadKind::spring, spring_force(c), at->second);
@@ -255,7 +265,9 @@ class Collector {
       Vec3& vector = along.angle ? torque : force;
       const double whole = vector.dot(axis) * sign;
       for (const Acting& each : acting_along(j, static_cast<int>(i), whole)) {
-        if (body_ < 0 && (each.kind == LoadKind::drive || each.kind == LoadKind::spring)) continue;
+        if (body_ < 0 &&
+            (each.kind == LoadKind::drive || each.kind == LoadKind::applied || each.kind == LoadKind::spring))
+          continue;
         add(each.kind, along.angle, at, sign * each.value * axis, each.part);
       }
       if (body_ >= 0) vector -= sign * whole * axis;

@@ -38,8 +38,9 @@ std::optional<Quat> common_turn(const Mechanism& mechanism, const Solution& solu
 // Of a steady state and how its bodies turn (both at the drawn phase); the assembly has its poses, turned by
 // `turn` since then.
 //   body < 0: of the mechanism. What each joint's parent exerts on its child, and each bearing on its second
-//     body; of the former, what drives, springs and stops, dampers, friction and gears exert along the
-//     joints' coordinates; springs between bodies, on both; the air; inertial loads.
+//     body; of the former, what drives (and, as applied, the loads against them), springs and stops, dampers,
+//     friction and gears exert along the joints' coordinates; springs between bodies, on both; the air;
+//     inertial loads.
 //   a body: its free-body diagram, which is complete: its forces, -m a of the mass centre included, add up to
 //     zero, and so do their moments with the couples, -d(I w)/dt included (d'Alembert). What acts along the
 //     coordinates of hinges and slides is told by itself there, and is no part of their reactions.

@@ -230,6 +230,34 @@ TEST_CASE("of a geared wheel drive, mesh and damper are told one by one") {
   CHECK(worst_of(steady, steady.solution.poses, Quat::Identity()) < 1e-9);
 }
 
+TEST_CASE("of a drive by torque what it gives and its load are told, though they leave nothing") {
+  const Steady clutch = solved(shipped("centrifugal_clutch"));
+  const auto& [mechanism, solution, turning] = clutch;
+  const Assembly assembly(mechanism, solution.poses);
+  for (const char* name : {"motor", "drum"}) {
+    CAPTURE(name);
+    const auto of = std::ranges::find(solution.drive_torques, name, &DriveTorque::joint);
+    REQUIRE((of != solution.drive_torques.end() && of->given));
+    REQUIRE(of->given->torque > 0.1);
+    REQUIRE(std::abs(of->value) < 1e-6 * of->given->torque);
+    const auto joint = static_cast<std::size_t>(joint_index(mechanism, name));
+    const int child = assembly.joint_bodies[joint][1];
+    for (const int body : {-1, child}) {
+      const std::vector<Load> loads = loads_of(assembly, solution, turning, body);
+      const auto along = [&](LoadKind kind) {
+        double sum = 0;
+        for (const Load& load : loads)
+          if (load.kind == kind && load.moment &&
+              load.part == PartId{PartKind::joint, static_cast<int>(joint)})
+            sum += load.vector.dot(mechanism.joints[joint].axis.normalized());
+        return sum;
+      };
+      CHECK(along(LoadKind::drive) == Approx(of->given->torque));
+      CHECK(along(LoadKind::applied) == Approx(-of->given->load));
+    }
+  }
+}
+
 TEST_CASE("bearings are parts of the diagram, of what they hold and of what holds them") {
   const Steady steady = solved(parse_scene(R"({"flyball": 1, "name": "On a foot", "gravity": [0, -9.8, 0],
     "bodies": [

@@ -43,7 +43,7 @@ std::string long_load_name(const Mechanism& mechanism, const Load& load) {
   case LoadKind::damper: return "Damper or friction of " + name;
   case LoadKind::gear: return "Mesh of " + name;
   case LoadKind::weight: return "Weight of " + name;
-  case LoadKind::applied: return name;
+  case LoadKind::applied: return load.part.kind == PartKind::joint ? "Load on " + name : name;
   case LoadKind::air: return "Air on " + name;
   case LoadKind::inertia: return "Inertial load of " + name;
   }
@@ -57,6 +57,7 @@ std::string short_load_name(const Mechanism& mechanism, const Load& load) {
   if (load.part.kind == PartKind::joint) {
     if (load.kind == LoadKind::drive) return "drive of " + load_part_name(mechanism, load);
     if (load.kind == LoadKind::spring) return "spring of " + load_part_name(mechanism, load);
+    if (load.kind == LoadKind::applied) return "load on " + load_part_name(mechanism, load);
     if (load.kind == LoadKind::damper) return "damper of " + load_part_name(mechanism, load);
   }
   return load_part_name(mechanism, load);

@@ -46,7 +46,7 @@ const char* load_help(LoadKind kind, bool moment, bool diagram) {
                : "What gears, belts, racks and screws exert along coordinates, on the joint's child; part of "
                  "the reactions";
   case LoadKind::weight: return "Mass times gravity, at the mass centre";
-  case LoadKind::applied: return "Forces and torques that are given";
+  case LoadKind::applied: return "Forces and torques that are given, and loads against drives";
   case LoadKind::air: return "What the air exerts";
   case LoadKind::inertia:
     return moment ? "Minus the rate of the angular momentum about the mass centre"
