@@ -192,10 +192,9 @@ void ribbon_choice(Session& session, Ui& ui) {
   const auto shown = shown_ribbon(session);
   const auto empty = [](const RibbonPoint& point) { return point.extents.empty(); };
   if (!shown || !std::ranges::all_of(shown->result.points, empty)) return;
-  paragraph(
-      "No band is drawn here: friction holds nothing of this curve's states, they are unstable, or it holds "
-      "them at any place, which the results tell.",
-      colors_of(ui).dim);
+  paragraph("No band is drawn here: the states are singular, or friction holds them at any place, which the "
+            "results tell.",
+            colors_of(ui).dim);
   note_widget(ui.widgets, "response/ribbon/none");
 }
 
