@@ -57,11 +57,7 @@ class Diagram {
       from_drawn_pose();
       off_crossings(true);
       beside_singular_loops();
-      if (options_.all)
-        for (double value : values_to_search()) {
-          if (options_.publish && !out_.branches.empty()) options_.publish(so_far());
-          from_all_equilibria(value);
-        }
+      if (options_.all) from_all_equilibria();
     } catch (const Interrupted&) {
       if (out_.branches.empty()) out_.message = "Cancelled.";
     }
@@ -107,7 +103,7 @@ class Diagram {
            (count > 1 ? " and " + std::to_string(count - 1) + " more points: " : ": ") + first->kinks;
   }
 
-  bool room() const { return static_cast<int>(followed_.size()) < options_.max_branches; }
+  bool room() const { return static_cast<int>(followed_.size()) < room_; }
   bool going() const { return room() && !follower_.cancelled(); }
 
   // At every phase of the drives.
@@ -445,26 +441,56 @@ class Diagram {
     return values;
   }
 
-  // At a value of which a mechanism can be made.
-  void from_all_equilibria(double value) try {
-    if (!going()) return;
+  // Each value has its share of the room, so that the branches of the first leave some; then what is left is
+  // for all.
+  void from_all_equilibria() {
+    const std::vector<double> values = values_to_search();
+    std::vector<std::vector<Unknowns>> left;
+    const int before = static_cast<int>(followed_.size());
+    for (std::size_t i = 0; i < values.size() && before < options_.max_branches; ++i) {
+      const auto part = static_cast<double>(i + 1) / static_cast<double>(values.size());
+      room_ = before + static_cast<int>(part * (options_.max_branches - before));
+      if (options_.publish && !out_.branches.empty()) options_.publish(so_far());
+      left.push_back(follow_from(equilibria_at(values[i]), values[i]));
+    }
+    room_ = options_.max_branches;
+    for (std::size_t i = 0; i < left.size(); ++i)
+      crowded_ = !follow_from(std::move(left[i]), values[i]).empty() || crowded_;
+  }
+
+  // None where no mechanism can be made.
+  std::vector<Unknowns> equilibria_at(double value) try {
+    if (follower_.cancelled()) return {};
     follower_.untie();
     report_progress(options_.progress, "looking for other branches");
     Workspace& w = follower_.workspace();
     const Problem problem = follower_.problem_at(value);
     Eigen::VectorXd drawn;
     drawn_configuration(problem.system, problem.parameters, drawn);
-    const EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
+    EquilibriumList list = find_all_equilibria(problem, drawn, {}, w);
     out_.searched.push_back(value);
     out_.starts += list.report.starts;
-    for (const Unknowns& z : list.states) {
-      if (!going()) return;
-      follower_.problem_at(value);
+    return std::move(list.states);
+  } catch (const SceneError&) {
+    if (mechanism_.parameters.empty() && mechanism_.points.empty()) throw;
+    return {};
+  }
+
+  // Both ways from each of these states at a value that is on no branch yet. Returns those for which there is
+  // no room.
+  std::vector<Unknowns> follow_from(std::vector<Unknowns> states, double value) {
+    for (std::size_t i = 0; i < states.size() && !follower_.cancelled(); ++i) {
+      const Unknowns& z = states[i];
+      const Problem problem = follower_.problem_at(value);
       if (!holds(problem, z)) continue;
       // A family along a direction that nothing resists is no branch.
-      if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) continue;
+      if (!find_stability(factor_at(problem, z, follower_.workspace()), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
       if (!forth || !back || known(*forth)) continue;
+      if (!room()) {
+        states.erase(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(i));
+        return states;
+      }
       add_both_ways(*forth, *back, false, false);
       if (out_.status != Status::converged) {
         out_.message = "Nothing is followed from the drawn pose. " + out_.message;
@@ -472,8 +498,7 @@ class Diagram {
       }
       off_crossings(false);
     }
-  } catch (const SceneError&) {
-    if (mechanism_.parameters.empty() && mechanism_.points.empty()) throw;
+    return {};
   }
 
   // One branch of the two ways from one state.
@@ -509,7 +534,7 @@ class Diagram {
           static_cast<std::size_t>(std::ranges::count(out_.branches, false, &ResponseBranch::connected));
       if (apart > 0) text += ", " + std::to_string(apart) + " of them not connected with the drawn pose's";
       text += ", by a bounded search at " + counted(out_.searched.size(), " value", " values") +
-              " of the parameter; there may be more";
+              " of the parameter; there " + (crowded_ ? "are more, which are not followed" : "may be more");
     }
     if (follower_.cancelled()) text += "; cancelled";
     text += ".";
@@ -523,6 +548,8 @@ class Diagram {
   double from_, to_;
   const BranchOptions& options_;
   BranchFollower follower_;
+  int room_ = options_.max_branches; // for branches, so far
+  bool crowded_ = false;             // there are more than that
   std::vector<FollowedBranch> followed_;
   std::vector<BranchState> crossings_, found_;
   ResponseDiagram out_;

@@ -233,12 +233,16 @@ TEST_CASE("ExtendedBalance: folds by elimination are those by matrices", "[forms
 }
 
 TEST_CASE("fold_curves: a chain's, along a tree, end where matrices have the fold", "[forms]") {
-  const Mechanism m = bench::springy_chain(40, 6, 0.1, 0);
+  // Of the short one more branches than are followed are found at 7 rad/s already; the fold is of one that is
+  // not there yet.
+  const bool is_short = GENERATE(false, true);
+  const Mechanism m = bench::springy_chain(is_short ? 12 : 40, 6, 0.1, 0);
   PlaneOptions options;
   options.max_curves = 1;
   options.all = true;
   options.at = {-standard_gravity};
-  const PlaneCurves plane = fold_curves(m, {speed, 4, 5}, {gravity, -10, -9}, options);
+  const PlaneCurves plane = fold_curves(m, is_short ? PlaneAxis{speed, 7, 10} : PlaneAxis{speed, 4, 5},
+                                        {gravity, -10, -9}, options);
   INFO(plane.message);
   REQUIRE(plane.curves.size() == 1);
   System system = compile(m);
