@@ -11,6 +11,7 @@
 #include "app/ui/widgets/ui_style.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -60,6 +61,48 @@ struct Typist : Robot {
 };
 
 } // namespace
+
+TEST_CASE("by the keyboard the joint tool starts where no joint is yet, rather than on one") {
+  Typist hand;
+  App& app = hand.app;
+  open_document(app.session, Document(shipped("governor")));
+  set_mode(app.session, Mode::build);
+  select(app.session, {});
+  hand.frames(3);
+  const auto nearest_joint = [&] {
+    const WidgetRect view = hand.widget("view");
+    double least = 1e9;
+    for (const Joint& joint : app.session.mechanism().joints)
+      for (const Vec3& point : joint.type == JointType::distance
+                                   ? std::vector<Vec3>{joint.points[0], joint.points[1]}
+                                   : std::vector<Vec3>{joint.at}) {
+        const ImVec2 at = hand.pixel(point);
+        const Vec2 off(app.tool.cursor->x() - static_cast<double>(at.x - view.from.x),
+                       app.tool.cursor->y() - static_cast<double>(at.y - view.from.y));
+        least = std::min(least, off.norm());
+      }
+    return least;
+  };
+  hand.key('J');
+  REQUIRE(app.tool.tool == Tool::joint);
+  REQUIRE(app.tool.cursor);
+  CHECK(nearest_joint() > 4);
+  // Of two bodies that a joint does not join yet it is where they meet, be there another's.
+  hand.key(keys::escape);
+  edit(app.session, "Take the arm off", [](Mechanism& next, Selection&) {
+    std::erase_if(next.joints, [](const Joint& joint) { return joint.name == "arm2"; });
+  });
+  Selection both;
+  both.parts = {{PartKind::body, "spindle"}, {PartKind::body, "ball2"}};
+  select(app.session, both);
+  hand.frames(2);
+  hand.key('J');
+  REQUIRE(app.tool.cursor);
+  const WidgetRect view = hand.widget("view");
+  const ImVec2 hub = hand.pixel(Vec3(0, 0.2, 0));
+  CHECK(app.tool.cursor->x() == Approx(hub.x - view.from.x).margin(3));
+  CHECK(app.tool.cursor->y() == Approx(hub.y - view.from.y).margin(3));
+}
 
 TEST_CASE("a pendulum is built, solved, explored and exported without one event of the mouse") {
   Typist hand;

@@ -1,5 +1,6 @@
 #include "app/ui/tools/tool_cursor.hpp"
 
+#include "app/document/drawn_size.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -10,8 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace flyball {
 
@@ -19,27 +22,41 @@ namespace {
 
 constexpr double aside = 70; // points from one place to the next that may be free
 
-const Instance* solid_of(const SceneList& scene, int body) {
-  const auto found = std::ranges::find_if(scene.instances, [&](const Instance& instance) {
-    return instance.part.kind == PartKind::body && instance.part.index == body;
-  });
-  return found == scene.instances.end() ? nullptr : &*found;
-}
-
-// How far the point is from the second nearest of the bodies: where two meet it is none.
+// How far the point is from the second nearest of the bodies: where two meet it is none. `bodies` in order.
 double distance_to_second(const ViewContext& context, const std::vector<int>& bodies, const Vec3& point) {
   std::array<double, 2> nearest{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  for (const int body : bodies) {
-    const Instance* solid = solid_of(cached_scene(context), body);
-    if (!solid) continue;
-    const double away = std::max(surface_distance(*solid, point), 0.0);
-    if (away < nearest[1]) nearest[1] = away;
-    if (nearest[1] < nearest[0]) std::swap(nearest[0], nearest[1]);
+  int of_nearest = -1;
+  for (const Instance& solid : cached_scene(context).instances) {
+    if (solid.part.kind != PartKind::body) break; // bodies come first
+    if (!std::ranges::binary_search(bodies, solid.part.index)) continue;
+    const double away = std::max(surface_distance(solid, point), 0.0);
+    if (away < nearest[0]) {
+      if (solid.part.index != of_nearest) nearest[1] = nearest[0];
+      nearest[0] = away;
+      of_nearest = solid.part.index;
+    } else if (solid.part.index != of_nearest) {
+      nearest[1] = std::min(nearest[1], away);
+    }
   }
   return nearest[bodies.size() < 2 ? 0 : 1];
 }
 
-// Where a joint, link or force is most likely wanted: the point where the selected bodies meet, or any two.
+// Whether at a point of the drawn pose a joint stands already that joins two of the bodies, or one of them
+// and `ground`.
+bool has_joint(const Mechanism& mechanism, const std::vector<int>& bodies, bool ground, const Vec3& point,
+               double reach) {
+  const auto is_of = [&](const std::string& name) {
+    return name == ground_name ? ground : std::ranges::binary_search(bodies, body_index(mechanism, name));
+  };
+  return std::ranges::any_of(mechanism.joints, [&](const Joint& joint) {
+    if (joint.type == JointType::gear || !std::ranges::all_of(joint.bodies, is_of)) return false;
+    if (joint.type != JointType::distance) return (joint.at - point).norm() < reach;
+    return std::ranges::any_of(joint.points, [&](const Vec3& end) { return (end - point).norm() < reach; });
+  });
+}
+
+// Where a joint, link or force is most likely wanted: the point where the selected bodies meet, or any two; a
+// joint rather where there is none.
 std::optional<Vec3> likely_point(const ViewContext& context) {
   const Mechanism& mechanism = context.session.mechanism();
   std::vector<int> bodies;
@@ -47,16 +64,21 @@ std::optional<Vec3> likely_point(const ViewContext& context) {
     bodies.push_back(body_index(mechanism, name));
   if (context.tool.tool != Tool::joint && context.tool.tool != Tool::bearing && !bodies.empty())
     return mechanism.bodies[static_cast<std::size_t>(bodies.front())].position;
+  const std::size_t selected = bodies.size();
   if (bodies.empty())
     for (int i = 0; i < static_cast<int>(mechanism.bodies.size()); ++i)
       bodies.push_back(i);
+  std::ranges::sort(bodies);
+  const bool ground = selected < 2; // may be meant
   std::optional<Vec3> best;
-  std::tuple<double, bool> least{std::numeric_limits<double>::max(), true};
+  const double reach = 1e-6 * drawn_size(mechanism);
+  std::tuple<bool, double, bool> least{true, std::numeric_limits<double>::max(), true};
   for (const SnapPoint& snap : cached_snap_points(context.session, context.tool)) {
     if (snap.part.kind == PartKind::none) continue;
     // Rather a body's own point than that of a joint that is there already.
-    const std::tuple<double, bool> worth{distance_to_second(context, bodies, snap.point),
-                                         snap.part.kind != PartKind::body};
+    const std::tuple<bool, double, bool> worth{
+        context.tool.tool == Tool::joint && has_joint(mechanism, bodies, ground, snap.point, reach),
+        distance_to_second(context, bodies, snap.point), snap.part.kind != PartKind::body};
     if (worth >= least) continue;
     least = worth;
     best = snap.point;
