@@ -41,7 +41,8 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   });
   if (!all_seen || arrows_seen) return false;
   fit_all(view);
-  view.loads_fit = {camera, camera};
+  const bool again = view.loads_fit && camera == (*view.loads_fit)[1];
+  view.loads_fit = {again ? (*view.loads_fit)[0] : camera, camera};
   return true;
 }
 

@@ -47,7 +47,12 @@ const ShownScene& keep(const Session& session, const ToolState& tool, ShownScene
 
 const ShownScene& show_scene(const Session& session, const ToolState& tool, ViewState& view,
                              const ViewFrame& frame) {
-  return keep(session, tool, view.scene, frame);
+  const bool loads = view.scene.source.loads;
+  const int body = view.scene.source.loads_body;
+  const ShownScene& shown = keep(session, tool, view.scene, frame);
+  // The diagram of another body has arrows of its own.
+  if (loads && shown.source.loads && shown.source.loads_body != body) view.fit_loads = true;
+  return shown;
 }
 
 const ShownScene& show_motion_scene(const Session& session, const ToolState& tool, ViewState& view,

@@ -198,6 +198,40 @@ TEST_CASE("arrows that come are taken into the view, unless a part is looked at"
   CHECK(app.view.camera.distance == before.distance);
 }
 
+TEST_CASE("arrows of a body that is selected later are taken into the view, too") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  app.view.ghost = false;
+  open_document(app.session, Document(shipped("governor_watt")));
+  robot.frames(3);
+  robot.key('F');
+  robot.frames(30, 0.04);
+  app.view.camera.distance *= 0.9;
+  const double drawn_from = app.view.camera.distance;
+  const auto out_of_view = [&] {
+    return std::ranges::count_if(shown_scene(app.context())->arrows.arrows, [&](const LoadArrow& arrow) {
+      const auto at = app.view.camera.project(arrow.to, app.view.size);
+      return !at || at->x() < 0 || at->y() < 0 || at->x() > app.view.size.width ||
+             at->y() > app.view.size.height;
+    });
+  };
+  robot.key('A');
+  robot.frames(30, 0.04);
+  for (const char* body : {"ball1", "ball2", "sleeve"}) {
+    CAPTURE(body);
+    REQUIRE(body_index(app.session.mechanism(), body) >= 0);
+    select(app.session, {{{PartKind::body, body}}});
+    robot.frames(30, 0.04);
+    CHECK(out_of_view() == 0);
+  }
+  CHECK(app.view.camera.distance > drawn_from);
+  select(app.session, {});
+  robot.frames(30, 0.04);
+  robot.key('A');
+  robot.frames(30, 0.04);
+  CHECK(app.view.camera.distance == Approx(drawn_from));
+}
+
 TEST_CASE("an arrow that is pointed at tells what it is") {
   Robot robot({1280, 900});
   App& app = robot.app;
