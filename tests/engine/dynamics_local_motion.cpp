@@ -38,7 +38,7 @@ struct Local {
       if (!c.dependent) start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
     Eigen::VectorXd q, u;
     find_start(start, model, q, u);
-    motion.emplace(model, q, u, 5);
+    motion.emplace(model, q, u, 5, false);
   }
   Eigen::VectorXd rate(const Eigen::VectorXd& x) {
     Eigen::VectorXd out;
