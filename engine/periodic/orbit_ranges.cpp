@@ -357,6 +357,7 @@ void fill_ranges(const Run& run, PeriodicState& out) {
         for (double& value : values)
           value -= track.value.front() - std::remainder(track.value.front(), 2 * std::numbers::pi);
       c.range = range_without(std::move(values), c.advance);
+      c.range.error += rounding * std::abs(c.advance); // of what was taken off
       c.rate = range_over_period(track.rate);
     }
     out.coordinates.push_back(std::move(c));

@@ -332,6 +332,26 @@ TEST_CASE("Growth within the error of the multipliers is not told") {
   CHECK(with_damping(-1e-6).stable == false);
 }
 
+TEST_CASE("What turns evenly in a Scotch yoke is known to stay beside its even turn but for rounding") {
+  const double r = 0.15, speed = 10;
+  Mechanism m;
+  m.bodies = {body("crank", 1, {0, 0, 0}, {0.01, 0.01, 0.01}), body("block", 1, {r, 0, 0}),
+              body("yoke", 1, {r, 0, 0})};
+  m.joints = {driven(revolute("crankshaft", "ground", "crank", {0, 0, 0}), speed),
+              revolute("pin", "crank", "block", {r, 0, 0}),
+              prismatic("slot", "block", "yoke", {r, 0, 0}, {0, 1, 0}),
+              prismatic("slide", "ground", "yoke", {r, 0.3, 0}, {1, 0, 0})};
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  const PeriodicCoordinate& pin = coordinate(s, "pin");
+  CHECK_THAT(pin.advance, WithinAbs(-2 * pi, 1e-11));
+  CHECK(pin.range.error < 1e-9);
+  for (const double exact_zero : {pin.range.mean, pin.range.least, pin.range.most})
+    CHECK(std::abs(exact_zero) <= pin.range.error);
+  CHECK_THAT(coordinate(s, "slide").range.least, WithinAbs(-2 * r, 1e-9));
+}
+
 TEST_CASE("A Hooke joint turns its shaft unevenly by the closed form") {
   const double angle = 0.5, inertia = 0.3, speed = 20;
   const Vec3 out(std::cos(angle), std::sin(angle), 0);
