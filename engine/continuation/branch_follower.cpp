@@ -384,6 +384,23 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
   Described now = describe(state);
   out.points.push_back(now.point);
   out.states.push_back(state);
+  // Where branches nearly cross a long step leaps from one to the other: there the determinant, which
+  // vanishes at a crossing, changes its sign at once.
+  const auto leaps = [&](const BranchState& next, double length) {
+    constexpr double at_once = 0.05, shortest = 1. / 64; // of the larger at the ends; of the largest step
+    if (families_ || !(state.determinant * next.determinant < 0)) return false;
+    if (length < shortest * options_.largest_step) return false;
+    try {
+      const BranchState at = locate(state, 0, state.determinant, length, next.determinant, next,
+                                    [](const BranchState& s, double) { return s.determinant; })
+                                 .first;
+      return std::abs(at.determinant) >
+             at_once * std::max(std::abs(state.determinant), std::abs(next.determinant));
+    } catch (const InfiniteRate&) { // at a place between them
+    } catch (const SceneError&) {
+    }
+    return false;
+  };
   double length = options_.largest_step / 4;
   out.end = "the largest number of points";
   for (int i = 1; i < options_.max_points; ++i) {
@@ -430,6 +447,10 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
         out.end = impossible;
       }
       break;
+    }
+    if (straight && leaps(next, length)) {
+      length /= 2;
+      continue;
     }
     const double p = position(next.parameter);
     if (p > 1 || p < 0) {

@@ -1,5 +1,6 @@
 // Branches and lists of equilibria against closed forms and the reference values of the conical pendulum and
 // the chain.
+#include "tests/bench/large_scenes.hpp"
 #include "tests/engine/equilibrium_mechanisms.hpp"
 #include "tests/support/campaign.hpp"
 
@@ -584,4 +585,28 @@ TEST_CASE("a diagram that begins at the scene's own number has the state that so
   CHECK(std::ranges::any_of(d.branches, [&](const ResponseBranch& branch) {
     return scaled_distance(branch.points.front().coordinates, s.coordinates) < 1e-9;
   }));
+}
+
+TEST_CASE("branches that nearly cross are followed one by one, whatever the step") {
+  // Springs that are slack in the drawn pose, a little aside, hold the fork of the hanging chain apart:
+  // nothing crosses. By the smallest steps, which pass between.
+  const Mechanism m = bench::springy_chain(GENERATE(2, 4, 12), 6, 0.1, 0);
+  BranchOptions options;
+  options.eigenvalues = false;
+  options.largest_step = 0.002;
+  const ResponseDiagram fine = follow_branches(m, "joints.spin.drive.speed", 3, 10, options);
+  REQUIRE(fine.branches.size() == 1);
+  CHECK(fine.special.empty());
+  for (const double step : {0.1, 0.05, 0.02, 0.01}) {
+    CAPTURE(step);
+    options.largest_step = step;
+    const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 3, 10, options);
+    REQUIRE(d.branches.size() == 1);
+    CHECK(d.special.empty());
+    const ResponsePoint &end = d.branches[0].points.back(), &reference = fine.branches[0].points.back();
+    CHECK(end.parameter == 10);
+    REQUIRE(end.coordinates.size() == reference.coordinates.size());
+    for (std::size_t i = 0; i < end.coordinates.size(); ++i)
+      CHECK(std::abs(end.coordinates[i].value - reference.coordinates[i].value) < 1e-9);
+  }
 }
