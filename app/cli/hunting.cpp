@@ -135,6 +135,9 @@ void add_hunting(CLI::App& app, Ending& ending) {
   command->footer("Example: flyball hunting governor_engine.json --vary joints.slide.damping=5:60 --vary "
                   "parameters.gain=1000:20000");
   command->callback([options, &ending] {
+    if (options->vary.size() != 2) // the parser takes any number of an option with one value each
+      throw SceneError("--vary", fmt::format("expected two numbers, address=from:to each, found {}",
+                                             options->vary.size()));
     check_outputs(options->scene.file, {{"--csv", options->csv}, {"--svg", options->svg}});
     std::optional<ProgressBar> progress(std::in_place, "reading");
     const Mechanism mechanism = options->scene.load();

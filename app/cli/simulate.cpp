@@ -31,6 +31,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <string_view>
 
 namespace flyball::cli {
 namespace {
@@ -174,8 +175,10 @@ SimulationState read_state(const std::filesystem::path& file) {
                                    c.at("value").get<double>(), c.at("rate").get<double>()});
     return state;
   } catch (const nlohmann::json::exception& error) {
-    throw SceneError(file.string(),
-                     std::string("expected a state as --save-state writes it: ") + error.what());
+    const std::string_view said = error.what(); // begins with the library's name of it, in brackets
+    const std::size_t name = said.find("] ");
+    throw SceneError(file.string(), fmt::format("expected a state as --save-state writes it: {}",
+                                                said.substr(name == said.npos ? 0 : name + 2)));
   }
 }
 

@@ -416,6 +416,11 @@ def hunting(folder):
         check(f"both tell the same of it: {one}, {two}",
               one["loss"] == two["loss"] == "hard" and abs(one["lyapunov"] / two["lyapunov"] - 1) < 1e-6 and
               abs(one["frequency_rad_s"] / two["frequency_rad_s"] - 1) < 1e-9)
+    for count in (1, 3):
+        numbers = ["joints.slide.damping=5:60", "parameters.gain=7000:8000", "joints.spin.drive.load=0:1"][:count]
+        code, _, error = run("hunting", engine, *(word for number in numbers for word in ("--vary", number)))
+        check(f"two numbers make its plane, not {count}: {code} {error!r}",
+              code == 2 and error.startswith("flyball: --vary: expected two numbers"))
 
 
 def slipping(folder):
