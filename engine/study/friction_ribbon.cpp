@@ -17,7 +17,7 @@ namespace {
 constexpr double line_error = 0.01;      // see friction_ribbon_at_bends()
 constexpr std::size_t most_points = 200; // of it
 constexpr double meeting_error = 1e-3;   // of the way between two places
-constexpr double edge_jump = 0.1;        // of a band's height
+constexpr double least_jump = 0.1;       // of a band's height
 
 // Lower ones first.
 double edge(const RibbonPoint& point, std::size_t e) {
@@ -92,15 +92,18 @@ bool bends(const RibbonPoint& before, const RibbonPoint& point, const RibbonPoin
   return false;
 }
 
-// Whether another band may meet these between two points: past a fold, where their edges jump.
-bool bands_meet(const RibbonPoint& a, const RibbonPoint& b) {
-  if ((!a.folds && !b.folds) || a.extents.size() != b.extents.size()) return false;
+// How far edges go from one point to the next, in heights of the bands, the most of all; 0 where no band
+// passes a fold, past which alone another band may meet it.
+double edge_jump(const RibbonPoint& a, const RibbonPoint& b) {
+  double most = 0;
+  if ((!a.folds && !b.folds) || a.extents.size() != b.extents.size()) return most;
   for (std::size_t i = 0; i < a.extents.size(); ++i) {
     const BandExtent &from = a.extents[i], &to = b.extents[i];
-    const double least = edge_jump * std::min(from.high - from.low, to.high - to.low);
-    if (std::abs(to.low - from.low) > least || std::abs(to.high - from.high) > least) return true;
+    const double height = std::min(from.high - from.low, to.high - to.low);
+    const double jump = std::max(std::abs(to.low - from.low), std::abs(to.high - from.high));
+    if (jump > 0) most = std::max(most, jump / height);
   }
-  return false;
+  return most;
 }
 
 } // namespace
@@ -122,16 +125,17 @@ void add_meetings(const Mechanism& mechanism, const std::string& address, std::s
                   std::vector<RibbonPoint>& points, const std::atomic<bool>* cancel) {
   std::vector<RibbonPoint> out;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0 && bands_meet(out.back(), points[i]) && out.back().number != points[i].number) {
+    if (i > 0 && out.back().number != points[i].number) {
       RibbonPoint before = out.back(), after = points[i];
       const double close = meeting_error * std::abs(after.number - before.number);
-      bool jumps = true;
+      bool jumps = edge_jump(before, after) > least_jump;
       while (jumps && std::abs(after.number - before.number) > close && !is_cancelled(cancel)) {
         const double middle = std::midpoint(before.number, after.number);
         RibbonPoint there = ribbon_point(mechanism, address, {middle, places[i].start}, cancel);
-        const bool earlier = bands_meet(before, there);
-        jumps = earlier || bands_meet(there, after);
-        (earlier ? after : before) = std::move(there);
+        if (there.extents.empty()) break; // as it may be just where they touch
+        const double first = edge_jump(before, there), second = edge_jump(there, after);
+        jumps = std::max(first, second) > least_jump;
+        (first > second ? after : before) = std::move(there);
       }
       if (jumps) {
         after.meets = true;
