@@ -332,6 +332,11 @@ SimulationOptions simulation_of(const SimulateCommand& options, const Mechanism&
   if (!options.from_state.empty()) {
     wanted.start = Start::state;
     wanted.state = read_state(options.from_state);
+    constexpr double farthest = 1e9; // durations: beyond, steps are lost in the rounding of the time
+    if (!(std::abs(wanted.state.time) <= farthest * wanted.duration))
+      throw SceneError(options.from_state, fmt::format("expected a time of at most {} s for a motion of {} s",
+                                                       rounded_text(farthest * wanted.duration, 4),
+                                                       rounded_text(wanted.duration, 4)));
   }
   if (wanted.duration * wanted.rate > 2e7)
     throw SceneError("--duration", "expected at most 20000000 samples; lower --rate");

@@ -423,6 +423,22 @@ def hunting(folder):
               code == 2 and error.startswith("flyball: --vary: expected two numbers"))
 
 
+def states(folder):
+    """A motion goes on from a state that was saved; what is none, or too far off in time, is refused."""
+    state = folder / "state.json"
+    run("simulate", SCENE, "--duration", "0.5", "--save-state", state)
+    whole = json.loads(run("simulate", SCENE, "--duration", "1", "--json")[1])
+    rest = json.loads(run("simulate", SCENE, "--duration", "0.5", "--from-state", state, "--json")[1])
+    check(f"it goes on: {whole['coordinates']} {rest['coordinates']}", abs(rest["time"] - 1) < 1e-12 and all(
+        abs(value - rest["coordinates"][name]) < 1e-6 for name, value in whole["coordinates"].items()))
+    told = json.loads(state.read_text())
+    for broken, words in (({**told, "time": 1e300}, "expected a time of at most"),
+                          ({"coordinates": []}, "as --save-state writes it: key 'time' not found")):
+        state.write_text(json.dumps(broken))
+        code, _, error = run("simulate", SCENE, "--duration", "0.5", "--from-state", state)
+        check(f"no state: {code} {error}", code == 2 and words in error and "exception" not in error)
+
+
 def slipping(folder):
     """A disc on a shaft that the air brakes by 0.09 N m s: friction of 1.8 N m holds it up to 20 rad/s, then slips."""
     body = {"mass": 1, "position": [0, 0, 0], "inertia": [0.01, 0.01, 0.02]}
@@ -484,7 +500,7 @@ with tempfile.TemporaryDirectory() as name:
     for part in (reasons, periodic, slipping, control_characters, tables,
                  names_of_columns, own_scene, limits, repetitions, reports, resonance,
                  units_of_ranges, modes_over_other_numbers, critical_speeds_over_an_expression, what_turns_in_a_sweep,
-                 hunting, loads, parts):
+                 hunting, states, loads, parts):
         home = pathlib.Path(name) / part.__name__
         home.mkdir()
         part(home)
