@@ -18,7 +18,7 @@ FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRib
     found.stretches.push_back({found.points.size(), points.size()});
     found.points.insert(found.points.end(), points.begin(), points.end());
   };
-  for (const BandRun& run : band_runs(*request.curve, BandOf::any)) {
+  for (const BandRun& run : band_runs(*request.curve, BandOf::not_unstable)) {
     std::vector<RibbonPlace> places;
     for (const ResponsePoint* state : run.states)
       places.push_back({state->parameter, start_values(state->coordinates)});

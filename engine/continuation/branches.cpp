@@ -478,7 +478,7 @@ class Diagram {
 
   // Both ways from each of these states at a value that is on no branch yet. Returns those for which there is
   // no room.
-  std::vector<Unknowns> follow_from(std::vector<Unknowns> states, double value) {
+  std::vector<Unknowns> follow_from(std::vector<Unknowns> states, double value) try {
     for (std::size_t i = 0; i < states.size() && !follower_.cancelled(); ++i) {
       const Unknowns& z = states[i];
       const Problem problem = follower_.problem_at(value);
@@ -498,6 +498,9 @@ class Diagram {
       }
       off_crossings(false);
     }
+    return {};
+  } catch (const SceneError&) {
+    if (mechanism_.parameters.empty() && mechanism_.points.empty()) throw;
     return {};
   }
 

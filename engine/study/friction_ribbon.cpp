@@ -18,6 +18,9 @@ constexpr double line_error = 0.01;      // see friction_ribbon_at_bends()
 constexpr std::size_t most_points = 200; // of it
 constexpr double meeting_error = 1e-3;   // of the way between two places
 constexpr double least_jump = 0.1;       // of a band's height
+constexpr double height_of_rounding = 1e-9;
+constexpr double persists =
+    0.3; // of a jump, where the way between two points is halved: what is steep halves
 
 // Lower ones first.
 double edge(const RibbonPoint& point, std::size_t e) {
@@ -92,17 +95,35 @@ bool bends(const RibbonPoint& before, const RibbonPoint& point, const RibbonPoin
   return false;
 }
 
-// How far edges go from one point to the next, in heights of the bands, the most of all; 0 where no band
-// passes a fold, past which alone another band may meet it.
-double edge_jump(const RibbonPoint& a, const RibbonPoint& b) {
-  double most = 0;
-  if ((!a.folds && !b.folds) || a.extents.size() != b.extents.size()) return most;
-  for (std::size_t i = 0; i < a.extents.size(); ++i) {
-    const BandExtent &from = a.extents[i], &to = b.extents[i];
+// How far each edge goes from one point to the next, lower ones first; none where no band passes a fold, past
+// which alone another band may meet it.
+std::vector<double> edge_steps(const RibbonPoint& a, const RibbonPoint& b) {
+  std::vector<double> out;
+  if ((!a.folds && !b.folds) || a.extents.size() != b.extents.size()) return out;
+  for (std::size_t e = 0; e < 2 * a.extents.size(); ++e)
+    out.push_back(std::abs(edge(b, e) - edge(a, e)));
+  return out;
+}
+
+// The same of edges that may jump there, others zero: of bands with a height that is no rounding.
+std::vector<double> edge_jumps(const RibbonPoint& a, const RibbonPoint& b) {
+  std::vector<double> out = edge_steps(a, b);
+  for (std::size_t e = 0; e < out.size(); ++e) {
+    const std::size_t n = a.extents.size();
+    const BandExtent &from = a.extents[e % n], &to = b.extents[e % n];
     const double height = std::min(from.high - from.low, to.high - to.low);
-    const double jump = std::max(std::abs(to.low - from.low), std::abs(to.high - from.high));
-    if (jump > 0) most = std::max(most, jump / height);
+    const double size = std::max(std::abs(from.low), std::abs(from.high));
+    if (!(height > height_of_rounding * size) || !(out[e] > least_jump * height)) out[e] = 0;
   }
+  return out;
+}
+
+// The largest step of those edges, in parts of what they are at first.
+double largest_part(const RibbonPoint& a, const RibbonPoint& b, std::span<const double> jumps) {
+  const std::vector<double> steps = edge_steps(a, b);
+  double most = 0;
+  for (std::size_t e = 0; e < steps.size(); ++e)
+    if (jumps[e] > 0) most = std::max(most, steps[e] / jumps[e]);
   return most;
 }
 
@@ -128,16 +149,17 @@ void add_meetings(const Mechanism& mechanism, const std::string& address, std::s
     if (i > 0 && out.back().number != points[i].number) {
       RibbonPoint before = out.back(), after = points[i];
       const double close = meeting_error * std::abs(after.number - before.number);
-      bool jumps = edge_jump(before, after) > least_jump;
-      while (jumps && std::abs(after.number - before.number) > close && !is_cancelled(cancel)) {
+      const std::vector<double> jumps = edge_jumps(before, after);
+      bool meet = std::ranges::any_of(jumps, [](double jump) { return jump > 0; });
+      while (meet && std::abs(after.number - before.number) > close && !is_cancelled(cancel)) {
         const double middle = std::midpoint(before.number, after.number);
         RibbonPoint there = ribbon_point(mechanism, address, {middle, places[i].start}, cancel);
         if (there.extents.empty()) break; // as it may be just where they touch
-        const double first = edge_jump(before, there), second = edge_jump(there, after);
-        jumps = std::max(first, second) > least_jump;
+        const double first = largest_part(before, there, jumps), second = largest_part(there, after, jumps);
+        meet = std::max(first, second) > persists;
         (first > second ? after : before) = std::move(there);
       }
-      if (jumps) {
+      if (meet) {
         after.meets = true;
         out.push_back(std::move(before));
         out.push_back(std::move(after));
@@ -216,7 +238,7 @@ std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std
   std::vector<const BandExtent*> extents;
   for (std::size_t i = 0; i < points.size(); ++i) {
     extents.push_back(find_extent(points[i], name));
-    if (!extents.back() || !extents.back()->stands) return {};
+    if (!extents.back() || !extents.back()->stands || points[i].folds) return {};
     if (i > 1 && (points[i].number - points[i - 1].number) * (points[1].number - points[0].number) <= 0)
       return {};
   }

@@ -66,7 +66,7 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
 // of such a joint stands as the varied number goes slowly. It stays until an end of the band comes to it, and
 // goes on with that (a play operator: Krasnoselskii and Pokrovskii, Systems with Hysteresis, 1989). Of
 // several motions what was found of any coordinate or measure (RibbonPoint::slow). By point; empty where the
-// points have no such band, or go back in the number, as beyond a fold.
+// points have no such band, or one that passes folds, where it jumps, and where they go back in the number.
 std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name);
 
 // Null where it has none of this name.

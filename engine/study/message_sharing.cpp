@@ -23,7 +23,7 @@ constexpr int in_hand = 3; // blocks that a process has asked for: the one being
 std::string message(Kind kind, const IndexBlock& block = {}, std::string_view bytes = {}) {
   std::string out(1 + sizeof block + bytes.size(), static_cast<char>(kind));
   std::memcpy(out.data() + 1, &block, sizeof block);
-  std::memcpy(out.data() + 1 + sizeof block, bytes.data(), bytes.size());
+  bytes.copy(out.data() + 1 + sizeof block, bytes.size());
   return out;
 }
 

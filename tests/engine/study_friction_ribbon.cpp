@@ -157,6 +157,55 @@ TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band 
   CHECK(ribbon_tips(pendulum_on_shaft(0.5, true), shaft_speed, 2.8, 4.2, diagram).empty());
 }
 
+TEST_CASE("a bead that snaps through has tips up to the folds at friction's limit") {
+  const double limit = 2;
+  const bool measured = GENERATE(false, true); // what does not depend on friction has a band without height
+  const Mechanism m = read_scene(
+      R"({"flyball": 1, "name": "Snap", "gravity": [0, 0, 0], "parameters": {"F": {"value": -40, "unit": "N"}},
+    "bodies": [{"name": "bead", "mass": 1, "position": [-1, 0, 0]}],
+    "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "bead"], "at": [0, 0, 0],
+      "axis": [1, 0, 0], "damping": 1, "friction": {"limit": 2}}], )" +
+      std::string(measured ? R"("measures": {"only": {"value": "=2*F", "unit": "N"}}, )" : "") +
+      R"("forces": [{"name": "sp", "type": "spring", "bodies": ["ground", "bead"], "points": [[0, 0.5, 0], [-1, 0, 0]],
+      "stiffness": 100, "free_length": 1},
+      {"name": "push", "type": "force", "body": "bead", "at": [-1, 0, 0], "vector": ["=F", 0, 0]}]})");
+  const auto spring = [](double x) { return 100 * (1 - 1 / std::hypot(x, 0.5)) * x; }; // at x, N
+  double fold = 0;
+  for (double x = -1; x < 0; x += 1e-5)
+    fold = std::max(fold, spring(x));
+  const double from = GENERATE(-40., 40.);
+  const ResponseDiagram diagram = follow_branches(m, "parameters.F", from, -from);
+  const std::vector<std::vector<RibbonPoint>> tips = ribbon_tips(m, "parameters.F", from, -from, diagram);
+  REQUIRE(tips.size() == 2);
+  for (const std::vector<RibbonPoint>& tip : tips) {
+    const double sense = tip.back().number > 0 ? 1 : -1;
+    CAPTURE(from, sense);
+    CHECK(sense * tip.front().number < fold);
+    CHECK_THAT(sense * tip.back().number, WithinAbs(fold + limit, 0.02));
+    for (std::size_t i = 0; i < tip.size(); ++i) {
+      const BandExtent& slide = *find_extent(tip[i], "slide");
+      if (i > 0) CHECK(sense * (tip[i].number - tip[i - 1].number) > 0);
+      CHECK(std::max(sense * (slide.low - 1), sense * (slide.high - 1)) < 0); // not the sheet beyond
+      const double middle = 0.5 * (slide.low + slide.high) - 1;               // drawn at -1
+      CHECK(sense * (tip[i].number - spring(middle)) < limit);
+      for (const double end : {slide.low, slide.high})
+        CHECK_THAT(tip[i].number - spring(end - 1),
+                   WithinAbs(sense * limit,
+                             i + 1 < tip.size() ? 1e-6 : 1e-3)); // at the end both edges are nearly one
+    }
+  }
+  // What is cancelled is missing.
+  const std::atomic<bool> cancel = true;
+  CHECK(ribbon_tips(m, "parameters.F", from, -from, diagram, &cancel).empty());
+  // Along a branch through folds no slow way is told, and few meetings are.
+  const std::vector<RibbonPlace> places = ribbon_places(diagram.branches.front());
+  std::vector<RibbonPoint> ribbon = friction_ribbon(m, "parameters.F", places);
+  REQUIRE(std::ranges::any_of(ribbon, &RibbonPoint::folds));
+  CHECK(hysteresis(ribbon, "slide").empty());
+  add_meetings(m, "parameters.F", places, ribbon);
+  CHECK(std::ranges::count(ribbon, true, &RibbonPoint::meets) <= 4);
+}
+
 TEST_CASE("a speed that rises and falls slowly leads a bead round a loop") {
   const double m = 0.5, k = 400, r0 = 0.2, limit = 1.25;
   const auto edge = [&](double n, double sense) { return (k * r0 + sense * limit) / (k - m * n * n); };

@@ -192,8 +192,8 @@ void ribbon_choice(Session& session, Ui& ui) {
   const auto shown = shown_ribbon(session);
   const auto empty = [](const RibbonPoint& point) { return point.extents.empty(); };
   if (!shown || !std::ranges::all_of(shown->result.points, empty)) return;
-  paragraph("No band is drawn here: the states are singular, or friction holds them at any place, which the "
-            "results tell.",
+  paragraph("No band is drawn here: the states are unstable, the balance folds where several joints have "
+            "friction, or friction holds them at any place, as the results tell.",
             colors_of(ui).dim);
   note_widget(ui.widgets, "response/ribbon/none");
 }
