@@ -196,7 +196,7 @@ class Diagram {
           : turned
               ? "The steady state stands turned against the drawn pose, and at other values otherwise: it is "
                 "not followed."
-              : failure_message({follower_.mechanism(), problem, found, existence, none}, w) +
+              : failure_message({follower_.mechanism(), problem, found, existence, none}, w).text +
                     (others ? " " + message(*others, found.status) : "");
       out_.message =
           "At " + address_ + " = " + rounded_text(from_, 6) + (unit.empty() ? "" : " " + unit) + ": " + why;

@@ -213,8 +213,8 @@ void start_at_equilibrium(const SimulationOptions& options, MotionModel& model, 
   if (!steady.holds) {
     const Stability unknown;
     const ReportInput input{model.mechanism, problem, steady.found, steady.existence, unknown};
-    throw SceneError("",
-                     "there is no steady state to start from: " + failure_message(input, steady.elsewhere()));
+    throw SceneError("", "there is no steady state to start from: " +
+                             failure_message(input, steady.elsewhere()).text);
   }
   q = steady.found.z.q;
 }

@@ -280,17 +280,19 @@ struct Analysis::State {
   // Why there is no steady state.
   void explain(const Problem& problem, const Stability& stability, Solution& out) {
     const ReportInput input{*mechanism, problem, steady.found, steady.existence, stability};
-    out.message = failure_message(input, steady.elsewhere());
+    FailureMessage why = failure_message(input, steady.elsewhere());
+    out.message = std::move(why.text);
     if (steady.others) out.message += " " + message(*steady.others, steady.found.status);
     out.residual = steady.history.empty() ? 0 : steady.history.back();
     explain_unbounded(problem, *mechanism, steady.start, steady.elsewhere(), out);
     out.weight_turns = out.status == Status::no_steady_state && !steady.existence.loops_open &&
                        weight_turns(problem, steady.found.z.q, steady.existence.phase, steady.elsewhere());
     if (system.torques.empty() || out.status != Status::not_converged || problem.cancelled() ||
-        !change_point_message(input).empty())
+        why.change_point)
       return;
-    if (const std::string why = missing_speed_message(*mechanism, problem, steady.elsewhere()); !why.empty())
-      out.message = why + " " + out.message;
+    if (const std::string missing = missing_speed_message(*mechanism, problem, steady.elsewhere());
+        !missing.empty())
+      out.message = missing + " " + out.message;
   }
 
   // To what the verdict on the steady state rests on. Returns why there are none, where they are looked for.

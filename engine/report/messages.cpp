@@ -291,28 +291,24 @@ std::string rubbing_message(const ReportInput& in) {
                        : "");
 }
 
-} // namespace
-
+// Empty where no loop is to blame for being drawn at a change point.
 std::string change_point_message(const ReportInput& in) {
   const System& system = in.problem.system;
   std::vector<int> suspects; // cuts
   if (in.found.status == Status::not_converged && in.found.remark != Remark::cancelled) {
     for (std::size_t c = 0; c < system.cuts.size(); ++c)
-      if (system.cuts[c].by_rates && system.cuts[c].type != JointType::gear)
-        suspects.push_back(static_cast<int>(c));
+      if (system.cuts[c].by_rates) suspects.push_back(static_cast<int>(c));
   } else if (in.found.status == Status::converged && in.existence.loops_open) {
     suspects = {in.existence.worst_cut};
   }
-  const auto flat = std::ranges::find_if(
-      suspects, [&](int cut) { return is_drawn_at_change_point(in.mechanism, system, cut); });
-  if (flat == suspects.end()) return {};
+  const std::optional<int> flat = find_change_point(in.mechanism, system, suspects);
+  if (!flat) return {};
   return "No steady state was found: the loop of \"" + cut_name(in, *flat) +
          "\" is drawn at a change point, where its linkage could part into branches and does not tell at "
          "which rates it turns. Drawn with the drives turned on a little it may have a steady state.";
 }
 
-std::string failure_message(const ReportInput& in, Workspace& w) {
-  if (std::string flat = change_point_message(in); !flat.empty()) return flat;
+std::string other_failure(const ReportInput& in, Workspace& w) {
   if (in.found.status == Status::infeasible)
     return "The loops cannot be closed: \"" + cut_name(in, in.found.open_cut) +
            "\" stays open however the other coordinates are chosen.";
@@ -322,6 +318,14 @@ std::string failure_message(const ReportInput& in, Workspace& w) {
   if (in.existence.rubs >= 0) return rubbing_message(in);
   return "No steady state: " + turning_part(in.problem, in.mechanism, in.found.z.q, in.existence.phase, w) +
          " turns with the drives, so the balance holds at one moment only.";
+}
+
+} // namespace
+
+FailureMessage failure_message(const ReportInput& in, Workspace& w) {
+  std::string flat = change_point_message(in);
+  const bool at_change_point = !flat.empty();
+  return {at_change_point ? std::move(flat) : other_failure(in, w), at_change_point};
 }
 
 namespace {

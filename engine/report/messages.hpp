@@ -19,12 +19,14 @@ std::string message(const OtherStates& others, Status first);
 // What a search for all equilibria found and left.
 std::string message(const AllSolutions& all);
 
-// Where there is no answer because a loop that turns with the drives is drawn at a change point: what would
-// help. Empty where none is.
-std::string change_point_message(const ReportInput& input);
+struct FailureMessage {
+  std::string text;
+  bool change_point =
+      false; // it is that a loop that turns with the drives is drawn at one, and what would help
+};
 
-// That, or why else there is no answer, naming the part that is to blame.
-std::string failure_message(const ReportInput& input, Workspace& w);
+// Why there is no answer, naming the part that is to blame. Throws Interrupted.
+FailureMessage failure_message(const ReportInput& input, Workspace& w);
 
 // Of a converged solution whose other parts are filled; `rank`: of the constraint equations.
 std::string solution_message(const ReportInput& input, int rank, const Solution& solution);

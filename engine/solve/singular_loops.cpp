@@ -1,8 +1,9 @@
 #include "engine/solve/singular_loops.hpp"
 
+#include "engine/linear/interruption.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/solve/drive_cuts.hpp"
-#include "engine/system/linearization.hpp"
+#include "engine/system/constraint_row.hpp"
 #include "engine/system/released.hpp"
 
 #include <algorithm>
@@ -29,43 +30,82 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
   return there.rank() > rank || (there.rank() == rank && least < near && there.least_pivot() > grows * least);
 }
 
-bool is_drawn_at_change_point(const Mechanism& mechanism, const System& steady, int cut) {
-  constexpr int few = 200;
-  constexpr double near = 1e-8;                // beside the largest singular value: lost
-  constexpr double aside = 1e-4, found = 1e-6; // ... and there again, beyond what leads off the loop
-  // With places where the steady state has rates, and the drives free: at a dead point they lead off the
-  // loop.
-  const System driven = compile_for_motion(mechanism, steady), system = released(driven);
-  const CutJoint& joint = system.cuts[static_cast<std::size_t>(cut)];
-  const auto rows = static_cast<Eigen::Index>(joint.rows.size());
-  if (system.nv > few) return false;
-  Parameters p;
-  bind(driven, mechanism, p);
-  Scaling scaling;
-  set_scaling(system, p, scaling);
-  Eigen::VectorXd drawn, speeds = Eigen::VectorXd::Zero(system.nv);
-  drawn_configuration(driven, p, drawn);
-  drawn.conservativeResize(system.nq);
-  set_drives(driven, p, 0, drawn, speeds);
-  const auto parts = [&](const Eigen::VectorXd& q) {
-    Kinematics<double> k;
-    forward<double>(system, p, q, 0, k);
-    Linearization l;
-    linearize_constraints(system, p, k, l);
-    return singular_vectors(scaling.row.segment(joint.first_row, rows).asDiagonal() *
-                            l.constraint.middleRows(joint.first_row, rows) * scaling.column.asDiagonal());
-  };
-  const auto here = parts(drawn);
-  if (!here || here->values.size() == 0) return false;
-  const Eigen::Index rank = (here->values.array() > near * here->values[0]).count();
-  if (rank == here->values.size()) return false;
-  for (Eigen::Index i = rank; i < system.nv; ++i) {
-    Eigen::VectorXd q = drawn;
-    retract<double>(system, (aside * here->right.col(i)).cwiseProduct(scaling.column), q);
-    const auto there = parts(q);
-    if (there && there->values[rank] > found * there->values[0]) return true;
+namespace {
+
+// The mechanism as drawn, with places where the steady state has rates, and the drives free: at a dead point
+// they lead off the loop.
+class DrawnLoops {
+ public:
+  DrawnLoops(const Mechanism& mechanism, const System& steady)
+      : driven_(compile_for_motion(mechanism, steady)), system_(released(driven_)) {
+    bind(driven_, mechanism, p_);
+    set_scaling(system_, p_, scaling_);
+    Eigen::VectorXd speeds = Eigen::VectorXd::Zero(system_.nv);
+    drawn_configuration(driven_, p_, drawn_);
+    drawn_.conservativeResize(system_.nq);
+    set_drives(driven_, p_, 0, drawn_, speeds);
+    forward<double>(system_, p_, drawn_, 0, as_drawn_);
   }
-  return false;
+
+  bool at_change_point(int cut) {
+    constexpr std::size_t few = 200;
+    constexpr double near = 1e-8;                // beside the largest singular value: lost
+    constexpr double aside = 1e-4, found = 1e-6; // ... and there again, beyond what leads off the loop
+    const CutJoint& joint = system_.cuts[static_cast<std::size_t>(cut)];
+    if (joint.ends.support.empty() || joint.ends.support.size() > few) return false; // gears have none
+    const auto here = singular_vectors(equations(cut, as_drawn_));
+    if (!here || here->values.size() == 0) return false;
+    const Eigen::Index rank = (here->values.array() > near * here->values[0]).count();
+    if (rank == here->values.size()) return false;
+    for (Eigen::Index i = rank; i < here->right.cols(); ++i) {
+      interruption_point();
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(system_.nv);
+      for (std::size_t c = 0; c < joint.ends.support.size(); ++c) {
+        const int v = joint.ends.support[c].v;
+        step[v] = aside * here->right(static_cast<Eigen::Index>(c), i) * scaling_.column[v];
+      }
+      Eigen::VectorXd q = drawn_;
+      retract<double>(system_, step, q);
+      forward<double>(system_, p_, q, 0, beside_);
+      const auto there = singular_values(equations(cut, beside_));
+      if (there && (*there)[rank] > found * (*there)[0]) return true;
+    }
+    return false;
+  }
+
+ private:
+  // Scaled, by the coordinates on the loop, which alone move it: (rows, support).
+  Eigen::MatrixXd equations(int cut, const Kinematics<double>& k) const {
+    const CutJoint& joint = system_.cuts[static_cast<std::size_t>(cut)];
+    const auto rows = static_cast<Eigen::Index>(joint.rows.size());
+    Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(joint.ends.support.size()));
+    for (Eigen::Index r = 0; r < rows; ++r) {
+      Eigen::Index c = 0;
+      row_gradient(
+          joint, p_.cuts[static_cast<std::size_t>(cut)], joint.rows[static_cast<std::size_t>(r)], k,
+          [&](int v, double g) { out(r, c++) = scaling_.row[joint.first_row + r] * g * scaling_.column[v]; });
+    }
+    return out;
+  }
+
+  System driven_, system_;
+  Parameters p_;
+  Scaling scaling_;
+  Eigen::VectorXd drawn_;
+  Kinematics<double> as_drawn_, beside_;
+};
+
+} // namespace
+
+std::optional<int> find_change_point(const Mechanism& mechanism, const System& steady,
+                                     std::span<const int> cuts) {
+  if (cuts.empty()) return {};
+  DrawnLoops loops(mechanism, steady);
+  for (const int cut : cuts) {
+    interruption_point();
+    if (loops.at_change_point(cut)) return cut;
+  }
+  return {};
 }
 
 } // namespace flyball

@@ -3,6 +3,9 @@
 
 #include "engine/solve/newton.hpp"
 
+#include <optional>
+#include <span>
+
 namespace flyball {
 
 // Whether more of the loops' equations are independent beside the state than in it, as nearly as the state is
@@ -11,9 +14,11 @@ namespace flyball {
 // and factored in the workspace; of large loops, which are factored as sparse ones, it is not known: false.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w);
 
-// Whether the loop of a cut joint (in System::cuts) is drawn in such a pose, a change point, or so near to it
-// that rounding decides: there it does not tell at which rates it turns with what drives it. Of a mechanism
-// as compile_for_drives() compiles it; of one with many coordinates it is not known: false.
-bool is_drawn_at_change_point(const Mechanism& mechanism, const System& system, int cut);
+// The first of these cut joints (in System::cuts) whose loop is drawn in such a pose, a change point, or so
+// near to it that rounding decides: there it does not tell at which rates it turns with what drives it. Of a
+// mechanism as compile_for_drives() compiles it; of a loop of many coordinates it is not known, and it
+// is none. Gears are in no such pose. Throws Interrupted.
+std::optional<int> find_change_point(const Mechanism& mechanism, const System& system,
+                                     std::span<const int> cuts);
 
 } // namespace flyball
