@@ -39,7 +39,7 @@ std::size_t memory_of(const Run& run) {
   for (const CoordinateTrack& track : run.coordinates)
     add(track.value, track.rate);
   for (const DriveTrack& track : run.drives)
-    add(track.torque);
+    add(track.torque, track.load);
   for (const ReactionTrack& track : run.reactions)
     add(track.force, track.torque);
   for (const BearingTrack& track : run.bearings)

@@ -64,8 +64,11 @@ class MotionCollector {
     for (const BearingTrack& track : motion_.bearings)
       if (const int force = force_index(assembly_.mechanism, track.bearing); force >= 0)
         add_both(track, bearing_place(assembly_, static_cast<std::size_t>(force)), {PartKind::force, force});
-    for (const DriveTrack& track : motion_.drives)
-      add_along(LoadKind::drive, track.joint, track.index, moment.of(track.torque));
+    for (const DriveTrack& track : motion_.drives) {
+      const double load = track.load.empty() ? 0 : moment.of(track.load);
+      add_along(LoadKind::drive, track.joint, track.index, moment.of(track.torque) + load);
+      add_along(LoadKind::applied, track.joint, track.index, -load);
+    }
     for (const SpringTrack& track : motion_.springs) {
       const double spring = moment.of(track.spring) + moment.of(track.stop), damper = moment.of(track.damper);
       if (track.between_points) {
@@ -189,6 +192,8 @@ std::optional<AsSteady> as_steady(const Mechanism& mechanism, const Run& run) {
     drive.count = track.count;
     drive.angle = track.angle;
     drive.value = track.torque.back();
+    if (!track.load.empty())
+      drive.given = DriveTorque::Given{track.torque.back() + track.load.back(), track.load.back()};
   }
   for (const ReactionTrack& track : run.reactions) {
     Reaction& reaction = solution.reactions.emplace_back();
@@ -284,8 +289,11 @@ LoadScales motion_load_scales(const Assembly& assembly, const Run& motion,
     add_vectors(false, track.force);
     add_vectors(true, track.torque);
   }
-  for (const DriveTrack& track : motion.drives)
-    add_numbers(LoadKind::drive, track.angle, track.torque);
+  for (const DriveTrack& track : motion.drives) {
+    add(LoadKind::drive, track.angle, track.torque.size(),
+        [&](std::size_t i) { return std::abs(track.torque[i] + (track.load.empty() ? 0 : track.load[i])); });
+    add_numbers(LoadKind::applied, track.angle, track.load);
+  }
   for (const SpringTrack& track : motion.springs) {
     const bool both = track.between_points; // spring and damper are one arrow
     add(LoadKind::spring, track.angle, track.spring.size(), [&](std::size_t i) {

@@ -7,9 +7,9 @@
 namespace flyball {
 
 // What each joint's parent exerts on its child, and each bearing on its second body; of the former what
-// drives, springs and stops, dampers and gears exert along the joints' coordinates; springs between bodies
-// with their dampers, on both. Between samples in proportion. The assembly has the poses of that moment (s).
-// Inertial loads and the air are not recorded.
+// drives (and, as applied, the loads against them), springs and stops, dampers and gears exert along the
+// joints' coordinates; springs between bodies with their dampers, on both. Between samples in proportion. The
+// assembly has the poses of that moment (s). Inertial loads and the air are not recorded.
 std::vector<Load> loads_at(const Assembly& assembly, const Run& motion, double time);
 
 // The free-body diagram of one body at that moment, as loads_of() has it, inertial loads and the air

@@ -43,13 +43,18 @@ void append_energies(EnergyTracks& to, std::size_t last, const EnergyTracks& fro
   }
 }
 
+bool gives_torque(const DriveTrack& drive) {
+  return !drive.load.empty();
+}
+
 bool same_coordinates(const Run& a, const Run& b) {
   return std::ranges::equal(a.coordinates, b.coordinates,
                             [](const CoordinateTrack& x, const CoordinateTrack& y) {
                               return x.joint == y.joint && x.index == y.index;
                             }) &&
-         a.drives.size() == b.drives.size() && a.reactions.size() == b.reactions.size() &&
-         a.bearings.size() == b.bearings.size() && a.gears.size() == b.gears.size() &&
+         std::ranges::equal(a.drives, b.drives, {}, gives_torque, gives_torque) &&
+         a.reactions.size() == b.reactions.size() && a.bearings.size() == b.bearings.size() &&
+         a.gears.size() == b.gears.size() &&
          std::ranges::equal(a.points, b.points, {}, &PointTrack::point, &PointTrack::point) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::name, &MeasureTrack::name) &&
          std::ranges::equal(a.measures, b.measures, {}, &MeasureTrack::unit, &MeasureTrack::unit);
@@ -96,7 +101,8 @@ Run joined(const Run& before, std::size_t last, const Run& after) {
     out.coordinates[i].turns = after.coordinates[i].turns;
   }
   for (std::size_t i = 0; i < out.drives.size(); ++i)
-    append(out.drives[i].torque, count, after.drives[i].torque);
+    for (const auto track : {&DriveTrack::torque, &DriveTrack::load})
+      append(out.drives[i].*track, count, after.drives[i].*track);
   for (std::size_t i = 0; i < out.reactions.size(); ++i)
     for (const auto track : {&ReactionTrack::force, &ReactionTrack::torque})
       append(out.reactions[i].*track, count, after.reactions[i].*track);

@@ -76,13 +76,13 @@ void Recorder::lay_out() {
     const Link& link = system.links[index(system.drives[d].link)];
     const TreeJoint& joint = system.tree_joints[index(link.tree_joint)];
     run_.drives.push_back(
-        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
+        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}, {}});
   }
   for (const DriveTorqueElement& drive : system.torques) {
     const Link& link = system.links[index(drive.link)];
     const TreeJoint& joint = system.tree_joints[index(link.tree_joint)];
     run_.drives.push_back(
-        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}});
+        {joint.name, link.coordinate, coordinate_count(joint.type), link.type == LinkType::revolute, {}, {}});
   }
   for (const BodyPoint& point : points_)
     run_.points.push_back({point, {}, {}, {}});
@@ -405,9 +405,14 @@ void Recorder::record(double t, const Eigen::Vector3d& energies, double shift) {
                   model_->parameters.links[index(system.drives[e].link)].gear_ratio;
     run_.drives[motor++].torque.push_back(torque);
   }
-  for (std::size_t i = 0; i < system.torques.size(); ++i)
-    run_.drives[motor++].torque.push_back(drive_torque(
-        model_->released, model_->parameters, i, equations_->configuration(), equations_->kinematics()));
+  for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    const DriveTorqueElement& drive = system.torques[i];
+    const TorqueAndLoad now = torque_and_load(model_->released, model_->parameters, i,
+                                              equations_->configuration(), equations_->kinematics());
+    DriveTrack& track = run_.drives[motor++];
+    track.torque.push_back(now.torque - now.load);
+    if (!drive.keeps_momentum && !drive.implied) track.load.push_back(now.load);
+  }
   RunStatistics& s = run_.statistics;
   s.position_drift = std::max(s.position_drift, equations_->position_drift());
   s.velocity_drift = std::max(s.velocity_drift, equations_->velocity_drift());

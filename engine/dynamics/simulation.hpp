@@ -88,6 +88,8 @@ struct DriveTrack {
   int index = 0, count = 1;
   bool angle = true;          // N m rather than N
   std::vector<double> torque; // by the motor, positive along its coordinate, gears' loads included
+  // Of a drive by torque, what acts against what it gives; `torque` is the difference. Else empty.
+  std::vector<double> load;
 };
 
 // What the parent exerts on the child through a joint, as in Reaction: world axes of the moment.

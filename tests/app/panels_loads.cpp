@@ -1,5 +1,6 @@
 // Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
 #include "app/document/document.hpp"
+#include "app/document/formula_edits.hpp"
 #include "app/session/periodic.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/commands.hpp"
@@ -9,6 +10,7 @@
 #include "app/ui/shown_scene.hpp"
 #include "app/ui/snapshot.hpp"
 #include "app/ui/view_frame.hpp"
+#include "engine/mechanism/scene.hpp"
 #include "robot.hpp"
 #include "slider_crank.hpp"
 #include "temporary_folder.hpp"
@@ -397,4 +399,57 @@ TEST_CASE(
   };
   const double at_first = check(0);
   CHECK(check(run.time.size() / 3) == at_first);
+}
+
+TEST_CASE("in a motion, too, arrows of a drive by torque are what it gives and the load against it") {
+  constexpr double given = 60, resistance = 3; // N m, N m s
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  // A block that a turning spring pulls to and fro, and a wheel by itself, loaded by what the block does.
+  Mechanism m = parse_scene(R"({"flyball": 2, "name": "Beside", "gravity": [0, 0, 0],
+    "bodies": [{"name": "crank", "mass": 1, "position": [0.05, 0, 0], "inertia": [0.01, 0.01, 0.01]},
+      {"name": "block", "mass": 1, "position": [0, 0, 0]},
+      {"name": "wheel", "mass": 1, "position": [-0.3, 0, 0], "inertia": [0.01, 0.01, 0.01]}],
+    "joints": [
+      {"name": "spin", "type": "revolute", "bodies": ["ground", "crank"], "at": [0, 0, 0], "axis": [0, 0, 1],
+       "drive": {"speed": 10}},
+      {"name": "slide", "type": "prismatic", "bodies": ["ground", "block"], "at": [0, 0, 0],
+       "axis": [1, 0, 0], "spring": {"stiffness": 50}, "damping": 5},
+      {"name": "turn", "type": "revolute", "bodies": ["ground", "wheel"], "at": [-0.3, 0, 0],
+       "axis": [0, 0, 1], "drive": {"speed": 20, "torque": 60}}],
+    "forces": [{"name": "coil", "type": "spring", "bodies": ["crank", "block"],
+      "points": [[0.1, 0.02, 0], [0, 0, 0]], "stiffness": 100, "free_length": 0.05}]})");
+  set_expression(m, "joints.turn.drive.load", "3 N m s*rate(turn) + 2 N s*rate(slide)");
+  open_document(app.session, Document(m));
+  set_mode(app.session, Mode::explore);
+  robot.frames(3);
+  const PeriodicState* motion = periodic_motion(app.session);
+  REQUIRE((motion && motion->motion));
+  const Run& run = *motion->motion;
+  const auto rate = [&](const std::string& joint, std::size_t sample) {
+    const auto track = std::ranges::find(run.coordinates, joint, &CoordinateTrack::joint);
+    REQUIRE(track != run.coordinates.end());
+    return track->rate[sample];
+  };
+  robot.key('A');
+  const auto along = [&](LoadKind kind) {
+    double sum = 0;
+    for (const Load& load : shown_scene(app.context())->loads)
+      if (load.kind == kind && load.moment && part_of(app.session.mechanism(), load.part).name == "turn")
+        sum += load.vector.z();
+    return sum;
+  };
+  for (const std::size_t sample : {std::size_t(0), run.time.size() / 3}) {
+    app.session.playback.time = run.time[sample];
+    const double load = resistance * rate("turn", sample) + 2 * rate("slide", sample);
+    for (const bool alone : {false, true}) { // all of it, and the wheel's free-body diagram
+      select(app.session, {});
+      if (alone) select(app.session, {{{PartKind::body, "wheel"}}});
+      robot.frames(2);
+      CAPTURE(sample, alone);
+      CHECK(along(LoadKind::drive) == Approx(given).epsilon(1e-6));
+      CHECK(along(LoadKind::applied) == Approx(-load).epsilon(1e-6));
+    }
+    CHECK(has_row(app, "Free body: wheel, adds up to zero"));
+  }
 }
