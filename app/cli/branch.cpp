@@ -20,6 +20,7 @@
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/study/friction_branches.hpp"
+#include "engine/study/ribbon_meetings.hpp"
 #include "engine/study/ribbon_tips.hpp"
 
 #include <CLI/CLI.hpp>

@@ -72,6 +72,15 @@ Json band_json(const RibbonPoint& point) {
   return out;
 }
 
+// To the points of a branch, along each stretch of it.
+void add_slow_changes(std::span<const RibbonPoint> ribbon, Json& points) {
+  for (const auto& [begin, end] : slow_stretches(ribbon))
+    for (const BandExtent& extent : ribbon[begin].extents)
+      for (std::size_t i = begin;
+           const HysteresisPoint& way : hysteresis(ribbon.subspan(begin, end - begin), extent.name))
+        points[i++]["slow_change"][extent.name] = {{"forth", way.forth}, {"back", way.back}};
+}
+
 } // namespace
 
 Json tips_json(const Ribbons& tips) {
@@ -96,14 +105,13 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
       points.push_back(point_json(p));
     for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i)
       points[i]["band"] = band_json(ribbons[k][i]);
-    if (k < ribbons.size() && !ribbons[k].empty())
-      for (const BandExtent& extent : ribbons[k].front().extents)
-        for (std::size_t i = 0; const HysteresisPoint& way : hysteresis(ribbons[k], extent.name))
-          points[i++]["slow_change"][extent.name] = {{"forth", way.forth}, {"back", way.back}};
+    if (k < ribbons.size()) add_slow_changes(ribbons[k], points);
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});
-    if (k < ribbons.size() && !ribbons[k].empty() && !ribbons[k].front().no_way.empty())
-      out["branches"].back()["slow_change_message"] = ribbons[k].front().no_way;
+    if (k >= ribbons.size()) continue;
+    if (const auto none = std::ranges::find_if_not(ribbons[k], &std::string::empty, &RibbonPoint::no_way);
+        none != ribbons[k].end())
+      out["branches"].back()["slow_change_message"] = none->no_way;
   }
   for (std::size_t i = 0; i < d.special.size(); ++i) {
     const SpecialPoint& s = d.special[i];

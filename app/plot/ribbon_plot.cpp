@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
 namespace {
 
 constexpr const char* held = "held by friction";
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN(); // breaks a line
 
 void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
   const std::vector<HysteresisPoint> way = hysteresis(points, name);
@@ -24,17 +26,20 @@ void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view n
   plot.curves.push_back(std::move(curve));
 }
 
-// Whether the same band was drawn along another branch: past folds it may be that of several.
-bool is_drawn(const Plot& plot, double number, const BandExtent& extent) {
-  constexpr double alike = 0.02; // of the band's height
+// Whether the same band was drawn along another branch or sheet: past folds it may be that of several. States
+// about which it is lie well within it, so that it need not be known better than its points tell.
+bool is_drawn(const Plot& plot, const RibbonPoint& point, const BandExtent& extent) {
+  constexpr double alike = 0.25;  // of the band's height
+  constexpr double beyond = 0.01; // of a way between points: where bands meet is known to less
+  if (!point.folds) return false;
   const double most = alike * (extent.high - extent.low);
   for (const PlotBand& band : plot.bands) {
     if (band.name != held) continue;
     for (std::size_t i = 1; i < band.points.size(); ++i) {
       const auto& [from, low_from, high_from] = band.points[i - 1];
       const auto& [to, low_to, high_to] = band.points[i];
-      if (std::min(from, to) > number || std::max(from, to) < number || from == to) continue;
-      const double part = (number - from) / (to - from);
+      const double part = (point.number - from) / (to - from);
+      if (!(part >= -beyond && part <= 1 + beyond)) continue;
       if (std::abs(std::lerp(low_from, low_to, part) - extent.low) <= most &&
           std::abs(std::lerp(high_from, high_to, part) - extent.high) <= most)
         return true;
@@ -43,34 +48,42 @@ bool is_drawn(const Plot& plot, double number, const BandExtent& extent) {
   return false;
 }
 
+// What a slow change follows of an edge; broken where it would run away.
+void add_edge(Plot& plot, std::span<const RibbonPoint> points, std::string_view name, bool rising) {
+  PlotCurve curve{.name = rising ? "edge as it rises" : "edge as it falls",
+                  .points = {},
+                  .color = rising ? plot_color::green : plot_color::orange,
+                  .width = 1.4};
+  bool any = false;
+  for (const RibbonPoint& point : points) {
+    const BandExtent& extent = *find_extent(point, name);
+    const bool followed = (rising ? extent.stable_low : extent.stable_high) != false;
+    curve.points.push_back({point.number, !followed ? nothing : rising ? extent.low : extent.high});
+    any = any || followed;
+  }
+  if (any) plot.curves.push_back(std::move(curve));
+}
+
 // Of points at which there is a band, and along which the number goes one way.
 void add_part(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
   if (points.size() < 2) return;
   PlotBand band{held, {}, plot_color::green};
-  PlotCurve rising{.name = "edge as it rises", .points = {}, .color = plot_color::green, .width = 1.4},
-      falling{.name = "edge as it falls", .points = {}, .color = plot_color::orange, .width = 1.4};
   for (const RibbonPoint& point : points) {
     const BandExtent& extent = *find_extent(point, name);
     band.points.push_back({point.number, extent.low, extent.high});
-    rising.points.push_back({point.number, extent.low});
-    falling.points.push_back({point.number, extent.high});
   }
   plot.bands.push_back(std::move(band));
-  plot.curves.push_back(std::move(rising));
-  plot.curves.push_back(std::move(falling));
-  std::size_t from = 0; // no way is known through what passes folds
-  for (std::size_t i = 0; i <= points.size(); ++i) {
-    if (i < points.size() && !points[i].folds) continue;
-    add_way(plot, points.subspan(from, i - from), name);
-    from = i + 1;
-  }
+  add_edge(plot, points, name, true);
+  add_edge(plot, points, name, false);
+  for (const auto& [begin, end] : slow_stretches(points))
+    add_way(plot, points.subspan(begin, end - begin), name);
 }
 
 // The same without what is drawn already, but for a point beside it.
 void add_new(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
   std::vector<bool> drawn;
   for (const RibbonPoint& point : points)
-    drawn.push_back(is_drawn(plot, point.number, *find_extent(point, name)));
+    drawn.push_back(is_drawn(plot, point, *find_extent(point, name)));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (drawn[i]) continue;
     std::size_t end = i;
@@ -96,8 +109,8 @@ void add_ribbon(Plot& plot, std::span<const RibbonPoint> points, std::string_vie
     const double step = i > begin ? points[i].number - points[i - 1].number : 0;
     if (!find_extent(points[i], name))
       end_at(i, i + 1);
-    else if (step * direction < 0) // beyond a fold
-      end_at(i, i - 1);
+    else if (step * direction < 0) // beyond a fold, which a thin band goes round
+      end_at(i, points[i - 1].folds ? i - 1 : i);
     else if (i > begin && points[i].meets)
       end_at(i, i);
     if (step != 0) direction = step;

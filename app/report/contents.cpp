@@ -15,6 +15,7 @@
 #include "engine/stability/stability.hpp"
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/resonance_curve.hpp"
+#include "engine/study/ribbon_meetings.hpp"
 #include "engine/study/ribbon_tips.hpp"
 
 #include <algorithm>

@@ -2,7 +2,10 @@
 
 #include "app/session/session.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/study/ribbon_bends.hpp"
 #include "engine/study/ribbon_tips.hpp"
+
+#include <cmath>
 
 namespace flyball {
 namespace {
@@ -18,7 +21,7 @@ FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRib
     found.stretches.push_back({found.points.size(), points.size()});
     found.points.insert(found.points.end(), points.begin(), points.end());
   };
-  for (const BandRun& run : band_runs(*request.curve, BandOf::not_unstable)) {
+  for (const BandRun& run : band_runs(*request.curve, BandOf::any)) {
     std::vector<RibbonPlace> places;
     for (const ResponsePoint* state : run.states)
       places.push_back({state->parameter, start_values(state->coordinates)});
@@ -77,12 +80,42 @@ const FrictionReport* friction_report(const Session& session) {
   return wanted && report.is_of(*wanted) ? &report.found->result : nullptr;
 }
 
+std::optional<std::string> banded_quantity(const Session& session) {
+  const std::string& key = session.study.response.choice.quantity;
+  if (!key.starts_with("value ") && !key.starts_with("measure ")) return std::nullopt;
+  return key.substr(key.find(' ') + 1);
+}
+
 std::shared_ptr<const Study<RibbonRequest, FoundRibbon>::Found> shown_ribbon(const Session& session) {
   const FrictionState& state = session.study.friction;
   if (!state.ribbon_wanted || !state.ribbon.found) return nullptr;
   const bool fits =
       state.ribbon.found->of.curve == session.study.response.curve.found || state.ribbon.running();
   return fits ? state.ribbon.found : nullptr;
+}
+
+std::vector<RibbonGap> ribbon_gaps(const Session& session) {
+  std::vector<RibbonGap> gaps;
+  const auto ribbon = shown_ribbon(session);
+  const std::optional<std::string> name = banded_quantity(session);
+  if (!ribbon || !name) return gaps;
+  const std::vector<RibbonPoint>& points = ribbon->result.points;
+  for (const BandStretch& stretch : ribbon->result.stretches) {
+    bool goes_on = false;
+    for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
+      const BandExtent* extent = find_extent(points[i], *name);
+      if ((extent && std::isfinite(extent->low) && std::isfinite(extent->high)) ||
+          points[i].message.empty()) {
+        goes_on = false;
+      } else if (goes_on && gaps.back().why == points[i].message) {
+        gaps.back().to = points[i].number;
+      } else {
+        gaps.push_back({points[i].number, points[i].number, points[i].message});
+        goes_on = true;
+      }
+    }
+  }
+  return gaps;
 }
 
 } // namespace flyball

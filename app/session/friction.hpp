@@ -38,5 +38,15 @@ void update_friction(Session& session);
 const FrictionReport* friction_report(const Session& session);
 // The ribbon of the curve that is shown; null likewise.
 std::shared_ptr<const Study<RibbonRequest, FoundRibbon>::Found> shown_ribbon(const Session& session);
+// The name of the coordinate or measure over the curve; nothing where something else is shown, as friction
+// makes bands of these.
+std::optional<std::string> banded_quantity(const Session& session);
+
+// Of the ribbon that is shown: where it has no band of the quantity that is shown, or no bound of it.
+struct RibbonGap {
+  double from = 0, to = 0; // of the varied number, in its unit
+  std::string why;         // a sentence or more
+};
+std::vector<RibbonGap> ribbon_gaps(const Session& session);
 
 } // namespace flyball

@@ -52,8 +52,7 @@ std::vector<BandRun> band_runs(const ResponseCurve::Found& curve, BandOf which) 
     bool on = false;
     for (std::size_t i = 0; i < line.points.size(); ++i) {
       const ResponsePoint& point = line.points[i];
-      const bool counts = which == BandOf::stable ? point.stable == true : point.stable != false;
-      if (counts && !line.special[i]) {
+      if ((which == BandOf::any || point.stable == true) && !line.special[i]) {
         if (!on) runs.emplace_back();
         on = true;
         runs.back().states.push_back(&point);

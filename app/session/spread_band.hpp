@@ -39,8 +39,8 @@ std::string band_words(const Session& session);
 // Which of the band's outputs the response shows; none where it is none of them.
 std::optional<std::size_t> band_output(const Session& session);
 
-// Stable states alone; or those that are undecided, too, which friction may hold.
-enum class BandOf { stable, not_unstable };
+// Stable states alone; or all, which friction may hold.
+enum class BandOf { stable, any };
 // States of a line that follow one another, places of special points left out, and which of them are about
 // a fortieth of the range apart, its ends among them.
 struct BandRun {

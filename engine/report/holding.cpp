@@ -284,6 +284,8 @@ class HoldingAttempt {
           (why.empty() ? "" : " " + why);
       return false;
     }
+    if (explain_)
+      out.rest_stable = held.system.nv == 0 ? true : find_stability(steady.factored(problem), false).stable;
     tell(still, held, problem, steady.found.z.q, out);
     return true;
   }
@@ -320,8 +322,11 @@ class HoldingAttempt {
       tell_shared(which_, needed, out);
     const std::string speeds = at_found_speeds(held.system, q);
     const std::string there = speeds.empty() ? "there" : "there, with " + speeds;
-    out.message = *out.takes <= 1 ? "Friction holds it " + there + ": that takes " +
-                                        rounded_text(100 * *out.takes, 3) + " % of what it can give."
+    const std::string part = rounded_text(100 * *out.takes, 3) + " % of what it can give";
+    out.message = *out.takes <= 1 && out.rest_stable == false
+                      ? "With " + part + " friction would hold its joints " + there +
+                            ", but what is free beside them is unstable there."
+                  : *out.takes <= 1 ? "Friction holds it " + there + ": that takes " + part + "."
                   : out.at_least > 1
                       ? "Friction does not hold it " + there +
                             (out.first.empty() ? std::string(".") : ": " + out.first + " slips.")

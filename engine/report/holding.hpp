@@ -35,11 +35,13 @@ struct Holding {
   std::vector<std::size_t> independent; // of `joints`: those that loops do not tie to the ones before them
   std::string first;                    // the joint that slips first, where that is known
   std::string message;                  // a sentence
+  // Whether what is free beside the joints that stand rests stably there; found where it is explained.
+  std::optional<bool> rest_stable;
 };
 
 // At the drawn pose with the coordinates of `at` ("joint" or "joint.index", rad or m) in place of the drawn
 // ones. Throws SceneError for names of no coordinate. `explain`: whether the message says why speeds that are
-// found are missing, which takes time.
+// found are missing, and whether the rest is stable, which take time.
 Holding find_holding(const Mechanism& mechanism, const std::vector<std::pair<std::string, double>>& at,
                      const std::atomic<bool>* cancel = nullptr, bool explain = true);
 

@@ -1,6 +1,5 @@
 #include "engine/study/friction_band.hpp"
 
-#include "engine/continuation/branches.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
@@ -195,14 +194,6 @@ class Box {
   bool lost_ = false;
 };
 
-double value_of(const ResponsePoint& point, const std::string& name) {
-  for (const CoordinateSolution& c : point.coordinates)
-    if (const auto number = found_number(c); number && number->name == name) return number->value;
-  for (const MeasureSolution& m : point.measures)
-    if (m.name == name) return m.value.value_or(std::nan(""));
-  return std::nan("");
-}
-
 // The largest value, times `sense`, along a branch between the points beside `i`, where its share goes one
 // way from one to the other; nothing where it turns back or the states there are singular.
 std::optional<double> crest_beside(const Mechanism& mechanism, const FreeNumber& share,
@@ -227,9 +218,9 @@ void take_crests(const Mechanism& mechanism, const FreeNumber& share,
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
     for (const double sense : {1., -1.}) {
       double& end = sense > 0 ? extent.high : extent.low;
-      const double value = value_of(points[i], extent.name),
-                   before = sense * (value - value_of(points[i - 1], extent.name)),
-                   after = sense * (value - value_of(points[i + 1], extent.name));
+      const double value = told_value(points[i], extent.name),
+                   before = sense * (value - told_value(points[i - 1], extent.name)),
+                   after = sense * (value - told_value(points[i + 1], extent.name));
       const double beyond = std::max(before, after); // less than this between them
       if (!(before > 0) || !(after > 0) || !(sense * (value - end) + beyond > 0)) continue;
       // A jump is an angle's that is told between -pi and pi.
@@ -267,14 +258,20 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   std::vector<std::string_view> round, farther;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
+    extent.stable_low = extent.stable_high = state.stable;
     extent.error.reset();
     extent.shares_low.clear();
     extent.shares_high.clear();
     const auto take = [&](const ResponsePoint& at) {
-      const double value = value_of(at, extent.name);
-      if (!std::isfinite(value)) return;
-      extent.low = std::min(extent.low, value);
-      extent.high = std::max(extent.high, value);
+      const double value = told_value(at, extent.name);
+      if (value < extent.low) {
+        extent.low = value;
+        extent.stable_low = at.stable;
+      }
+      if (value > extent.high) {
+        extent.high = value;
+        extent.stable_high = at.stable;
+      }
     };
     for (const ResponseBranch& branch : diagram->branches)
       if (branch.connected) std::ranges::for_each(branch.points, take);
@@ -285,7 +282,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     const double width = extent.high - extent.low;
     bool unbounded = false;
     for (const ResponsePoint* end : open) {
-      const double value = value_of(*end, extent.name);
+      const double value = told_value(*end, extent.name);
       if (value == extent.low && width > 0) extent.low = -std::numeric_limits<double>::infinity();
       if (value == extent.high && width > 0) extent.high = std::numeric_limits<double>::infinity();
       unbounded = unbounded || !std::isfinite(extent.low) || !std::isfinite(extent.high);
@@ -301,6 +298,14 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
 }
 
 } // namespace
+
+double told_value(const ResponsePoint& point, const std::string& name) {
+  for (const CoordinateSolution& c : point.coordinates)
+    if (const auto number = found_number(c); number && number->name == name) return number->value;
+  for (const MeasureSolution& m : point.measures)
+    if (m.name == name) return m.value.value_or(std::nan(""));
+  return std::nan("");
+}
 
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options) {
   FrictionBand band;
@@ -319,6 +324,15 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
                                          " coordinates and measures are not looked for.";
       return band;
     }
+    std::optional<Holding> holding;
+    if (free.size() > 1 || state.stable == false)
+      holding = find_holding(mechanism, start_values(state.coordinates), options.cancel);
+    if (state.stable == false && holding->rest_stable == false) {
+      band.message =
+          "Friction does not hold it: it is unstable, and what is free beside the joints that have "
+          "friction leaves it.";
+      return band;
+    }
     Box box(mechanism, free, names, options.cancel);
     if (!box.begin(start_values(state.coordinates))) {
       band.message = "The state is singular, so that nothing tells how far friction would let it be moved.";
@@ -334,9 +348,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     for (Index i = 0; i < count; ++i)
       for (const double sense : {1., -1.})
         if (measured(i)) box.go_to_corner(i, sense);
-    const bool one_motion =
-        free.size() == 1 ||
-        find_holding(mechanism, start_values(state.coordinates), options.cancel).independent.size() == 1;
+    const bool one_motion = free.size() == 1 || holding->independent.size() == 1;
     std::vector<std::string> frictional;
     for (const CoordinateReference& at : find_frictions(mechanism))
       frictional.push_back(
@@ -354,8 +366,8 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
           error = worst;
       const bool stands = one_motion && std::ranges::find(frictional, name) != frictional.end();
       band.extents.push_back({name, box.unit(i), box.first().state.values[i], low.state.values[i],
-                              high.state.values[i], error, shares(low.state.p), shares(high.state.p),
-                              stands});
+                              high.state.values[i], error, shares(low.state.p), shares(high.state.p), stands,
+                              state.stable, state.stable});
     }
     band.found = true;
     band.whole = !box.lost();

@@ -4,7 +4,7 @@
 // box: at a corner where every rate points outwards, or within at a root of a rate.
 #pragma once
 
-#include "engine/mechanism/mechanism.hpp"
+#include "engine/continuation/branches.hpp"
 
 #include <atomic>
 #include <optional>
@@ -23,6 +23,9 @@ struct BandExtent {
       shares_high;                // through folds
   bool stands = false; // a joint with friction, and that moves in one way only, as do all that have some: it
                        // stays as it is while nothing pushes it over an end
+  // Whether it is stable at either end as friction gives its limit there: a slow change then goes along that
+  // end, and over another it runs away. Nothing where that is not known.
+  std::optional<bool> stable_low, stable_high;
 };
 
 struct FrictionBand {
@@ -40,8 +43,12 @@ struct FrictionBandOptions {
   const std::atomic<bool>* cancel = nullptr;
 };
 
-// The band that is connected with a steady state. With several joints each extent is a local extremum: rates
-// tell of no other beyond. Throws SceneError as SteadyMap does.
+// The band that is connected with a steady state; none about an unstable one that friction does not hold, as
+// what is free beside the joints that have some leaves it. With several joints each extent is a local
+// extremum: rates tell of no other beyond. Throws SceneError as SteadyMap does.
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options = {});
+
+// A number that is found, or a measure, at a point of a branch; no number where it has none of this name.
+double told_value(const ResponsePoint& point, const std::string& name);
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 // The bands of dry friction along a response curve: between which values each coordinate and measure may
-// stand at every value of the varied number. As the quantity rises it goes along the lower edge, as it falls
-// along the upper.
+// stand at every value of the varied number. About what is stable it goes along the lower edge as the
+// quantity rises, along the upper as it falls. About what is not friction holds it, too, but over an edge it
+// runs away.
 #pragma once
 
 #include "engine/continuation/branches.hpp"
@@ -23,15 +24,20 @@ struct HysteresisPoint {
 
 struct RibbonPoint {
   double number = 0;
-  std::vector<BandExtent> extents; // empty where there is no band, or none with bounds
+  std::vector<BandExtent> extents; // empty where there is no band
   // By extent, of several joints with friction that move by themselves (slow_change.hpp); else empty.
   std::vector<HysteresisPoint> slow{};
-  std::string no_way{}; // of the first point: why several such joints have none
+  std::string no_way{}; // of the first point of a stretch (slow_stretches()): why several joints have none
   // Of a single joint with friction: it passes folds of the balance, beyond which friction alone holds, and
   // may so reach from one branch to another.
   bool folds = false;
-  bool meets = false; // its band does not go on from that of the point before: see add_meetings()
+  bool meets = false;    // its band does not go on from that of the point before: see add_meetings()
+  std::string message{}; // a sentence or more on the band, or why there is none
 };
+
+// The band at one place. Throws SceneError for a number that the mechanism does not take.
+RibbonPoint ribbon_point(const Mechanism& mechanism, const std::string& address, const RibbonPlace& place,
+                         const std::atomic<bool>* cancel);
 
 // `progress`: places done. Cancelled, points are missing at the end. Throws SceneError for a number that the
 // mechanism does not take.
@@ -40,19 +46,10 @@ std::vector<RibbonPoint> friction_ribbon(const Mechanism& mechanism, const std::
                                          const std::atomic<bool>* cancel = nullptr,
                                          const std::function<void(std::size_t done)>& progress = {});
 
-// Adds to the points at all places two where bands meet between them: at numbers that no one tells apart in a
-// picture, one with the band of several branches and one with that of one of them.
-void add_meetings(const Mechanism& mechanism, const std::string& address, std::span<const RibbonPlace> places,
-                  std::vector<RibbonPoint>& points, const std::atomic<bool>* cancel = nullptr);
-
-// The same at some of the places, and at those between where an edge bends or the band ends: until a line
-// between neighbours leaves out no more than a hundredth of an edge's height, as far as there are places; and
-// where bands meet.
-// `first`: with which it begins, ascending, both ends among them.
-std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, const std::string& address,
-                                                  std::span<const RibbonPlace> places,
-                                                  std::span<const std::size_t> first,
-                                                  const std::atomic<bool>* cancel = nullptr);
+// Adds to the points at all places the way that several joints with friction go, along each stretch.
+void add_slow_change(const Mechanism& mechanism, const std::string& address,
+                     std::span<const RibbonPlace> places, std::vector<RibbonPoint>& points,
+                     const std::atomic<bool>* cancel);
 
 std::vector<RibbonPlace> ribbon_places(const ResponseBranch& branch);
 
@@ -62,14 +59,27 @@ friction_ribbons(const Mechanism& mechanism, const std::string& address, const R
                  const std::atomic<bool>* cancel = nullptr,
                  const std::function<void(std::size_t done, std::size_t all)>& progress = {});
 
+// Some of the points that follow one another.
+struct RibbonStretch {
+  std::size_t begin = 0, end = 0; // of the points; the last is before `end`
+};
+
+// Those along which a slow change of the number leads without a jump, as far as is known: of two points or
+// more, about what is not unstable, with bands that pass no folds and go on from each other, and in one
+// direction.
+std::vector<RibbonStretch> slow_stretches(std::span<const RibbonPoint> points);
+
 // Of a single motion that has friction, in one joint or in several that loops tie to it: where the coordinate
-// of such a joint stands as the varied number goes slowly. It stays until an end of the band comes to it, and
-// goes on with that (a play operator: Krasnoselskii and Pokrovskii, Systems with Hysteresis, 1989). Of
-// several motions what was found of any coordinate or measure (RibbonPoint::slow). By point; empty where the
-// points have no such band, or one that passes folds, where it jumps, and where they go back in the number.
+// of such a joint stands as the varied number goes slowly over the points of a stretch. It stays until an end
+// of the band comes to it, and goes on with that (a play operator: Krasnoselskii and Pokrovskii, Systems with
+// Hysteresis, 1989). Of several motions what was found of any coordinate or measure (RibbonPoint::slow). By
+// point; empty where they are no one stretch, or have no such band.
 std::vector<HysteresisPoint> hysteresis(std::span<const RibbonPoint> points, std::string_view name);
 
 // Null where it has none of this name.
 const BandExtent* find_extent(const RibbonPoint& point, std::string_view name);
+
+// The ends of all extents by number, lower ones first: `e` below twice their count. May be infinite.
+double ribbon_edge(const RibbonPoint& point, std::size_t e);
 
 } // namespace flyball

@@ -7,6 +7,7 @@
 #include "app/plot/svg.hpp"
 #include "tests/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -156,7 +157,7 @@ TEST_CASE("a histogram holds each sample once, and the normal curve as many") {
 TEST_CASE("a ribbon of friction that several branches share is drawn once") {
   const auto point = [](double number, double low, double high, bool folds, bool meets = false) {
     RibbonPoint out{.number = number, .extents = {}, .folds = folds, .meets = meets};
-    out.extents.push_back({"x", "m", high, low, high, {}, {}, {}, !folds});
+    out.extents.push_back({"x", "m", high, low, high, {}, {}, {}, !folds, {}, {}});
     return out;
   };
   // Up to 2 the band is that of both branches.
@@ -179,4 +180,84 @@ TEST_CASE("a ribbon of friction that several branches share is drawn once") {
   // None of another name.
   add_ribbon(plot, upper, "y");
   CHECK(plot.bands.size() == 3);
+}
+
+TEST_CASE("a thin ribbon that two branches share is drawn once, though their points lie apart") {
+  // About a fold at 0: states at +-sqrt(number), each known at numbers of its own, with 0.01 of friction.
+  const auto ribbon = [](double sense, double first) {
+    std::vector<RibbonPoint> out;
+    for (double number = first; number < 0.3; number += 0.003) {
+      const bool folds = number < 0.01;
+      const double far = std::sqrt(number + 0.01), near = folds ? -far : std::sqrt(number - 0.01);
+      RibbonPoint point{.number = number, .extents = {}, .folds = folds};
+      const auto [low, high] = std::minmax({sense * near, sense * far});
+      point.extents.push_back({"x", "m", sense * std::sqrt(number), low, high, {}, {}, {}, !folds, {}, {}});
+      point.meets = !folds && number - 0.003 < 0.01;
+      out.push_back(std::move(point));
+    }
+    return out;
+  };
+  Plot plot;
+  add_ribbon(plot, ribbon(1, 0.0002), "x");
+  add_ribbon(plot, ribbon(-1, 0.0015), "x");
+  const auto drawn = std::ranges::count_if(plot.bands, [](const PlotBand& band) {
+    return band.points.front()[0] < 0.01 && band.points.back()[0] < 0.0101;
+  });
+  CHECK(drawn == 1);
+  CHECK(plot.bands.size() == 3);
+}
+
+TEST_CASE("a ribbon has edges where a slow change follows them") {
+  const auto point = [](double number, bool low, bool high) {
+    RibbonPoint out{.number = number, .extents = {}};
+    out.extents.push_back({"x", "m", 0, -1, 1, {}, {}, {}, true, low, high});
+    return out;
+  };
+  const auto edges = [](const Plot& plot, std::string_view name) {
+    int points = 0;
+    for (const PlotCurve& curve : plot.curves)
+      if (curve.name == name)
+        points += static_cast<int>(
+            std::ranges::count_if(curve.points, [](const auto& p) { return std::isfinite(p[1]); }));
+    return points;
+  };
+  const std::vector<RibbonPoint> unstable{point(0, false, false), point(1, false, false),
+                                          point(2, false, false)};
+  Plot plot;
+  add_ribbon(plot, unstable, "x");
+  REQUIRE(plot.bands.size() == 1);
+  CHECK(plot.bands[0].points.size() == 3);
+  CHECK(plot.curves.empty());
+  // Beyond the fold of a tip it stands on the one edge, and runs away over the other.
+  const std::vector<RibbonPoint> tip{point(0, true, true), point(1, true, true), point(2, true, false),
+                                     point(3, true, false)};
+  plot = {};
+  add_ribbon(plot, tip, "x");
+  CHECK(edges(plot, "edge as it rises") == 4);
+  CHECK(edges(plot, "edge as it falls") == 2);
+  REQUIRE(std::ranges::count(plot.curves, "slow rise and fall", &PlotCurve::name) == 1);
+  const auto way = std::ranges::find(plot.curves, "slow rise and fall", &PlotCurve::name);
+  for (const auto& [number, value] : way->points)
+    CHECK(number <= 1);
+}
+
+TEST_CASE("what friction does not bound breaks a ribbon") {
+  std::vector<RibbonPoint> points;
+  for (int i = 0; i < 5; ++i) {
+    RibbonPoint point{.number = static_cast<double>(i), .extents = {}};
+    const double high = i == 2 ? std::numeric_limits<double>::infinity() : 1;
+    point.extents.push_back({"x", "m", 0, -1, high, {}, {}, {}, false, {}, {}});
+    point.extents.push_back({"height", "m", 0, -2, 2, {}, {}, {}, false, {}, {}});
+    points.push_back(std::move(point));
+  }
+  Plot plot;
+  plot.x.room = plot.y.room = 0;
+  add_ribbon(plot, points, "x");
+  CHECK(axis_range(plot, {}, 1) == PlotRange{-1, 1});
+  REQUIRE(layout_of(plot).bands.size() == 1);
+  CHECK(layout_of(plot).bands[0].lower_upper.size() == 2);
+  plot = {};
+  add_ribbon(plot, points, "height");
+  REQUIRE(layout_of(plot).bands.size() == 1);
+  CHECK(layout_of(plot).bands[0].lower_upper.size() == 1);
 }

@@ -4,6 +4,8 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/friction_ribbon.hpp"
+#include "engine/study/ribbon_bends.hpp"
+#include "engine/study/ribbon_meetings.hpp"
 #include "engine/study/ribbon_tips.hpp"
 #include "engine/study/slow_change.hpp"
 #include "tests/catch.hpp"

@@ -101,9 +101,24 @@ void shown_quantity_choice(Session& session, Ui& ui) {
   ImGui::EndCombo();
 }
 
+// Where along the curve something is missing, and why.
+template <class Gap>
+void gap_lines(Ui& ui, const ShownUnit& unit, const std::vector<Gap>& gaps, const std::string& widget,
+               const ImVec4& color) {
+  constexpr std::size_t most_gaps = 4;
+  const std::string after = unit.text.empty() ? "" : " " + unit.text;
+  for (std::size_t i = 0; i < gaps.size() && i < most_gaps; ++i) {
+    const std::string from = short_text(unit.shown(gaps[i].from), 5),
+                      to = short_text(unit.shown(gaps[i].to), 5);
+    paragraph((from == to ? "At " + from : "From " + from + " to " + to) + after + ": " + gaps[i].why, color);
+    note_widget(ui.widgets, widget + std::to_string(i + 1));
+  }
+  if (gaps.size() > most_gaps)
+    paragraph("And " + std::to_string(gaps.size() - most_gaps) + " more gaps.", colors_of(ui).dim);
+}
+
 // Of periodic motions: "65 points", and where there are none.
 void found_motions(Session& session, Ui& ui) {
-  constexpr std::size_t most_gaps = 4;
   const auto& found = session.study.response.resonance.found;
   if (!found) return;
   const NumberStyle& numbers = session.options.numbers;
@@ -117,17 +132,7 @@ void found_motions(Session& session, Ui& ui) {
       "Points lie closer where the curve bends; a peak narrower than the first of them are apart, a 32nd of "
       "the range, may lie between two: a shorter range shows it.");
   const ShownUnit unit = shown_unit(parameter_unit(*found->of.mechanism, found->of.address), session.units);
-  const std::string after = unit.text.empty() ? "" : " " + unit.text;
-  const std::vector<ResonanceGap> gaps = resonance_gaps(found->result);
-  for (std::size_t i = 0; i < gaps.size() && i < most_gaps; ++i) {
-    const std::string from = short_text(unit.shown(gaps[i].from), 5),
-                      to = short_text(unit.shown(gaps[i].to), 5);
-    paragraph((from == to ? "At " + from : "From " + from + " to " + to) + after + ": " + gaps[i].why,
-              colors_of(ui).warn);
-    note_widget(ui.widgets, "response/gap/" + std::to_string(i + 1));
-  }
-  if (gaps.size() > most_gaps)
-    paragraph("And " + std::to_string(gaps.size() - most_gaps) + " more gaps.", colors_of(ui).dim);
+  gap_lines(ui, unit, resonance_gaps(found->result), "response/gap/", colors_of(ui).warn);
 }
 
 // "3 branches, 277 points", and what they are bounded by.
@@ -182,20 +187,19 @@ void band_choice(Session& session, Ui& ui) {
 void ribbon_choice(Session& session, Ui& ui) {
   if (!has_friction(session.mechanism())) return;
   bool& wanted = session.study.friction.ribbon_wanted;
-  if (check_row(
-          ui, "response/ribbon", "Band of friction", wanted,
-          "Where friction lets it stand: along the lower edge as it rises, along the upper as it falls."))
+  if (check_row(ui, "response/ribbon", "Band of friction", wanted,
+                "Where friction lets it stand: along the lower edge as it rises, along the upper as it "
+                "falls. Where "
+                "no edge is drawn it runs away over it."))
     wanted = !wanted;
   if (!wanted) return;
   const auto& ribbon = session.study.friction.ribbon;
   if (!ribbon.problem.empty()) return paragraph(ribbon.problem, colors_of(ui).bad);
-  const auto shown = shown_ribbon(session);
-  const auto empty = [](const RibbonPoint& point) { return point.extents.empty(); };
-  if (!shown || !std::ranges::all_of(shown->result.points, empty)) return;
-  paragraph("No band is drawn here: the states are unstable, the balance folds where several joints have "
-            "friction, or friction holds them at any place, as the results tell.",
-            colors_of(ui).dim);
-  note_widget(ui.widgets, "response/ribbon/none");
+  if (const auto shown = shown_ribbon(session)) {
+    const ResponseRequest& of = shown->of.curve->of;
+    const ShownUnit unit = shown_unit(parameter_unit(*of.mechanism, of.address), session.units);
+    gap_lines(ui, unit, ribbon_gaps(session), "response/ribbon/gap/", colors_of(ui).dim);
+  }
 }
 
 // Of the fields above and below, which leave a margin.

@@ -179,15 +179,13 @@ void add_band(const Session& session, Plot& plot) {
 // Where friction lets coordinates and measures stand; in SI units.
 void add_friction(const Session& session, Plot& plot) {
   const auto ribbon = shown_ribbon(session);
-  if (!ribbon) return;
-  const std::string& key = session.study.response.choice.quantity;
-  const std::size_t blank = key.find(' ');
-  if (!key.starts_with("value ") && !key.starts_with("measure ")) return;
+  const std::optional<std::string> name = banded_quantity(session);
+  if (!ribbon || !name) return;
   const std::span<const RibbonPoint> all = ribbon->result.points;
   for (const BandStretch& stretch : ribbon->result.stretches)
     if (stretch.first < all.size())
       add_ribbon(plot, all.subspan(stretch.first, std::min(stretch.count, all.size() - stretch.first)),
-                 key.substr(blank + 1));
+                 *name);
 }
 
 } // namespace
