@@ -9,6 +9,7 @@ namespace flyball {
 namespace {
 
 constexpr int whole = 60, at_front = 100, at_word = 80, within = 40, spread = 4; // in the name
+constexpr int one_word = 30; // to its end: what is typed may have been typed out
 constexpr int of_word_start = 4, more_at_word = 12, more_within = 6;
 
 char lower_letter(char c) {
@@ -25,6 +26,10 @@ bool begins_word(std::string_view text, std::size_t at) {
   return at == 0 || !is_word_part(text[at - 1]);
 }
 
+bool ends_word(std::string_view text, std::size_t end) {
+  return end == text.size() || !is_word_part(text[end]);
+}
+
 // What stands between blanks.
 std::vector<std::string_view> typed_words(std::string_view typed) {
   std::vector<std::string_view> words;
@@ -36,15 +41,16 @@ std::vector<std::string_view> typed_words(std::string_view typed) {
   return words;
 }
 
-// Where the word stands together, rather at a word's beginning.
+// Where the word stands together: rather as one of the text's words, else at one's beginning.
 std::optional<std::size_t> find_together(std::string_view word, std::string_view text) {
   std::optional<std::size_t> found;
   for (auto from = text.begin();; ++from) {
     from = std::search(from, text.end(), word.begin(), word.end(), same_letter);
     if (from == text.end()) return found;
     const auto at = static_cast<std::size_t>(from - text.begin());
-    if (begins_word(text, at)) return at;
-    if (!found) found = at;
+    const bool begins = begins_word(text, at);
+    if (begins && ends_word(text, at + word.size())) return at;
+    if (!found || (begins && !begins_word(text, *found))) found = at;
   }
 }
 
@@ -76,7 +82,9 @@ std::optional<FuzzyMatch> find_spread(std::string_view word, std::string_view te
 FuzzyMatch match_word(std::string_view word, std::string_view name, std::string_view more) {
   FuzzyMatch best;
   if (const auto at = find_together(word, name)) {
-    best.score = *at == 0 ? at_front : begins_word(name, *at) ? at_word : within;
+    const bool begins = begins_word(name, *at);
+    best.score = *at == 0 ? at_front : begins ? at_word : within;
+    if (begins && ends_word(name, *at + word.size())) best.score += one_word;
     for (std::size_t i = 0; i < word.size(); ++i)
       best.marks.push_back(*at + i);
     return best;

@@ -48,6 +48,9 @@ TEST_CASE("names answer by beginnings, initials and words in any order") {
   const auto score = [](const char* typed, const char* name) { return fuzzy_match(typed, name).score; };
   CHECK(score("ball1", "ball1") > score("ball1", "mass of ball1"));
   CHECK(score("spe", "speed of spin") > score("spe", "free speed"));
+  CHECK(score("spin", "speed of spin") > score("spin", "spindle"));
+  CHECK(score("spin", "spindle") > score("spin", "mass of spindle"));
+  CHECK(fuzzy_match("spin", "spindle and spin").marks == std::vector<std::size_t>{12, 13, 14, 15});
   CHECK(score("spin speed", "speed of spin") > 0);
   CHECK(score("sos", "speed of spin") > 0);
   CHECK(score("SPIN", "speed of spin") == score("spin", "speed of spin"));
@@ -99,6 +102,20 @@ TEST_CASE("a small part that is found stands in the middle of what it is joined 
   const ImVec2 foot = robot.pixel(Vec3(0, -0.08, 0));
   CHECK(foot.y > view.center().y + 50);
   CHECK(foot.y < view.to.y);
+}
+
+TEST_CASE("the number that one moves comes right after the part, before parts that begin alike") {
+  Finder robot;
+  robot.find("spin"); // "spindle" begins so, too
+  CHECK(robot.entry().name == "part/joint/spin");
+  CHECK(robot.entry(1).address == spin_speed);
+  robot.key(key_escape);
+  robot.frames(2);
+  robot.find("slide"); // of its numbers those with sliders
+  CHECK(robot.entry().name == "part/joint/slide");
+  for (std::size_t i = 1; i <= 2; ++i)
+    CHECK(std::ranges::find(robot.app.session.parameters, robot.entry(i).address,
+                            &ParameterControl::address) != robot.app.session.parameters.end());
 }
 
 TEST_CASE("a spring that only damps is called a damper") {

@@ -20,6 +20,14 @@ constexpr std::size_t most_entries = 200;
 // Added to how well it answers: a command that is not possible now comes before letters that are scattered
 // over a name.
 constexpr int recently_used = 30, disabled_command = -50;
+// Numbers that a slider moves are likelier meant than others that answer alike, most of all where a number is
+// typed behind the name.
+constexpr int with_slider = 5, slider_and_number = 25;
+
+bool has_slider(const Session& session, const std::string& address) {
+  return std::ranges::find(session.parameters, address, &ParameterControl::address) !=
+         session.parameters.end();
+}
 
 std::string words_of_address(std::string address) {
   std::ranges::replace(address, '.', ' ');
@@ -115,8 +123,10 @@ int recent_bonus(const std::vector<std::string>& recent, const std::string& name
 void try_entry(const Session& session, const std::vector<std::string>& recent, const std::string& search,
                const PaletteEntry& entry, std::vector<Ranked>& ranked) {
   if (FuzzyMatch match = fuzzy_match(search, entry.title, entry.more)) {
-    ranked.push_back(
-        {match.score + recent_bonus(recent, entry.name) + (entry.enabled ? 0 : disabled_command), entry});
+    const bool slider = !entry.address.empty() && has_slider(session, entry.address);
+    ranked.push_back({match.score + recent_bonus(recent, entry.name) +
+                          (entry.enabled ? 0 : disabled_command) + (slider ? with_slider : 0),
+                      entry});
     ranked.back().entry.marks = std::move(match.marks);
     return;
   }
@@ -128,10 +138,9 @@ void try_entry(const Session& session, const std::vector<std::string>& recent, c
   const std::string unit = parameter_unit(session.mechanism(), entry.address);
   const Quantity typed = parse_quantity(number, unit, shown_unit(unit, session.units).text);
   if (!typed) return;
-  // Numbers with a slider are what is most likely meant.
-  const bool slider = std::ranges::find(session.parameters, entry.address, &ParameterControl::address) !=
-                      session.parameters.end();
-  ranked.push_back({match.score + recent_bonus(recent, entry.name) + (slider ? 25 : 0), entry});
+  const bool slider = has_slider(session, entry.address);
+  ranked.push_back(
+      {match.score + recent_bonus(recent, entry.name) + (slider ? slider_and_number : 0), entry});
   ranked.back().entry.marks = std::move(match.marks);
   ranked.back().entry.value = typed.value;
 }
