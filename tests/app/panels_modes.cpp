@@ -1,7 +1,9 @@
 // The modes of the state that is shown, moving in the view, and the Campbell diagram.
 #include "robot.hpp"
 #include "session_wait.hpp"
+#include "slider_crank.hpp"
 
+#include "app/document/formula_edits.hpp"
 #include "app/session/campbell.hpp"
 #include "app/session/coordinate_words.hpp"
 #include "app/session/modes.hpp"
@@ -473,6 +475,44 @@ TEST_CASE("where the balance turns with the drives the modes' panel leads to the
   CHECK(robot.app.session.study.open == StudyKind::response);
   ModesRobot steady("governor");
   CHECK_FALSE(steady.app.ui.widgets.contains("modes/response"));
+}
+
+TEST_CASE("where a torque drives what turns so the response is offered over what sets the torque") {
+  Mechanism m = shipped("horizontal_rotor"); // under its weight
+  set_expression(m, "joints.spin.drive.speed", "30");
+  m.parameters.push_back({"T", "", 2, "N m", {}}); // the last
+  m.joints.back().coordinates.front().drive->torque = 2;
+  set_expression(m, "joints.spin.drive.torque", "T");
+  set_expression(m, "joints.spin.drive.load", "0.06 N m s*rate(spin)");
+  Robot robot(wide, LiveSolver::Mode::background);
+  open_document(robot.app.session, Document(m));
+  robot.key('O');
+  REQUIRE(
+      steps_until([&] { robot.frames(1); }, [&] { return robot.app.ui.widgets.contains("modes/response"); }));
+  robot.click("modes/response");
+  robot.frames(2);
+  CHECK(robot.app.session.study.open == StudyKind::response);
+  CHECK(robot.app.session.study.response.choice.address == "parameters.T");
+}
+
+TEST_CASE(
+    "where no steady state is found of what a torque drives the modes' panel leads to the limit cycle") {
+  Robot robot(wide);
+  Mechanism m = Document::empty_mechanism();
+  add_driven_slider_crank(m, 20);
+  const std::string crank = m.joints.front().name;
+  m.joints.front().coordinates.front().drive->torque = 60;
+  set_expression(m, "joints." + crank + ".drive.load", "3 N m s*rate(" + crank + ")");
+  open_document(robot.app.session, Document(m));
+  robot.frames(2);
+  robot.key('O');
+  robot.frames(2);
+  REQUIRE(robot.app.session.answer.solution.status == Status::not_converged);
+  robot.click("modes/cycle");
+  robot.frames(3);
+  REQUIRE(limit_cycle(robot.app.session));
+  CHECK(limit_cycle(robot.app.session)->status == PeriodicStatus::found);
+  CHECK_FALSE(robot.app.ui.widgets.contains("modes/cycle"));
 }
 
 TEST_CASE("a click in the Campbell diagram sets the speed") {

@@ -13,6 +13,7 @@
 #include "app/ui/widgets/typed_field.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
 
 #include <algorithm>
@@ -229,6 +230,47 @@ std::string without_modes(const Session& session) {
          "are those that unbalance excites. The response shows how far it swings with them as they are.";
 }
 
+// Of a drive by torque, which finds its speed: a number that sets the torque, or the load against it; ""
+// where none does.
+std::string torque_number(const Mechanism& mechanism) {
+  for (const Joint& joint : mechanism.joints)
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      if (const auto& drive = joint.coordinates[i].drive; !drive || !drive->torque) continue;
+      const std::string speed = drive_speed_address(joint, i);
+      for (const char* key : {"torque", "load"}) {
+        const std::string address = speed.substr(0, speed.rfind('.') + 1) + key;
+        const std::optional<std::string> formula = formula_at(mechanism, address);
+        if (!formula) return address;
+        if (const auto sources = sources_of(mechanism, *formula); !sources.empty()) return sources.front();
+      }
+    }
+  return {};
+}
+
+// Where it swings instead of standing still: how far, over the speed where that is given, else over what
+// makes it.
+void offer_response(Session& session, Ui& ui) {
+  const std::vector<std::string> speeds = drive_speeds(session.mechanism());
+  const std::string over = speeds.empty() ? torque_number(session.mechanism()) : speeds.front();
+  const std::string words = !speeds.empty() ? "the speed" : parameter_phrase(over);
+  if (!text_button(ui, "modes/response", over.empty() ? "Response" : ("Response over " + words).c_str(),
+                   true))
+    return;
+  later(ui, [&session, over, speeds] {
+    if (std::ranges::find(speeds, session.study.response.choice.address) == speeds.end())
+      choose_response(session, over);
+    open_study(session, StudyKind::response);
+  });
+}
+
+// Where no steady state was found of what torques drive: perhaps its speed swings with every turn.
+void offer_cycle(Session& session, Ui& ui) {
+  paragraph("What a torque drives may move in a limit cycle, its speed swinging with every turn.",
+            colors_of(ui).dim);
+  if (!session.study.periodic.cycle_wanted && text_button(ui, "modes/cycle", "Find the limit cycle", true))
+    later(ui, [&session] { find_cycle(session, true); });
+}
+
 float table_line(const Ui& ui) {
   return std::max(ImGui::GetTextLineHeight(), ui.fonts.digits->FontSize) + 4 * ui.scale;
 }
@@ -327,8 +369,10 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
   }
   if (!converged(session)) {
     paragraph(without_modes(session), colors.dim);
-    if (turns_with_drives(session) && text_button(ui, "modes/response", "Response over the speed", true))
-      later(ui, [&session] { open_study(session, StudyKind::response); });
+    if (turns_with_drives(session))
+      offer_response(session, ui);
+    else if (may_cycle(session))
+      offer_cycle(session, ui);
     return false;
   }
   const bool finding = search.running();
