@@ -30,16 +30,18 @@ void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view n
 // about which it is lie well within it, so that it need not be known better than its points tell.
 bool is_drawn(const Plot& plot, const RibbonPoint& point, const BandExtent& extent) {
   constexpr double alike = 0.25;  // of the band's height
-  constexpr double beyond = 0.01; // of a way between points: where bands meet is known to less
+  constexpr double beyond = 0.02; // of a band's length: where bands meet is known to less
   if (!point.folds) return false;
   const double most = alike * (extent.high - extent.low);
   for (const PlotBand& band : plot.bands) {
     if (band.name != held) continue;
+    const double past = beyond * std::abs(band.points.back()[0] - band.points.front()[0]);
     for (std::size_t i = 1; i < band.points.size(); ++i) {
       const auto& [from, low_from, high_from] = band.points[i - 1];
       const auto& [to, low_to, high_to] = band.points[i];
-      const double part = (point.number - from) / (to - from);
-      if (!(part >= -beyond && part <= 1 + beyond)) continue;
+      if (from == to || std::min(from, to) - past > point.number || std::max(from, to) + past < point.number)
+        continue;
+      const double part = std::clamp((point.number - from) / (to - from), 0., 1.);
       if (std::abs(std::lerp(low_from, low_to, part) - extent.low) <= most &&
           std::abs(std::lerp(high_from, high_to, part) - extent.high) <= most)
         return true;

@@ -20,9 +20,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int parts = 4;          // of a way to a corner, looked at on the way
-constexpr int most_sweeps = 40;   // of all shares, one after the other
-constexpr double no_gain = 1e-16; // of an output's size, in a sweep
+constexpr std::size_t few_points = 5;
+constexpr double least_step = 1e-5; // as BranchOptions::largest_step
+constexpr int parts = 4;            // of a way to a corner, looked at on the way
+constexpr int most_sweeps = 40;     // of all shares, one after the other
+constexpr double no_gain = 1e-16;   // of an output's size, in a sweep
 constexpr int most_iterations = 60;
 constexpr std::size_t most_outputs = 128;
 
@@ -239,9 +241,12 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   ResponsePoint point;
   point.parameter = get_parameter(mechanism, share.address);
   point.coordinates = state.coordinates;
-  const auto diagram =
-      follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
-  if (!diagram || diagram->branches.empty()) return false;
+  std::optional<ResponseDiagram> diagram;
+  do { // a band of a few steps, as beside the end of a tip, would go out of the range within one of them
+    diagram = follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
+    if (!diagram || diagram->branches.empty()) return false;
+    options.largest_step /= 4;
+  } while (diagram->branches.front().points.size() < few_points && options.largest_step > least_step);
   // An end that is none of the share's: it goes on, as a pendulum does that friction holds at any angle.
   std::vector<const ResponsePoint*> open;
   std::string why;

@@ -3,6 +3,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/report/analysis.hpp"
+#include "engine/report/holding.hpp"
 #include "engine/study/friction_ribbon.hpp"
 #include "engine/study/ribbon_bends.hpp"
 #include "engine/study/ribbon_meetings.hpp"
@@ -86,6 +87,35 @@ std::pair<double, double> held_angles(double speed, double angle, double limit, 
   return {end(-1e-4), end(1e-4)};
 }
 
+bool comes_back(double speed, double angle, bool tilted) {
+  return holding_moment(speed, angle + 1e-5, tilted) > holding_moment(speed, angle - 1e-5, tilted);
+}
+
+// The speed from which some angles to one side take more than the limit, which so are held no longer.
+double parting_speed(double limit, bool tilted, double side) {
+  double below = 1, above = 6;
+  for (int i = 0; i < 50; ++i) {
+    const double speed = std::midpoint(below, above);
+    double most = 0; // towards the side
+    for (double angle = 0; angle < 1.5; angle += 1e-4)
+      most = std::max(most, -side * holding_moment(speed, side * angle, tilted));
+    (most > limit ? above : below) = speed;
+  }
+  return above;
+}
+
+// Numbers at which bands meet, each once, ascending.
+std::vector<double> meeting_numbers(const std::vector<std::vector<RibbonPoint>>& ribbons) {
+  std::vector<double> out;
+  for (const std::vector<RibbonPoint>& ribbon : ribbons)
+    for (const RibbonPoint& point : ribbon)
+      if (point.meets &&
+          std::ranges::none_of(out, [&](double other) { return std::abs(other - point.number) < 1e-3; }))
+        out.push_back(point.number);
+  std::ranges::sort(out);
+  return out;
+}
+
 const std::string shaft_speed = "joints.spin.drive.speed";
 
 } // namespace
@@ -96,9 +126,10 @@ TEST_CASE("bands of a pendulum on a shaft grow together past folds of the balanc
   const Mechanism m = pendulum_on_shaft(limit, tilted);
   BranchOptions options;
   options.all = true;
-  const ResponseDiagram diagram = follow_branches(m, shaft_speed, 1, 5, options);
-  const std::vector<std::vector<RibbonPoint>> ribbons = friction_ribbons(m, shaft_speed, diagram);
-  int folds = 0, without = 0, meetings = 0;
+  const bool rising = GENERATE(true, false);
+  const ResponseDiagram diagram = follow_branches(m, shaft_speed, rising ? 1 : 5, rising ? 5 : 1, options);
+  std::vector<std::vector<RibbonPoint>> ribbons = friction_ribbons(m, shaft_speed, diagram);
+  int folds = 0, without = 0;
   for (std::size_t k = 0; k < ribbons.size(); ++k) {
     for (std::size_t i = 0; i < ribbons[k].size(); ++i) {
       const ResponsePoint& state = diagram.branches[k].points[i];
@@ -111,13 +142,23 @@ TEST_CASE("bands of a pendulum on a shaft grow together past folds of the balanc
       CAPTURE(state.parameter, angle);
       CHECK_THAT(swing->low, WithinAbs(low, 1e-9));
       CHECK_THAT(swing->high, WithinAbs(high, 1e-9));
+      // Beyond an edge it comes back to that where turning farther takes more, and runs away where it takes
+      // less.
+      CHECK(swing->stable_low == comes_back(state.parameter, low, tilted));
+      CHECK(swing->stable_high == comes_back(state.parameter, high, tilted));
     }
+    for (const auto& [begin, end] : slow_stretches(ribbons[k]))
+      for (std::size_t i = begin; i < end; ++i)
+        CHECK(diagram.branches[k].points[i].stable != false);
     // Where they meet the band of a branch jumps from one point to the next, which is told closely.
-    std::vector<RibbonPoint> points = ribbons[k];
+    std::vector<RibbonPoint>& points = ribbons[k];
+    const std::size_t count = points.size();
+    const std::atomic<bool> cancel = true;
+    add_meetings(m, shaft_speed, ribbon_places(diagram.branches[k]), points, &cancel);
+    CHECK(points.size() == count); // none that is not found
     add_meetings(m, shaft_speed, ribbon_places(diagram.branches[k]), points);
     for (std::size_t i = 1; i < points.size(); ++i) {
       if (!points[i].meets) continue;
-      ++meetings;
       CHECK(std::abs(points[i].number - points[i - 1].number) < 1e-4);
       const BandExtent &a = *find_extent(points[i - 1], "swing"), &b = *find_extent(points[i], "swing");
       CHECK(std::max(std::abs(a.low - b.low), std::abs(a.high - b.high)) > 0.1);
@@ -125,7 +166,12 @@ TEST_CASE("bands of a pendulum on a shaft grow together past folds of the balanc
   }
   CHECK(folds > 20);
   CHECK(without <= 2);
-  CHECK(meetings == (tilted ? 5 : 3)); // along each branch, there and back over a fold
+  std::vector<double> parting{parting_speed(limit, tilted, 1)};
+  if (tilted) parting.push_back(parting_speed(limit, tilted, -1));
+  const std::vector<double> meetings = meeting_numbers(ribbons);
+  REQUIRE(meetings.size() == parting.size());
+  for (std::size_t i = 0; i < meetings.size(); ++i)
+    CHECK_THAT(meetings[i], WithinAbs(parting[i], 1e-4));
 }
 
 TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band folds") {
@@ -145,6 +191,7 @@ TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band 
   for (const RibbonPoint& point : tip) {
     CHECK(point.number < last); // outwards
     last = point.number;
+    if (&point == &tip.back()) break; // both ends are one there
     const BandExtent& swing = *find_extent(point, "swing");
     const auto [low, high] = held_angles(point.number, std::midpoint(swing.low, swing.high), limit, true);
     CAPTURE(point.number);
@@ -153,28 +200,32 @@ TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band 
   }
   // A little farther nothing there is held.
   CHECK(last < fold->at.parameter - 0.02);
-  for (double angle = -0.5; angle < 0; angle += 1e-3)
-    CHECK(std::abs(holding_moment(last - 1e-3, angle, true)) > limit);
+  double least = limit;
+  for (double angle = -0.5; angle < 0; angle += 1e-5)
+    least = std::min(least, std::abs(holding_moment(last - 1e-6, angle, true)));
+  CHECK(least == limit);
+  const BandExtent& end = *find_extent(tip.back(), "swing");
+  CHECK(end.low == end.high);
+  CHECK_THAT(std::abs(holding_moment(last, end.low, true)), WithinAbs(limit, 1e-9));
   // None where the band reaches the branch beyond.
   CHECK(ribbon_tips(pendulum_on_shaft(0.5, true), shaft_speed, 2.8, 4.2, diagram).empty());
 }
 
 TEST_CASE("a bead that snaps through has tips up to the folds at friction's limit") {
-  const double limit = 2;
+  const double limit = GENERATE(2., 0.01, 0.001, 1e-5); // of 22.5 N at the fold
   const bool measured = GENERATE(false, true); // what does not depend on friction has a band without height
   const Mechanism m = read_scene(
       R"({"flyball": 1, "name": "Snap", "gravity": [0, 0, 0], "parameters": {"F": {"value": -40, "unit": "N"}},
     "bodies": [{"name": "bead", "mass": 1, "position": [-1, 0, 0]}],
     "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "bead"], "at": [0, 0, 0],
-      "axis": [1, 0, 0], "damping": 1, "friction": {"limit": 2}}], )" +
+      "axis": [1, 0, 0], "damping": 1, "friction": {"limit": )" +
+      number_text(limit) + "}}], " +
       std::string(measured ? R"("measures": {"only": {"value": "=2*F", "unit": "N"}}, )" : "") +
       R"("forces": [{"name": "sp", "type": "spring", "bodies": ["ground", "bead"], "points": [[0, 0.5, 0], [-1, 0, 0]],
       "stiffness": 100, "free_length": 1},
       {"name": "push", "type": "force", "body": "bead", "at": [-1, 0, 0], "vector": ["=F", 0, 0]}]})");
   const auto spring = [](double x) { return 100 * (1 - 1 / std::hypot(x, 0.5)) * x; }; // at x, N
-  double fold = 0;
-  for (double x = -1; x < 0; x += 1e-5)
-    fold = std::max(fold, spring(x));
+  const double fold = spring(-std::sqrt(std::pow(0.25, 2. / 3) - 0.25));               // where it is largest
   const double from = GENERATE(-40., 40.);
   const ResponseDiagram diagram = follow_branches(m, "parameters.F", from, -from);
   const std::vector<std::vector<RibbonPoint>> tips = ribbon_tips(m, "parameters.F", from, -from, diagram);
@@ -183,29 +234,99 @@ TEST_CASE("a bead that snaps through has tips up to the folds at friction's limi
     const double sense = tip.back().number > 0 ? 1 : -1;
     CAPTURE(from, sense);
     CHECK(sense * tip.front().number < fold);
-    CHECK_THAT(sense * tip.back().number, WithinAbs(fold + limit, 0.02));
+    CHECK(tip.size() > 7);
+    CHECK_THAT(sense * tip.back().number, WithinAbs(fold + limit, 1e-9));
     for (std::size_t i = 0; i < tip.size(); ++i) {
       const BandExtent& slide = *find_extent(tip[i], "slide");
       if (i > 0) CHECK(sense * (tip[i].number - tip[i - 1].number) > 0);
       CHECK(std::max(sense * (slide.low - 1), sense * (slide.high - 1)) < 0); // not the sheet beyond
       const double middle = 0.5 * (slide.low + slide.high) - 1;               // drawn at -1
-      CHECK(sense * (tip[i].number - spring(middle)) < limit);
+      CHECK(sense * (tip[i].number - spring(middle)) < limit + 1e-9);
       for (const double end : {slide.low, slide.high})
-        CHECK_THAT(tip[i].number - spring(end - 1),
-                   WithinAbs(sense * limit,
-                             i + 1 < tip.size() ? 1e-6 : 1e-3)); // at the end both edges are nearly one
+        CHECK_THAT(tip[i].number - spring(end - 1), WithinAbs(sense * limit, 1e-6));
+      // It stands on the edge of the stable sheet, and snaps through over the other.
+      CHECK((sense > 0 ? slide.stable_low : slide.stable_high) == true);
+      CHECK((sense > 0 ? slide.stable_high : slide.stable_low) == false);
     }
   }
   // What is cancelled is missing.
   const std::atomic<bool> cancel = true;
   CHECK(ribbon_tips(m, "parameters.F", from, -from, diagram, &cancel).empty());
-  // Along a branch through folds no slow way is told, and few meetings are.
+  // Along a branch through folds a slow way is told of each stable stretch, and few meetings are.
   const std::vector<RibbonPlace> places = ribbon_places(diagram.branches.front());
   std::vector<RibbonPoint> ribbon = friction_ribbon(m, "parameters.F", places);
-  REQUIRE(std::ranges::any_of(ribbon, &RibbonPoint::folds));
+  if (limit == 2) REQUIRE(std::ranges::any_of(ribbon, &RibbonPoint::folds));
   CHECK(hysteresis(ribbon, "slide").empty());
+  const std::vector<RibbonStretch> stretches = slow_stretches(ribbon);
+  REQUIRE(stretches.size() == 2);
+  for (const auto& [begin, end] : stretches) {
+    for (std::size_t i = begin; i < end; ++i)
+      CHECK(std::abs(find_extent(ribbon[i], "slide")->value - 1) > 0.38); // beyond the folds
+    CHECK(hysteresis(std::span(ribbon).subspan(begin, end - begin), "slide").size() == end - begin);
+  }
   add_meetings(m, "parameters.F", places, ribbon);
   CHECK(std::ranges::count(ribbon, true, &RibbonPoint::meets) <= 4);
+}
+
+TEST_CASE("what is unstable beside the joints that have friction has no band") {
+  // Two rods of 1 kg and 1 m, one on the other, which stand upright.
+  const auto upright = [](const std::string& lower, const std::string& upper) {
+    return read_scene(R"({"flyball": 2, "name": "Upright", "gravity": [0, "=-g", 0],
+      "parameters": {"g": {"value": 10, "unit": "m/s^2"}},
+      "bodies": [{"name": "a", "mass": 1, "position": [0, 1, 0]}, {"name": "b", "mass": 1, "position": [0, 2, 0]}],
+      "joints": [{"name": "low", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 0, 1],
+          "damping": 0.1)" +
+                      lower + R"(},
+        {"name": "high", "type": "revolute", "bodies": ["a", "b"], "at": [0, 1, 0], "axis": [0, 0, 1],
+          "damping": 0.1)" +
+                      upper + "}]}");
+  };
+  const std::string rubs = R"(, "friction": {"limit": 2})";
+  const std::vector<RibbonPlace> places{{10, {{"low", 0}, {"high", 0}}}};
+  for (const auto& [lower, upper] : {std::pair(rubs, std::string()), std::pair(std::string(), rubs)}) {
+    const RibbonPoint point = friction_ribbon(upright(lower, upper), "parameters.g", places).front();
+    CHECK(point.extents.empty());
+    CHECK_THAT(point.message,
+               ContainsSubstring("what is free beside the joints that have friction leaves it"));
+    CHECK_THAT(find_holding(upright(lower, upper), places[0].start).message,
+               ContainsSubstring("unstable there"));
+  }
+  // Friction in both holds it, up to where the lower one or the upper one gives way: 20 sin a + 10 sin (a +
+  // b) and 10 sin (a + b) of 2 N m.
+  const RibbonPoint held = friction_ribbon(upright(rubs, rubs), "parameters.g", places).front();
+  const BandExtent* low = find_extent(held, "low");
+  INFO(held.message);
+  REQUIRE(low);
+  CHECK_THAT(low->high, WithinAbs(std::asin(0.2), 1e-9));
+  CHECK_THAT(low->low, WithinAbs(-std::asin(0.2), 1e-9));
+  CHECK(low->stable_high == false);
+  CHECK(low->stable_low == false);
+}
+
+TEST_CASE("what is bounded is told beside what friction holds anywhere") {
+  const Mechanism m = read_scene(R"~({"flyball": 2, "name": "Round", "gravity": [0, "=-g", 0],
+    "parameters": {"g": {"value": 10, "unit": "m/s^2"}},
+    "bodies": [{"name": "bob", "mass": 1, "position": [0, -1, 0]}],
+    "joints": [{"name": "hinge", "type": "revolute", "bodies": ["ground", "bob"], "at": [0, 0, 0],
+      "axis": [0, 0, 1], "friction": {"limit": 12}}],
+    "measures": {"aside": {"value": "=1 m*sin(coordinate(hinge))", "unit": "m"}}})~");
+  const std::vector<RibbonPlace> places{{8, {{"hinge", 0}}}, {10, {{"hinge", 0}}}};
+  for (const RibbonPoint& point : friction_ribbon(m, "parameters.g", places)) {
+    CHECK_THAT(point.message, ContainsSubstring("Friction holds it at any angle"));
+    const BandExtent *hinge = find_extent(point, "hinge"), *aside = find_extent(point, "aside");
+    REQUIRE(hinge);
+    REQUIRE(aside);
+    CHECK(std::isinf(hinge->low));
+    CHECK(std::isinf(hinge->high));
+    CHECK_THAT(aside->low, WithinAbs(-1, 1e-9));
+    CHECK_THAT(aside->high, WithinAbs(1, 1e-9));
+  }
+  // Few points do for it.
+  std::vector<RibbonPlace> many;
+  for (int i = 0; i <= 64; ++i)
+    many.push_back({5 + i / 16., {{"hinge", 0}}});
+  const std::vector<std::size_t> ends{0, 16, 32, 48, 64};
+  CHECK(friction_ribbon_at_bends(m, "parameters.g", many, ends).size() == 5);
 }
 
 TEST_CASE("a speed that rises and falls slowly leads a bead round a loop") {
