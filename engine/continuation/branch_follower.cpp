@@ -2,7 +2,6 @@
 
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
-#include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
@@ -219,41 +218,6 @@ ResponsePoint BranchFollower::point(const BranchState& state) {
   return describe(state).point;
 }
 
-Spectrum BranchFollower::spectrum(const BranchState& state) {
-  const FactoredState at = factor_at(problem_at(state), state.z, w_);
-  return find_stability(at, true).eigenvalues.value_or(Spectrum{});
-}
-
-// Where `value` (of a state and its distance along the branch, a step function maybe) changes its sign, and
-// how far along that is.
-template <class Value>
-std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, double low, double at_low,
-                                                      double high, double at_high, const BranchState& beyond,
-                                                      Value value) {
-  BranchState at = beyond, probe;
-  double found = high, previous = low;
-  RootBracket bracket(low, at_low, high, at_high);
-  for (int i = 0; i < 80 && bracket.width() > tolerance::special_point; ++i) {
-    double middle = bracket.next();
-    // Right beside a crossing the corrector may fail; closer in from either end it need not.
-    bool stepped = false;
-    for (const double there : {middle, (bracket.low() + middle) / 2, (middle + bracket.high()) / 2}) {
-      int iterations = 0;
-      middle = there;
-      stepped = continuation_.step(from, middle, probe, iterations);
-      if (stepped) break;
-    }
-    if (!stepped) break;
-    const double now = value(probe, middle);
-    at = probe;
-    found = middle;
-    if (now == 0 || (std::abs(middle - previous) < 0.1 * tolerance::special_point && i > 3)) break;
-    previous = middle;
-    bracket.take(middle, now);
-  }
-  return {std::move(at), found};
-}
-
 Eigen::VectorXd BranchFollower::difference(const BranchState& a, const BranchState& b) const {
   const Eigen::VectorXd turned = angles(a, b);
   Eigen::VectorXd out(system_.nv + turned.size() + 1);
@@ -384,26 +348,11 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
   Described now = describe(state);
   out.points.push_back(now.point);
   out.states.push_back(state);
-  // Where branches nearly cross a long step leaps from one to the other: there the determinant, which
-  // vanishes at a crossing, changes its sign at once.
-  const auto leaps = [&](const BranchState& next, double length) {
-    constexpr double at_once = 0.05, shortest = 1. / 64; // of the larger at the ends; of the largest step
-    if (families_ || !(state.determinant * next.determinant < 0)) return false;
-    if (length < shortest * options_.largest_step) return false;
-    try {
-      const BranchState at = locate(state, 0, state.determinant, length, next.determinant, next,
-                                    [](const BranchState& s, double) { return s.determinant; })
-                                 .first;
-      return std::abs(at.determinant) >
-             at_once * std::max(std::abs(state.determinant), std::abs(next.determinant));
-    } catch (const InfiniteRate&) { // at a place between them
-    } catch (const SceneError&) {
-    }
-    return false;
-  };
+  // A shorter step from the same state meets it again.
+  std::optional<Crossing> crossing;
   double length = options_.largest_step / 4;
   out.end = "the largest number of points";
-  for (int i = 1; i < options_.max_points; ++i) {
+  while (out.points.size() < static_cast<std::size_t>(options_.max_points)) {
     if (cancelled()) {
       out.end = "cancelled";
       break;
@@ -431,6 +380,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
         now = describe(state);
         out.points.push_back(now.point);
         out.states.push_back(state);
+        crossing.reset();
         length = options_.largest_step / 4;
         continue;
       }
@@ -448,13 +398,21 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       }
       break;
     }
-    if (straight && leaps(next, length)) {
-      length /= 2;
+    try {
+      const bool known = crossing && crossing->along <= length && state.determinant * next.determinant < 0;
+      if (!known) crossing = find_crossing(state, next, length);
+    } catch (const SceneError&) { // at a place between them: told below
+    }
+    const double shortest = options_.largest_step / 64;
+    if (straight && length >= shortest && crossing && crossing->leaps) {
+      do
+        length /= 2;
+      while (length >= shortest && length > crossing->along);
       continue;
     }
     const double p = position(next.parameter);
     if (p > 1 || p < 0) {
-      find_specials_inside(state, next, length, now, out);
+      find_specials_inside(state, next, length, now, crossing, out);
       land_on_border(state, p > 1 ? to_ : from_, out);
       out.end = p > 1 ? "the end of the range" : "the beginning of the range";
       break;
@@ -465,7 +423,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     Described then = describe(next);
     try {
-      find_specials(state, next, length, now, then, out);
+      find_specials(state, next, length, now, then, crossing, out);
       if (turns_with_drives(now.point) && turns_with_drives(then.point))
         find_multiplier_crossing(state, next, length, out);
     } catch (const InfiniteRate& error) { // at a place between them
@@ -476,7 +434,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     out.points.push_back(then.point);
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
-    if (i > 5 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
+    if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
         same_place(next, origin, length) && next.tangent.dot(origin.tangent) > 0.9) {
       out.end = closed_branch;
       out.closed = true;
@@ -488,6 +446,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     state = std::move(next);
     now = std::move(then);
+    crossing.reset();
     // Bands in which the drives pump a motion up are narrow.
     const double longest =
         options_.largest_step / size_of(state, state.tangent) * (turns_with_drives(now.point) ? 0.25 : 1);
@@ -496,151 +455,6 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     else
       length = std::min(longest, length * (iterations <= 3 ? 1.5 : iterations > 5 ? 0.6 : 1.));
   }
-}
-
-void BranchFollower::find_specials(const BranchState& state, const BranchState& next, double length,
-                                   const Described& now, const Described& then, FollowedBranch& out) {
-  if (now.point.singular_loops && then.point.singular_loops) return; // of a balance that says nothing
-  constexpr double rounding = 1e-9; // of a tangent, as along a family at one value of the parameter
-  int explained = 0;                // eigenvalues that go through zero
-  if (!families_ && state.turning * next.turning < 0 &&
-      std::max(std::abs(state.turning), std::abs(next.turning)) > rounding) {
-    // At a crossing the tangent can jump; a fold's own balance stays regular.
-    const BranchState at =
-        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s, double) {
-          return s.turning;
-        }).first;
-    out.special.emplace_back(SpecialPointType::fold, point(at));
-    ++explained;
-  }
-  if (!families_ && state.determinant * next.determinant < 0) {
-    BranchState at =
-        locate(state, 0, state.determinant, length, next.determinant, next, [](const BranchState& s, double) {
-          return s.determinant;
-        }).first;
-    // At the crossing itself the balance has two tangents; this is the branch's own.
-    at.tangent = state.tangent;
-    out.special.emplace_back(SpecialPointType::branch_point, point(at));
-    out.crossings.push_back(std::move(at));
-    ++explained;
-  }
-  if (options_.eigenvalues && std::abs(then.right - now.right) > explained)
-    find_pair_crossings(state, next, length, now.right, then.right, out);
-}
-
-// Of a step that leaves the range those within it.
-void BranchFollower::find_specials_inside(const BranchState& state, const BranchState& beyond, double length,
-                                          const Described& now, FollowedBranch& out) {
-  FollowedBranch last;
-  try {
-    if (!holds_at_every_phase(beyond)) return;
-    find_specials(state, beyond, length, now, describe(beyond), last);
-  } catch (const SceneError&) { // no mechanism can be made a little beyond the range
-    return;
-  }
-  std::size_t crossing = 0;
-  for (auto& [type, point] : last.special) {
-    const bool crosses = type == SpecialPointType::branch_point;
-    const std::size_t at = crossing;
-    crossing += crosses ? 1 : 0;
-    if (const double p = position(point.parameter); p < 0 || p > 1) continue;
-    if (crosses) out.crossings.push_back(std::move(last.crossings[at]));
-    out.special.emplace_back(type, std::move(point));
-  }
-}
-
-// Every place on a step at which the number of eigenvalues to the right of the axis changes, in order.
-void BranchFollower::find_pair_crossings(const BranchState& state, const BranchState& next, double length,
-                                         int before, int after, FollowedBranch& out) {
-  constexpr int most = 8;
-  CrossingBracket at{0, length, before, after};
-  for (int i = 0; i < most && at.right_low != after && !cancelled(); ++i) {
-    at.high = length;
-    at.right_high = after;
-    // Their number is blurred by rounding where they meet: it brackets, and a smooth function locates.
-    std::optional<std::pair<SpecialPointType, BranchState>> found;
-    for (const double width : {1e-3 * length, 1e-7 * length}) {
-      if (!narrow(state, width, at)) return;
-      if ((found = locate_pair_crossing(state, next, length, at))) break;
-    }
-    if (!found) found = jumping_pair(state, at);
-    if (found) out.special.emplace_back(found->first, point(found->second));
-    at.low = at.high;
-    at.right_low = at.right_high;
-  }
-}
-
-bool BranchFollower::narrow(const BranchState& state, double width, CrossingBracket& at) {
-  while (at.high - at.low > width && !cancelled()) {
-    BranchState probe;
-    int iterations = 0;
-    const double middle = (at.low + at.high) / 2;
-    if (!continuation_.step(state, middle, probe, iterations)) return false;
-    const int right = right_of_axis(spectrum(probe), families_);
-    (right == at.right_low ? at.low : at.high) = middle;
-    if (right != at.right_low) at.right_high = right;
-  }
-  return true;
-}
-
-std::optional<std::pair<SpecialPointType, BranchState>>
-BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState& next, double length,
-                                     const CrossingBracket& at) {
-  const bool forth = at.right_high > at.right_low; // towards the unstable side
-  const auto spectrum_at = [&](double along) {
-    BranchState probe;
-    int iterations = 0;
-    return continuation_.step(state, along, probe, iterations) ? spectrum(probe) : Spectrum{};
-  };
-  const double unstable = forth ? at.high : at.low;
-  const Spectrum there = spectrum_at(unstable);
-  for (PairCrossing crossing : possible_crossings(there, std::abs(at.right_high - at.right_low), families_)) {
-    double stable = forth ? at.low : at.high;
-    Spectrum here = spectrum_at(stable);
-    std::complex<double> first = crossing.at, second = crossing.at; // on the stable and the unstable side
-    if (!crossing.coalescence && !here.empty()) {
-      first = nearest_eigenvalue(here, second);
-      // A real part grows slowly: it was above zero for a while before it counted.
-      for (double reach = stable - unstable; first.real() > 0; reach *= 2) {
-        stable += reach;
-        here = stable < -length || stable > 2 * length ? Spectrum{} : spectrum_at(stable);
-        if (here.empty()) break;
-        first = nearest_eigenvalue(here, first);
-      }
-    }
-    const auto value = [&](const Spectrum& s, double along) {
-      crossing.at = first + (second - first) * ((along - stable) / (unstable - stable));
-      return crossing_value(s, crossing).value_or(0);
-    };
-    const double at_stable = value(here, stable), at_unstable = value(there, unstable);
-    if (!(at_stable < 0 && at_unstable > 0)) continue;
-    const double ends[] = {std::min(stable, unstable), std::max(stable, unstable)};
-    double last = at_unstable;
-    const BranchState found =
-        locate(state, ends[0], forth ? at_stable : at_unstable, ends[1], forth ? at_unstable : at_stable,
-               next, [&](const BranchState& s, double along) { return last = value(spectrum(s), along); })
-            .first;
-    const double jump = std::max(1e-5, 10 * tolerance::special_point / (ends[1] - ends[0]));
-    if (std::abs(last) > jump * std::max(-at_stable, at_unstable)) continue;
-    return std::pair{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, found};
-  }
-  return {};
-}
-
-// Where nothing goes through zero smoothly the number of eigenvalues itself is followed, as at a corner of
-// the branch. Nothing where only real ones cross.
-std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_pair(const BranchState& state,
-                                                                                     CrossingBracket at) {
-  BranchState low, high;
-  int iterations = 0;
-  if (!narrow(state, tolerance::special_point, at) || !continuation_.step(state, at.low, low, iterations) ||
-      !continuation_.step(state, at.high, high, iterations))
-    return {};
-  const bool forth = at.right_high > at.right_low;
-  const auto crossings =
-      possible_crossings(spectrum(forth ? high : low), std::abs(at.right_high - at.right_low), families_);
-  if (crossings.empty()) return {};
-  return std::pair{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high};
 }
 
 std::optional<BranchState> BranchFollower::off(const BranchState& crossing, double length) {

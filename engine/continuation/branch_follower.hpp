@@ -94,15 +94,26 @@ class BranchFollower {
     double low = 0, high = 0;
     int right_low = 0, right_high = 0;
   };
+  // Where the determinant of the bordered balance changes its sign on a step: another branch crosses, or the
+  // step leaps to one that passes close by.
+  struct Crossing {
+    BranchState at;
+    double along = 0; // scaled arclength from the step's start
+    bool leaps = false;
+  };
   void follow(BranchState state, bool tell_progress, FollowedBranch& out);
   Described describe(const BranchState& state);
   template <class Value>
   std::pair<BranchState, double> locate(const BranchState& from, double low, double at_low, double high,
                                         double at_high, const BranchState& beyond, Value value);
+  std::optional<Crossing> find_crossing(const BranchState& state, const BranchState& next, double length);
+  // Whether what steps of this length reach is on two branches, not on two sides of a kink.
+  bool jumps_aside(const BranchState& state, double along);
+  // `crossing`: where it is known already.
   void find_specials(const BranchState& state, const BranchState& next, double length, const Described& now,
-                     const Described& then, FollowedBranch& out);
+                     const Described& then, std::optional<Crossing> crossing, FollowedBranch& out);
   void find_specials_inside(const BranchState& state, const BranchState& beyond, double length,
-                            const Described& now, FollowedBranch& out);
+                            const Described& now, std::optional<Crossing> crossing, FollowedBranch& out);
   Spectrum spectrum(const BranchState& state);
   void find_pair_crossings(const BranchState& state, const BranchState& next, double length, int before,
                            int after, FollowedBranch& out);

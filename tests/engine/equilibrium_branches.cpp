@@ -610,3 +610,50 @@ TEST_CASE("branches that nearly cross are followed one by one, whatever the step
       CHECK(std::abs(end.coordinates[i].value - reference.coordinates[i].value) < 1e-9);
   }
 }
+
+TEST_CASE("points that a branch may have are not spent on steps that are taken again", "[branches]") {
+  // Of the chain above, where steps are shortened so that none leaps.
+  const Mechanism m = bench::springy_chain(4, 6, 0.1, 0);
+  BranchOptions options;
+  options.eigenvalues = false;
+  options.largest_step = 0.1;
+  const ResponseDiagram whole = follow_branches(m, "joints.spin.drive.speed", 3, 10, options);
+  REQUIRE(whole.branches.size() == 1);
+  const std::size_t points = whole.branches[0].points.size();
+  REQUIRE(whole.branches[0].end == "the end of the range");
+  options.max_points = static_cast<int>(points);
+  CHECK(follow_branches(m, "joints.spin.drive.speed", 3, 10, options).branches[0].end ==
+        "the end of the range");
+  options.max_points = static_cast<int>(points) - 2;
+  const ResponseDiagram cut = follow_branches(m, "joints.spin.drive.speed", 3, 10, options);
+  CHECK(cut.branches[0].end == "the largest number of points");
+  CHECK(cut.branches[0].points.size() == points - 2);
+}
+
+TEST_CASE("a branch goes on over a kink with the step that it came with", "[branches]") {
+  // A pendulum held upright by a spring of k N m/rad where its weight takes 1.5 of these: from s = sqrt(1/2)
+  // on k is 2, before it is 1. It is upright throughout, and there it becomes stable at once.
+  Mechanism m = read_scene(R"({"flyball": 2, "name": "upright", "gravity": [0, -10, 0],
+    "parameters": {"s": {"value": 0.1, "range": [0, 2]}},
+    "bodies": [{"name": "rod", "mass": 1, "position": [0, 0.15, 0], "inertia": [0.01, 0.01, 0.01]}],
+    "joints": [{"name": "hinge", "type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0, 0],
+                "axis": [0, 0, 1],
+                "spring": {"stiffness": "=(1.5 + 0.5 * abs(s - sqrt(0.5)) / (s - sqrt(0.5))) * 1 N m"}}]})");
+  BranchOptions options;
+  options.largest_step = 0.05; // of the range of 2: 0.1
+  options.switch_branches = false;
+  const ResponseDiagram d = follow_branches(m, "parameters.s", 0, 2, options);
+  REQUIRE(!d.branches.empty()); // the bent state before the kink has one, too
+  REQUIRE(d.special.size() == 1);
+  CHECK(d.special[0].type == SpecialPointType::branch_point);
+  CHECK_THAT(d.special[0].at.parameter, Catch::Matchers::WithinAbs(std::sqrt(0.5), 1e-9));
+  const std::vector<ResponsePoint>& points = d.branches[0].points;
+  CHECK(d.branches[0].end == "the end of the range");
+  for (const ResponsePoint& p : points) {
+    CHECK(std::abs(p.coordinates[0].value) < 1e-9);
+    CHECK(p.stable == (p.parameter > std::sqrt(0.5)));
+  }
+  const auto beyond = std::ranges::find_if(points, [](const ResponsePoint& p) { return p.stable == true; });
+  REQUIRE((beyond != points.begin() && beyond != points.end()));
+  CHECK_THAT(beyond->parameter - std::prev(beyond)->parameter, Catch::Matchers::WithinAbs(0.1, 1e-6));
+}
