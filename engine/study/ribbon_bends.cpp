@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace flyball {
@@ -74,6 +75,8 @@ std::vector<RibbonPoint> friction_ribbon_at_bends(const Mechanism& mechanism, co
   const std::vector<std::size_t> sheets = ends_of_sheets(places);
   std::set<std::size_t> wanted(first.begin(), first.end());
   wanted.insert(sheets.begin(), sheets.end());
+  for (std::size_t s = 1; s < sheets.size(); ++s) // of two points nothing bends
+    wanted.insert(std::midpoint(sheets[s - 1], sheets[s]));
   while (!wanted.empty()) {
     for (const std::size_t i : wanted) {
       if (is_cancelled(cancel)) break;

@@ -79,6 +79,48 @@ TEST_CASE("Session: a clutch engages along the edge of what friction holds, past
   CHECK(before > 10);
 }
 
+TEST_CASE("Session: the ribbon is about unstable states, too, and it is told where there is none") {
+  // Two rods of 1 kg and 1 m hang one from the other across a shaft, or stand upright; the upper has
+  // friction.
+  const auto rods = [](double down) {
+    const auto at = [&](double way) { return "[0, " + std::to_string(way * down) + ", 0]"; };
+    return R"~({"flyball": 2, "name": "Rods", "gravity": [0, "=-g", 0],
+      "parameters": {"g": {"value": 10, "unit": "m/s^2"}},
+      "bodies": [{"name": "a", "mass": 1, "position": )~" +
+           at(1) + R"~(},
+        {"name": "b", "mass": 1, "position": )~" +
+           at(2) + R"~(}],
+      "joints": [{"name": "first", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0],
+          "axis": [0, 0, 1], "damping": 0.1, "friction": {"limit": 2}},
+        {"name": "second", "type": "revolute", "bodies": ["a", "b"], "at": )~" +
+           at(1) + R"~(,
+          "axis": [0, 0, 1], "damping": 0.1}]})~";
+  };
+  for (const double down : {-1., 1.}) {
+    Session session({.mode = LiveSolver::Mode::immediate});
+    open_document(session, Document(parse_scene(rods(down))));
+    open_study(session, StudyKind::response);
+    update(session, 0);
+    choose_response(session, "parameters.g");
+    choose_response_end(session, &ResponseChoice::from, 5);
+    choose_response_end(session, &ResponseChoice::to, 8);
+    for (int i = 0; i < 4; ++i)
+      update(session, 0);
+    const auto ribbon = shown_ribbon(session);
+    REQUIRE(ribbon);
+    CAPTURE(down, session.study.response.choice.quantity);
+    const std::vector<RibbonGap> gaps = ribbon_gaps(session);
+    if (down < 0) {
+      CHECK(gaps.empty());
+      continue;
+    }
+    // Upright it falls by the second rod, which no friction holds.
+    REQUIRE_FALSE(gaps.empty());
+    for (const RibbonGap& gap : gaps)
+      CHECK_THAT(gap.why, ContainsSubstring("what is free beside the joints that have friction leaves it"));
+  }
+}
+
 TEST_CASE("Session: the Campbell diagram follows what friction holds") {
   // On a hub a rider that friction alone holds, up to 20 rad/s, and 1 kg on a spring of 400 N/m.
   const char* const hub = R"~({

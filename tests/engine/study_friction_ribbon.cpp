@@ -15,6 +15,7 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -116,6 +117,36 @@ std::vector<double> meeting_numbers(const std::vector<std::vector<RibbonPoint>>&
   return out;
 }
 
+// A bead drawn at -1 on a line, which a spring beside the line pushes from its middle, and F.
+Mechanism snapping_bead(double limit, bool measured) {
+  return read_scene(
+      R"({"flyball": 1, "name": "Snap", "gravity": [0, 0, 0], "parameters": {"F": {"value": -40, "unit": "N"}},
+    "bodies": [{"name": "bead", "mass": 1, "position": [-1, 0, 0]}],
+    "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "bead"], "at": [0, 0, 0],
+      "axis": [1, 0, 0], "damping": 1, "friction": {"limit": )" +
+      number_text(limit) + "}}], " +
+      std::string(measured ? R"("measures": {"only": {"value": "=2*F", "unit": "N"}}, )" : "") +
+      R"("forces": [{"name": "sp", "type": "spring", "bodies": ["ground", "bead"], "points": [[0, 0.5, 0], [-1, 0, 0]],
+      "stiffness": 100, "free_length": 1},
+      {"name": "push", "type": "force", "body": "bead", "at": [-1, 0, 0], "vector": ["=F", 0, 0]}]})");
+}
+
+// Of that spring at x, in N.
+double spring(double x) {
+  return 100 * (1 - 1 / std::hypot(x, 0.5)) * x;
+}
+const double snap_fold = std::sqrt(std::pow(0.25, 2. / 3) - 0.25); // where it is least, and largest at -that
+
+// Where it is a force, between two x.
+double spring_at(double force, double from, double to) {
+  const bool rises = spring(to) > spring(from);
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::midpoint(from, to);
+    ((spring(middle) < force) == rises ? from : to) = middle;
+  }
+  return from;
+}
+
 const std::string shaft_speed = "joints.spin.drive.speed";
 
 } // namespace
@@ -214,18 +245,8 @@ TEST_CASE("beyond a fold friction alone holds, up to where the edge of the band 
 TEST_CASE("a bead that snaps through has tips up to the folds at friction's limit") {
   const double limit = GENERATE(2., 0.01, 0.001, 1e-5); // of 22.5 N at the fold
   const bool measured = GENERATE(false, true); // what does not depend on friction has a band without height
-  const Mechanism m = read_scene(
-      R"({"flyball": 1, "name": "Snap", "gravity": [0, 0, 0], "parameters": {"F": {"value": -40, "unit": "N"}},
-    "bodies": [{"name": "bead", "mass": 1, "position": [-1, 0, 0]}],
-    "joints": [{"name": "slide", "type": "prismatic", "bodies": ["ground", "bead"], "at": [0, 0, 0],
-      "axis": [1, 0, 0], "damping": 1, "friction": {"limit": )" +
-      number_text(limit) + "}}], " +
-      std::string(measured ? R"("measures": {"only": {"value": "=2*F", "unit": "N"}}, )" : "") +
-      R"("forces": [{"name": "sp", "type": "spring", "bodies": ["ground", "bead"], "points": [[0, 0.5, 0], [-1, 0, 0]],
-      "stiffness": 100, "free_length": 1},
-      {"name": "push", "type": "force", "body": "bead", "at": [-1, 0, 0], "vector": ["=F", 0, 0]}]})");
-  const auto spring = [](double x) { return 100 * (1 - 1 / std::hypot(x, 0.5)) * x; }; // at x, N
-  const double fold = spring(-std::sqrt(std::pow(0.25, 2. / 3) - 0.25));               // where it is largest
+  const Mechanism m = snapping_bead(limit, measured);
+  const double fold = spring(-std::sqrt(std::pow(0.25, 2. / 3) - 0.25)); // where it is largest
   const double from = GENERATE(-40., 40.);
   const ResponseDiagram diagram = follow_branches(m, "parameters.F", from, -from);
   const std::vector<std::vector<RibbonPoint>> tips = ribbon_tips(m, "parameters.F", from, -from, diagram);
@@ -383,6 +404,39 @@ TEST_CASE("points of a ribbon lie close where its edges bend") {
     CHECK_THAT(std::lerp(at_a.high, at_b.high, part),
                WithinAbs(edge(place.number, 1), 0.02 * (upper - 0.21)));
   }
+}
+
+TEST_CASE("points of a ribbon lie close on each sheet of a branch that turns back") {
+  const double limit = 0.5;
+  const Mechanism m = snapping_bead(limit, false);
+  const ResponseDiagram diagram = follow_branches(m, "parameters.F", -40, 40);
+  const std::vector<RibbonPlace> places = ribbon_places(diagram.branches.front());
+  const std::vector<std::size_t> ends{0, places.size() / 2, places.size() - 1};
+  const std::vector<RibbonPoint> ribbon = friction_ribbon_at_bends(m, "parameters.F", places, ends);
+  CHECK(ribbon.size() < 100); // of 269
+  std::array<int, 3> compared{};
+  for (std::size_t i = 1; i < ribbon.size(); ++i) {
+    const RibbonPoint &a = ribbon[i - 1], &b = ribbon[i];
+    if (a.folds || b.folds) continue;
+    const BandExtent &at_a = *find_extent(a, "slide"), &at_b = *find_extent(b, "slide");
+    const double x = std::midpoint(at_a.value, at_b.value) - 1;
+    const std::size_t sheet = x < -snap_fold ? 0 : x < snap_fold ? 1 : 2;
+    const std::array<double, 4> between{-2, -snap_fold, snap_fold, 2};
+    const std::array<double, 3> height{0.95, 2 * snap_fold, 0.95};
+    for (const double part : {0.25, 0.5, 0.75}) {
+      const double force = std::lerp(a.number, b.number, part);
+      for (const double sense : {-1., 1.}) {
+        const double edge = spring_at(force + sense * limit, between[sheet], between[sheet + 1]) + 1;
+        const bool lower = (sense < 0) == (sheet != 1);
+        CAPTURE(force, sense, sheet, a.number, b.number);
+        CHECK_THAT(lower ? std::lerp(at_a.low, at_b.low, part) : std::lerp(at_a.high, at_b.high, part),
+                   WithinAbs(edge, 0.02 * height[sheet]));
+        ++compared[sheet];
+      }
+    }
+  }
+  for (const int each : compared)
+    CHECK(each > 20);
 }
 
 TEST_CASE("slowly pulled to and fro, two blocks stick and slip one after the other") {
