@@ -23,12 +23,14 @@ struct OpenPart {
   std::filesystem::path file;
   std::ifstream in; // behind the first line
   StudyPart part;
+  std::uint64_t hash = 0; // of the first line
 
   explicit OpenPart(const std::filesystem::path& path) : file(path), in(path, std::ios::binary) {
     if (!in) throw SceneError(file.string(), "cannot read");
     std::string line;
     std::getline(in, line);
     part = read_part_head(file, line);
+    hash = part_hash("\n", part_hash(line));
   }
 };
 using OpenParts = std::vector<std::unique_ptr<OpenPart>>;
@@ -62,7 +64,7 @@ void check_parts(OpenParts& parts) {
 }
 
 SceneError damaged(const OpenPart& part) {
-  return {part.file.string(), "expected rows and their number behind them; it is damaged"};
+  return {part.file.string(), "expected rows with their number and hash behind them; it is damaged"};
 }
 
 // How many rows a file's last line tells.
@@ -77,25 +79,26 @@ std::uint64_t rows_of(OpenPart& part) {
   std::string line, last;
   while (std::getline(part.in, line))
     last = line;
-  const auto rows = read_part_end(last);
+  const auto end = read_part_end(last);
   part.in.clear();
   part.in.seekg(here);
-  if (!rows || !part.in) throw damaged(part);
-  return *rows;
+  if (!end || !part.in) throw damaged(part);
+  return end->rows;
 }
 
 using TakeRow = std::function<void(OpenPart& part, const std::string& row)>;
 
-// Calls for each row, with its line end, and checks that they are as many as the part says.
+// Calls for each row, with its line end, and checks that they are those of which the part tells.
 void for_rows(OpenPart& part, const TakeRow& take) {
-  std::uint64_t count = 0;
+  PartEnd sofar{0, part.hash};
   std::string row;
-  for (; std::getline(part.in, row) && !part.in.eof(); ++count) {
-    if (const auto rows = read_part_end(row)) {
-      if (*rows != count || part.in.peek() != std::ifstream::traits_type::eof()) break;
+  for (; std::getline(part.in, row) && !part.in.eof(); ++sofar.rows) {
+    if (const auto end = read_part_end(row)) {
+      if (*end != sofar || part.in.peek() != std::ifstream::traits_type::eof()) break;
       return;
     }
     row += '\n';
+    sofar.hash = part_hash(row, sofar.hash);
     take(part, row);
   }
   throw damaged(part);

@@ -13,7 +13,7 @@
 namespace flyball::cli {
 namespace {
 
-constexpr std::string_view mark = "# part by flyball: ", end_mark = "# rows: ";
+constexpr std::string_view mark = "# part by flyball: ", end_mark = "# rows: ", hash_mark = ", hash: ";
 constexpr std::array<std::string_view, 4> kinds{"number", "word", "verdict", "text"}; // by CellKind
 
 std::string head(const StudyPart& part) {
@@ -34,21 +34,22 @@ std::string head(const StudyPart& part) {
 class PartOutput final : public RowOutput {
  public:
   PartOutput(const StudyPart& part, const std::filesystem::path& file)
-      : rows_(csv_output(file, head(part))) {}
+      : rows_(csv_output(file, head(part))), end_{0, part_hash(head(part))} {}
 
   void begin() override { rows_->begin(); }
   void take(std::size_t begin, std::size_t end, std::string_view rows) override {
-    count_ += static_cast<std::uint64_t>(std::ranges::count(rows, '\n'));
+    end_.rows += static_cast<std::uint64_t>(std::ranges::count(rows, '\n'));
+    end_.hash = part_hash(rows, end_.hash);
     rows_->take(begin, end, rows);
   }
   void finish() override {
-    rows_->take(0, 0, fmt::format("{}{}\n", end_mark, count_));
+    rows_->take(0, 0, fmt::format("{}{}{}{:016x}\n", end_mark, end_.rows, hash_mark, end_.hash));
     rows_->finish();
   }
 
  private:
   std::unique_ptr<RowOutput> rows_;
-  std::uint64_t count_ = 0;
+  PartEnd end_;
 };
 
 } // namespace
@@ -128,13 +129,21 @@ StudyPart read_part_head(const std::filesystem::path& file, std::string_view lin
   }
 }
 
-std::optional<std::uint64_t> read_part_end(std::string_view line) {
-  std::uint64_t rows = 0;
+std::optional<PartEnd> read_part_end(std::string_view line) {
+  PartEnd out;
   if (!line.starts_with(end_mark)) return {};
   const char* end = line.data() + line.size();
-  const auto found = std::from_chars(line.data() + end_mark.size(), end, rows);
-  if (found.ec != std::errc() || found.ptr != end) return {};
-  return rows;
+  const auto rows = std::from_chars(line.data() + end_mark.size(), end, out.rows);
+  if (rows.ec != std::errc() || !std::string_view(rows.ptr, end).starts_with(hash_mark)) return {};
+  const auto hash = std::from_chars(rows.ptr + hash_mark.size(), end, out.hash, 16);
+  if (hash.ec != std::errc() || hash.ptr != end) return {};
+  return out;
+}
+
+std::uint64_t part_hash(std::string_view text, std::uint64_t behind) {
+  for (const char c : text)
+    behind = (behind ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return behind;
 }
 
 } // namespace flyball::cli

@@ -1,5 +1,6 @@
 // Parts of a study's rows, each computed by itself: a first line that says of what it is a part, rows of CSV,
-// and a last line with their number. Put together they are the file that one process would have written.
+// and a last line with their number and hash. Put together they are the file that one process would have
+// written.
 #pragma once
 
 #include "app/cli/row_output.hpp"
@@ -54,7 +55,14 @@ std::unique_ptr<RowOutput> part_output(const StudyPart& part, const std::filesys
 
 // From a file's first line. Throws SceneError that names the file.
 StudyPart read_part_head(const std::filesystem::path& file, std::string_view line);
-// The number of rows that a last line tells; nothing where it is none.
-std::optional<std::uint64_t> read_part_end(std::string_view line);
+// What a last line tells of those before it; nothing where it is none.
+struct PartEnd {
+  std::uint64_t rows = 0;
+  std::uint64_t hash = 0; // FNV-1a of their bytes, the first line's too
+  bool operator==(const PartEnd&) const = default;
+};
+std::optional<PartEnd> read_part_end(std::string_view line);
+// The hash of `text` behind what has the hash `behind`.
+std::uint64_t part_hash(std::string_view text, std::uint64_t behind = 0xcbf29ce484222325U);
 
 } // namespace flyball::cli
