@@ -31,7 +31,9 @@ constexpr double alike_loads = 1e-6;    // of the largest, as steps' errors leav
 constexpr double beside_steady = 0.05;  // scaled: where motions are compared, too
 constexpr double least_share = 1e-6;    // of a unit vector: less is rounding
 constexpr int most_ways = 64, most_tries = 4096; // of turning: that are tried, and sets of what stands still
-constexpr double evenly = 1e-4; // of a mean speed: what changes less between two looks has settled
+constexpr double short_time = 1. / 64;           // of a drive's turn through a radian
+constexpr double least_swinging = 1e-3; // of an eigenvalue's size its imaginary part: with less it creeps
+constexpr double evenly = 1e-4;         // of a mean speed: what changes less between two looks has settled
 
 void append(Eigen::MatrixXd& columns, const Eigen::VectorXd& column) {
   columns.conservativeResize(column.size(), columns.cols() + 1);
@@ -147,6 +149,23 @@ Swing least_damped_swing(const Mechanism& mechanism, const std::atomic<bool>* ca
       most = s.real();
       out.period = turn / s.imag();
     }
+  return out;
+}
+
+// Where the fastest growing motion about a steady state swings: that one, by multipliers of a time so short
+// that none is taken for a slower swing.
+Swing fastest_growing_swing(Flow& flow, const UnstableState& steady) {
+  Orbit orbit;
+  orbit.period = short_time / steady.rate;
+  orbit.nodes = {StateChart(flow.problem(), steady.state, steady.rate, {})};
+  ShootingOptions how;
+  how.tolerance = step_tolerance * 1e-3;
+  Swing out;
+  const auto beside = monodromy(flow, orbit, how);
+  if (!beside || beside->multipliers.empty()) return out;
+  if (const std::complex<double> s = std::log(beside->multipliers.front()) / orbit.period;
+      s.real() > 0 && std::abs(s.imag()) > least_swinging * std::abs(s))
+    out.period = turn / std::abs(s.imag());
   return out;
 }
 
@@ -413,7 +432,8 @@ bool goes_alike_without(Flow& flow, const FlowState& state, double period, doubl
 }
 
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
-                         const std::atomic<bool>* cancel, const ReportProgress& progress) {
+                         const std::atomic<bool>* cancel, const ReportProgress& progress,
+                         const std::optional<UnstableState>& around) {
   CycleOutcome out;
   report_progress(progress, "swings about the steady state");
   const auto refused = [&](const std::string& why) {
@@ -421,9 +441,10 @@ CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart star
     out.trouble = why;
     return out;
   };
-  const Swing swing = least_damped_swing(mechanism, cancel);
+  const Swing swing = around ? fastest_growing_swing(flow, *around) : least_damped_swing(mechanism, cancel);
   const bool leaves = start == CycleStart::steady;
-  const std::optional<FlowState> steady = leaves && swing.period ? flow.steady() : std::nullopt;
+  std::optional<FlowState> steady;
+  if (leaves && swing.period) steady = around ? around->state : flow.steady();
   if (leaves && !steady) return refused("Nothing swings about a steady state.");
   std::optional<FlowState> state = leaves ? steady : flow.drawn();
   if (!state) return refused(flow.trouble());

@@ -51,9 +51,17 @@ struct CycleOutcome {
   std::string trouble; // where there is none: a sentence
 };
 
+// A steady state about which something grows; `rate` (1/s) is the unit of rates, as that of a drive.
+struct UnstableState {
+  FlowState state;
+  double rate = 1;
+};
+
 // A motion is followed until it nearly returns and grows no more, or for as long as the flow allows. The
 // period is first that of the least damped swing about the steady state, else a turn of what a torque drives.
+// `around`: the steady state to leave, in place of the mechanism's solution.
 CycleOutcome guess_cycle(Flow& flow, const Mechanism& mechanism, CycleStart start,
-                         const std::atomic<bool>* cancel, const ReportProgress& progress);
+                         const std::atomic<bool>* cancel, const ReportProgress& progress,
+                         const std::optional<UnstableState>& around = {});
 
 } // namespace flyball

@@ -135,11 +135,16 @@ class Search {
         if (auto longer = attempt({*state}, count); longer && (longer->stable != false || count == periods))
           second = std::move(longer);
     if (first && (!second || second->stable == false) && stands(*first) &&
-        goes_alike_at_phases(flow_, first->orbit.nodes.front().base(), drives_.period))
-      if (auto cycle = find_cycle(CycleStart::steady)) {
+        goes_alike_at_phases(flow_, first->orbit.nodes.front().base(), drives_.period)) {
+      auto cycle = find_cycle(CycleStart::steady);
+      // The mechanism's solution may be another one, about which nothing swings.
+      if (!cycle)
+        cycle = find_cycle(CycleStart::steady, UnstableState{first->orbit.nodes.front().base(), rate()});
+      if (cycle) {
         left_first_ = true;
         return cycle;
       }
+    }
     if (!second || (first && second->stable == false)) return first;
     left_first_ = first.has_value();
     return second;
@@ -154,9 +159,9 @@ class Search {
     return {};
   }
 
-  std::optional<Candidate> find_cycle(CycleStart start) {
+  std::optional<Candidate> find_cycle(CycleStart start, const std::optional<UnstableState>& around = {}) {
     CycleOutcome began =
-        guess_cycle(flow_, flow_.model().mechanism, start, options_.cancel, options_.progress);
+        guess_cycle(flow_, flow_.model().mechanism, start, options_.cancel, options_.progress, around);
     cycle_trouble_ = began.trouble;
     around_stable_ = began.guess && !began.guess->state;
     if (!began.guess) return {};
@@ -453,15 +458,18 @@ class Search {
     }
     out.evaluations = flow_.evaluations();
     out.status = PeriodicStatus::found;
-    out.message = words(c, out);
+    out.message = words(c, out, c.periods > 0 && !c.beside.multipliers.empty() && stands(c));
   }
 
-  std::string words(const Candidate& c, const PeriodicState& out) const {
+  // `stands`: a steady state, though a motion was looked for.
+  std::string words(const Candidate& c, const PeriodicState& out, bool stands) const {
     const bool cycle = c.periods == 0;
-    std::string text = cycle && around_stable_
-                           ? "Around its stable steady state lies a limit cycle, with a period of "
-                       : cycle ? "It moves in a limit cycle, with a period of its own of "
-                               : "It moves periodically with the drives, with a period of ";
+    std::string text =
+        cycle && around_stable_ ? "Around its stable steady state lies a limit cycle, with a period of "
+        : cycle                 ? "It moves in a limit cycle, with a period of its own of "
+        : stands ? "What was found is a steady state, which comes back after any time as after "
+                   "the period of the drives, "
+                 : "It moves periodically with the drives, with a period of ";
     text += rounded_text(out.period, 6) + " s";
     if (c.periods > 1) text += ", " + std::to_string(c.periods) + " times that of the drives";
     text += ".";

@@ -381,3 +381,30 @@ TEST_CASE("with both wheels out of balance it is told as quasi-periodic, soon") 
   CHECK_THAT(s.message, ContainsSubstring("is quasi-periodic unless"));
   CHECK(s.evaluations < 120'000); // 231 126 where it is followed as long as may be
 }
+
+TEST_CASE(
+    "A limit cycle is found though the mechanism's solution is a steady state about which nothing swings") {
+  // On a shaft that turns at 5 rad/s a bob whose damper drives it: I q'' + d(q') + m g s cos(q + p) - the
+  // centrifugal moment = 0, d(v) = -mu v + 0.3 v^2 + 0.7 v^3, so that the pendulum as drawn leads to a
+  // saddle. The amplitude follows a' = Re(s) a + w l1 a^3, by hand w l1 = -7.96053623329 / s at q =
+  // 0.957692457804.
+  Mechanism m;
+  m.gravity = {0, -9.80665, 0};
+  m.bodies = {body("hub", 1, {0, 0, 0}, {0, 0, 0}), body("bob", 1.3, {0.1, -0.69, 0.02}, {0.02, 0.01, 0.03})};
+  m.joints = {driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), 5),
+              revolute("swing", "hub", "bob", {0.05, 0, 0})};
+  m.joints[1].coordinates[0].damping_force = 0;
+  m.parameters = {{"mu", "", 0.001, "N m s", {}, {}}};
+  m.joints[1].formulas = {{"damping_force", "-mu*rate + 0.3 N m s^2*rate^2 + 0.7 N m s^3*rate^3"}};
+  const Solution saddle = solve(m);
+  CHECK(saddle.stable == false);
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CHECK(s.drive_periods == 0);
+  CHECK(s.stable == true);
+  const double growth = 7.666595e-4, amplitude = std::sqrt(growth / 7.96053623329);
+  const PeriodicRange& swing = of(s, "swing").range;
+  CHECK_THAT((swing.most - swing.least) / 2, WithinRel(amplitude, 1e-3));
+  CHECK_THAT(s.period, WithinRel(2 * pi / 4.44723671107, 1e-3));
+}
