@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace flyball {
 namespace {
@@ -26,16 +27,15 @@ void add_way(Plot& plot, std::span<const RibbonPoint> points, std::string_view n
   plot.curves.push_back(std::move(curve));
 }
 
-// Whether the same band was drawn along another branch or sheet: past folds it may be that of several. States
-// about which it is lie well within it, so that it need not be known better than its points tell.
-bool is_drawn(const Plot& plot, const RibbonPoint& point, const BandExtent& extent) {
-  constexpr double alike = 0.25;  // of the band's height
-  constexpr double beyond = 0.02; // of a band's length: where bands meet is known to less
-  if (!point.folds) return false;
+// Whether the same band was drawn along another branch or sheet. Past folds it may be that of several, and
+// states about which it is lie well within it, so that it need not be known better than its points tell.
+// `past`: how far beyond what is drawn the number may be.
+bool is_drawn(const Plot& plot, const RibbonPoint& point, const BandExtent& extent, double past = 0) {
+  const double alike = point.folds ? 0.25 : 0.02; // of the band's height
   const double most = alike * (extent.high - extent.low);
+  if (!std::isfinite(most)) return false;
   for (const PlotBand& band : plot.bands) {
     if (band.name != held) continue;
-    const double past = beyond * std::abs(band.points.back()[0] - band.points.front()[0]);
     for (std::size_t i = 1; i < band.points.size(); ++i) {
       const auto& [from, low_from, high_from] = band.points[i - 1];
       const auto& [to, low_to, high_to] = band.points[i];
@@ -81,19 +81,49 @@ void add_part(Plot& plot, std::span<const RibbonPoint> points, std::string_view 
     add_way(plot, points.subspan(begin, end - begin), name);
 }
 
-// The same without what is drawn already, but for a point beside it.
+// A part of the way between two points of a ribbon, as lines between them go.
+RibbonPoint point_between(const RibbonPoint& a, const RibbonPoint& b, double part) {
+  RibbonPoint out = a;
+  out.number = std::lerp(a.number, b.number, part);
+  for (BandExtent& extent : out.extents)
+    if (const BandExtent* to = find_extent(b, extent.name)) {
+      extent.low = std::lerp(extent.low, to->low, part);
+      extent.high = std::lerp(extent.high, to->high, part);
+    }
+  return out;
+}
+
+// On the way from a point that is drawn already to one that is not the first that is not.
+RibbonPoint first_new(const Plot& plot, const RibbonPoint& drawn, const RibbonPoint& other,
+                      std::string_view name) {
+  constexpr double close = 1e-4; // of the way
+  double before = 0, after = 1;
+  if (!is_drawn(plot, drawn, *find_extent(drawn, name))) return drawn; // but for where it ends
+  while (after - before > close) {
+    const double middle = std::midpoint(before, after);
+    const RibbonPoint point = point_between(drawn, other, middle);
+    (is_drawn(plot, point, *find_extent(point, name)) ? before : after) = middle;
+  }
+  return point_between(drawn, other, after);
+}
+
+// The same without what is drawn already.
 void add_new(Plot& plot, std::span<const RibbonPoint> points, std::string_view name) {
+  constexpr double close = 0.05; // of a step, where bands meet is known to less
+  double step = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    step = std::max(step, std::abs(points[i].number - points[i - 1].number));
   std::vector<bool> drawn;
   for (const RibbonPoint& point : points)
-    drawn.push_back(is_drawn(plot, point, *find_extent(point, name)));
+    drawn.push_back(is_drawn(plot, point, *find_extent(point, name), close * step));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (drawn[i]) continue;
-    std::size_t end = i;
-    while (end < points.size() && !drawn[end])
-      ++end;
-    const std::size_t from = i > 0 ? i - 1 : i, to = std::min(end + 1, points.size());
-    add_part(plot, points.subspan(from, to - from), name);
-    i = end;
+    std::vector<RibbonPoint> part;
+    if (i > 0) part.push_back(first_new(plot, points[i - 1], points[i], name));
+    for (; i < points.size() && !drawn[i]; ++i)
+      part.push_back(points[i]);
+    if (i < points.size()) part.push_back(first_new(plot, points[i], points[i - 1], name));
+    add_part(plot, part, name);
   }
 }
 
