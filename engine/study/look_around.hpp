@@ -25,8 +25,8 @@ struct Surroundings {
 
 // Around x, where the slopes are known. Along each number, or where there are residuals along what keeps them
 // and leaves numbers at the ends of their ranges there, then along the least curvature, then between each two
-// of these ways. Close by, and where that changes nothing farther off. `evaluate` gives nothing where there
-// is no value.
+// of these ways but where curvature shows that it rises there. Close by, and where that changes nothing
+// farther off. `evaluate` gives nothing where there is no value.
 Surroundings look_around(const Eigen::VectorXd& x, const PlaceBeside& here, const EvaluateBeside& evaluate);
 
 } // namespace flyball

@@ -435,6 +435,42 @@ TEST_CASE("around a place where no slope leads down there is less, or not, as of
   CHECK(look_around(side, *on_circle(side), on_circle).slopes);
 }
 
+TEST_CASE("around a plain minimum between two numbers is looked where that may tell something") {
+  using V = Eigen::VectorXd;
+  // Of 1 + sum c_i (x_i - m_i)^2 + bend a^2 b^2, a and b the first two numbers from m, at x.
+  const auto looks = [](const V& x, const V& m, const V& c, double bend) {
+    int count = 0;
+    const auto evaluate = [&](const V& at) -> std::optional<PlaceBeside> {
+      ++count;
+      const V d = at - m;
+      V slope = 2 * c.cwiseProduct(d);
+      slope[0] += 2 * bend * d[0] * d[1] * d[1];
+      slope[1] += 2 * bend * d[0] * d[0] * d[1];
+      return PlaceBeside{1 + c.dot(d.cwiseAbs2()) + bend * d[0] * d[0] * d[1] * d[1], V(0),
+                         Eigen::MatrixXd(slope.transpose())};
+    };
+    const PlaceBeside here = *evaluate(x);
+    count = 0;
+    const Surroundings around = look_around(x, here, evaluate);
+    return std::pair{count, around.lower.has_value()};
+  };
+  const int n = 6;
+  const V middle = V::Constant(n, 0.5), zero = V::Zero(n), one = V::Ones(n);
+  // Within the ranges to and fro along each.
+  CHECK(looks(middle, middle, one, 0) == std::pair{2 * n, false});
+  // At the lower ends of all, where it rises along each: along each, and along the diagonals inwards.
+  CHECK(looks(zero, V::Constant(n, -0.1), one, 0) == std::pair{n + n * (n - 1) / 2, false});
+  // One number at its end: with each of the others along the two diagonals inwards.
+  V at_end = middle, beyond = middle;
+  at_end[2] = 1;
+  beyond[2] = 1.1;
+  CHECK(looks(at_end, beyond, one, 0) == std::pair{2 * n - 1 + 2 * (n - 1), false});
+  // What curvature hardly shows is looked at: less lies on the diagonals of the first two, one step farther.
+  V soft = one;
+  soft.head(2).setConstant(1e-6);
+  CHECK(looks(middle, middle, soft, -1).second);
+}
+
 TEST_CASE("what is least: against a search along one number, and with a goal kept") {
   Mechanism m = shipped("governor_parametric");
   m.measures = {{"odd", "", "(coordinate(slide) - 0.146 m)^2", "m^2"}, {"pull", "", "reaction(arm1)", "N"}};
