@@ -22,6 +22,16 @@ void BorderedBalance::find_rates(const Unknowns& z, double parameter) {
   evaluate(problem, z, 0, w_);
 }
 
+void BorderedBalance::keep_still(const Eigen::MatrixXd&) {}
+
+Eigen::MatrixXd BorderedBalance::keep_still_there() {
+  return {};
+}
+
+Eigen::MatrixXd BorderedBalance::keep_null_space_still(const Eigen::VectorXd&) {
+  return {};
+}
+
 bool BorderedBalance::off_tangent(const Eigen::MatrixXd& null_space, const Eigen::VectorXd& tangent,
                                   Eigen::VectorXd& out) {
   out = Eigen::VectorXd::Zero(tangent.size());

@@ -32,6 +32,21 @@ class BorderedBalance {
   // At a state and a value of the parameter, to which the family is set. Returns the scaled residual there.
   virtual double linearize(const Unknowns& z, double parameter) = 0;
 
+  // Of a family of states, which nothing resists moving along: from here on, and until it is linearised
+  // again, steps and directions are orthogonal to `directions` (n, d; scaled, orthonormal columns V), which
+  // are such at a state nearby, and the determinant is that across the family: of K + V V^T (Wielandt's
+  // deflation; the balance is orthogonal to the left null vectors of K along all of the family, so that V^T x
+  // = 0 follows).
+  virtual void keep_still(const Eigen::MatrixXd& directions);
+
+  // These directions at the state that is linearised, kept still from here on. Fewer, where something resists
+  // there.
+  virtual Eigen::MatrixXd keep_still_there();
+
+  // All such directions there that are orthogonal to `along`: the null space of K beside a crossing,
+  // where only what is a symmetry's stays singular. Kept still from here on.
+  virtual Eigen::MatrixXd keep_null_space_still(const Eigen::VectorXd& along);
+
   // The step that balances the forces and closes the loops to first order and has the product `along` with
   // the border, and the multipliers (N, N m) after it. False where B is singular.
   virtual bool step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
@@ -42,6 +57,10 @@ class BorderedBalance {
 
   // The sign of B's determinant with a size that can be followed to zero. Nothing where it is not found.
   virtual std::optional<double> determinant(const Eigen::VectorXd& border) = 0;
+
+  // How many eigenvalues of K on the null space of the loops have a negative real part, directions kept still
+  // left out. 0 where they are not counted.
+  virtual int falling() { return 0; }
 
   // Where B is singular: of the directions along which the balance holds the one that is orthogonal to the
   // unit vector `tangent`, of length 1. False where there is none.

@@ -188,10 +188,44 @@ void BranchFollower::untie() {
 std::optional<BranchState> BranchFollower::begin(BranchState state, bool forth) {
   const double way = (to_ > from_) == forth ? 1 : -1;
   try {
+    find_family(state);
     if (!continuation_.start(state, way)) return {};
   } catch (const InfiniteRate&) { // such as of a square root at zero: it begins beside
     state.parameter += way * beside_infinite_rate * family_.scale();
-    if (!continuation_.land(state) || !continuation_.start(state, way)) return {};
+    if (!continuation_.land(state)) return {};
+    find_family(state);
+    if (!continuation_.start(state, way)) return {};
+  }
+  return state;
+}
+
+void BranchFollower::find_family(BranchState& state) {
+  const Problem problem = problem_at(state);
+  const Stability stability = find_stability(factor_at(problem, state.z, w_), false);
+  if (stability.neutral.empty()) return;
+  const Eigen::MatrixXd& directions = stability.neutral_directions;
+  if (problem.form == KktForm::dense && !family_.ties() && directions.cols() > 0)
+    if (const auto span = singular_vectors(directions)) {
+      state.still = span->left.leftCols(directions.cols());
+      return;
+    }
+  state.drifts = drifting_ = true;
+}
+
+BranchState BranchFollower::nearest_of_family(BranchState state, const BranchState& to) {
+  constexpr double longest = 0.3, there = 1e-9; // scaled
+  constexpr double level = 1e-3;                // of the distance: it hardly changes along the family
+  constexpr int most = 60;
+  for (int i = 0; i < most && state.still.cols() > 0; ++i) {
+    const Eigen::VectorXd away = scaled_difference(family_.problem(), state.z.q, to.z.q);
+    Eigen::VectorXd by = state.still.transpose() * away;
+    const double size = by.norm();
+    if (!(size > std::max(there, level * away.norm()))) break;
+    BranchState next = state;
+    if (!continuation_.slide(next, std::min(1., longest / size) * by) ||
+        scaled_difference(family_.problem(), next.z.q, to.z.q).norm() >= away.norm())
+      break;
+    state = std::move(next);
   }
   return state;
 }
@@ -203,7 +237,7 @@ BranchFollower::Described BranchFollower::describe(const BranchState& state) {
                            {options_.eigenvalues, options_.reactions, &measures_}, w_);
   d.point.parameter = state.parameter;
   // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.
-  if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, families_);
+  if (!turns_with_drives(d.point)) d.right = right_of_axis(d.point.eigenvalues, state.one_of_many());
   return d;
 }
 
@@ -244,13 +278,14 @@ double BranchFollower::size_of(const BranchState& at, Eigen::VectorXd step) cons
   return step.norm();
 }
 
-bool BranchFollower::same(const BranchState& a, const BranchState& b) const {
+bool BranchFollower::same(const BranchState& a, const BranchState& b) {
   return std::abs(a.parameter - b.parameter) < tolerance::same_parameter * family_.scale() &&
-         same_place(a, b, tolerance::same_branch_pose);
+         same_place(nearest_of_family(a, b), b, tolerance::same_branch_pose);
 }
 
-bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& branch) {
+bool BranchFollower::lies_on(const BranchState& asked, const FollowedBranch& branch) {
   const double near = 2 * options_.largest_step;
+  BranchState state = asked, beside = asked;
   const BranchState* nearest = nullptr;
   Eigen::VectorXd offset;
   double least = near;
@@ -258,14 +293,17 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
     if (s.starts.size() != state.starts.size() ||
         std::abs(s.parameter - state.parameter) > near * family_.scale())
       continue;
+    state = nearest_of_family(std::move(state), s);
     const Eigen::VectorXd d = difference(s, state);
     if (const double size = size_of(s, d); size < least) {
       least = size;
       offset = d;
       nearest = &s;
+      beside = state;
     }
   }
   if (!nearest) return false;
+  state = std::move(beside);
   if (same(*nearest, state)) return true;
   // Beyond its ends it may go on as another branch: the two halves of a pitchfork are one curve.
   const double along = nearest->tangent.dot(offset);
@@ -275,7 +313,7 @@ bool BranchFollower::lies_on(const BranchState& state, const FollowedBranch& bra
   int iterations = 0;
   try {
     return continuation_.step(*nearest, along, there, iterations) &&
-           size_of(there, difference(there, state)) < 1e-2 * least;
+           size_of(there, difference(there, nearest_of_family(state, there))) < 1e-2 * least;
   } catch (const SceneError&) { // no mechanism can be made there
     return false;
   }
@@ -434,11 +472,13 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     out.points.push_back(then.point);
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
-    if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale() &&
-        same_place(next, origin, length) && next.tangent.dot(origin.tangent) > 0.9) {
-      out.end = closed_branch;
-      out.closed = true;
-      break;
+    if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale()) {
+      const BranchState last = nearest_of_family(next, origin);
+      if (same_place(last, origin, length) && last.tangent.dot(origin.tangent) > 0.9) {
+        out.end = closed_branch;
+        out.closed = true;
+        break;
+      }
     }
     if (out_of_reach(family_.problem(), next.z.q)) {
       out.end = "a coordinate or a speed leaves all bounds";

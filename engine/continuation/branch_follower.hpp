@@ -63,10 +63,9 @@ class BranchFollower {
   // From here on states stand as drawn again.
   void untie();
 
-  // Nothing resists some direction: then states form families, along which the determinant is rounding, and
-  // folds and crossings are not looked for.
-  void expect_families() { families_ = true; }
-  bool expects_families() const { return families_; }
+  // Whether states were met that belong to families, along which nothing resists, without these being kept
+  // still: then folds and crossings were not looked for.
+  bool met_drifting() const { return drifting_; }
 
   FollowedBranch follow(BranchState state, bool tell_progress);
 
@@ -80,8 +79,8 @@ class BranchFollower {
   std::string limits() const;
 
   // Whether a state is a point of a branch that was followed.
-  bool lies_on(const BranchState& state, const FollowedBranch& branch);
-  bool same(const BranchState& a, const BranchState& b) const;
+  bool lies_on(const BranchState& asked, const FollowedBranch& branch);
+  bool same(const BranchState& a, const BranchState& b);
 
  private:
   struct Described {
@@ -112,6 +111,11 @@ class BranchFollower {
   // `crossing`: where it is known already.
   void find_specials(const BranchState& state, const BranchState& next, double length, const Described& now,
                      const Described& then, std::optional<Crossing> crossing, FollowedBranch& out);
+  // Where two eigenvalues of K go through zero on one step, as of what hangs on a shaft's axis and may swing
+  // out to any side, the determinant keeps its sign: by their number to the left, of which `explained` change
+  // anyway. Returns how many of the linearised motion's that explains.
+  int find_even_crossings(const BranchState& state, const BranchState& next, double length, int explained,
+                          FollowedBranch& out);
   void find_specials_inside(const BranchState& state, const BranchState& beyond, double length,
                             const Described& now, std::optional<Crossing> crossing, FollowedBranch& out);
   Spectrum spectrum(const BranchState& state);
@@ -135,6 +139,15 @@ class BranchFollower {
   bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
   std::optional<BranchState> begin(BranchState state, bool forth);
+  // Whether it is one of a family, whose directions are kept still where that is known to be done: of dense
+  // problems as drawn.
+  void find_family(BranchState& state);
+  // Of the family of a state the one nearest to `to`.
+  BranchState nearest_of_family(BranchState state, const BranchState& to);
+  // Whether folds and crossings between them are to be told by their determinants.
+  static bool comparable(const BranchState& a, const BranchState& b) {
+    return !a.drifts && !b.drifts && a.still.cols() == b.still.cols();
+  }
   // Of the angles that are tied, from a to b.
   Eigen::VectorXd angles(const BranchState& a, const BranchState& b) const;
   bool same_place(const BranchState& a, const BranchState& b, double near) const;
@@ -148,7 +161,7 @@ class BranchFollower {
   Family family_;
   Continuation continuation_;
   double from_, to_;
-  bool families_ = false;
+  bool drifting_ = false;
   MeasureSet measures_;
   Workspace w_;
 };

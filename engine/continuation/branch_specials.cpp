@@ -48,7 +48,7 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
 
 std::optional<BranchFollower::Crossing>
 BranchFollower::find_crossing(const BranchState& state, const BranchState& next, double length) {
-  if (families_ || !(state.determinant * next.determinant < 0)) return {};
+  if (!comparable(state, next) || !(state.determinant * next.determinant < 0)) return {};
   auto [at, along] = locate(state, 0, state.determinant, length, next.determinant, next,
                             [](const BranchState& s, double) { return s.determinant; });
   constexpr double at_once = 0.05; // of the larger at the ends
@@ -73,7 +73,7 @@ void BranchFollower::find_specials(const BranchState& state, const BranchState& 
   if (now.point.singular_loops && then.point.singular_loops) return; // of a balance that says nothing
   constexpr double rounding = 1e-9; // of a tangent, as along a family at one value of the parameter
   int explained = 0;                // eigenvalues that go through zero
-  if (!families_ && state.turning * next.turning < 0 &&
+  if (comparable(state, next) && state.turning * next.turning < 0 &&
       std::max(std::abs(state.turning), std::abs(next.turning)) > rounding) {
     // At a crossing the tangent can jump; a fold's own balance stays regular.
     const BranchState at =
@@ -91,8 +91,39 @@ void BranchFollower::find_specials(const BranchState& state, const BranchState& 
     out.crossings.push_back(std::move(crossing->at));
     ++explained;
   }
+  explained += find_even_crossings(state, next, length, explained, out);
   if (options_.eigenvalues && std::abs(then.right - now.right) > explained)
     find_pair_crossings(state, next, length, now.right, then.right, out);
+}
+
+int BranchFollower::find_even_crossings(const BranchState& state, const BranchState& next, double length,
+                                        int explained, FollowedBranch& out) {
+  if (!comparable(state, next) || std::abs(next.falling - state.falling) < explained + 2) return 0;
+  constexpr double singular = 1e-4; // determinant, of the larger at the ends
+  constexpr double past = 1e-6;     // of the step
+  constexpr int most = 4;
+  const double size = std::max(std::abs(state.determinant), std::abs(next.determinant));
+  int found = 0, falling = state.falling;
+  double low = 0;
+  for (int i = 0; i < most && falling != next.falling; ++i) {
+    auto [at, along] = locate(state, low, -1, length, 1, next,
+                              [&](const BranchState& s, double) { return s.falling == falling ? -1. : 1.; });
+    low = along + past * length;
+    BranchState beyond;
+    int iterations = 0;
+    if (low >= length || !continuation_.step(state, low, beyond, iterations)) break;
+    const int more = std::abs(beyond.falling - falling);
+    falling = beyond.falling;
+    // A fold's balance is regular, and so is one where a pair of K's eigenvalues turns over.
+    if (!(std::abs(at.determinant) <= singular * size) ||
+        std::ranges::any_of(out.crossings, [&](const BranchState& other) { return same(at, other); }))
+      continue;
+    at.tangent = state.tangent;
+    out.special.emplace_back(SpecialPointType::branch_point, point(at));
+    out.crossings.push_back(std::move(at));
+    found += more;
+  }
+  return found;
 }
 
 // Of a step that leaves the range those within it.
@@ -144,7 +175,7 @@ bool BranchFollower::narrow(const BranchState& state, double width, CrossingBrac
     int iterations = 0;
     const double middle = (at.low + at.high) / 2;
     if (!continuation_.step(state, middle, probe, iterations)) return false;
-    const int right = right_of_axis(spectrum(probe), families_);
+    const int right = right_of_axis(spectrum(probe), state.one_of_many());
     (right == at.right_low ? at.low : at.high) = middle;
     if (right != at.right_low) at.right_high = right;
   }
@@ -162,7 +193,8 @@ BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState
   };
   const double unstable = forth ? at.high : at.low;
   const Spectrum there = spectrum_at(unstable);
-  for (PairCrossing crossing : possible_crossings(there, std::abs(at.right_high - at.right_low), families_)) {
+  for (PairCrossing crossing :
+       possible_crossings(there, std::abs(at.right_high - at.right_low), state.one_of_many())) {
     double stable = forth ? at.low : at.high;
     Spectrum here = spectrum_at(stable);
     std::complex<double> first = crossing.at, second = crossing.at; // on the stable and the unstable side
@@ -205,8 +237,8 @@ std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_
       !continuation_.step(state, at.high, high, iterations))
     return {};
   const bool forth = at.right_high > at.right_low;
-  const auto crossings =
-      possible_crossings(spectrum(forth ? high : low), std::abs(at.right_high - at.right_low), families_);
+  const auto crossings = possible_crossings(spectrum(forth ? high : low),
+                                            std::abs(at.right_high - at.right_low), state.one_of_many());
   if (crossings.empty()) return {};
   return std::pair{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high};
 }

@@ -208,7 +208,6 @@ class Diagram {
     if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) {
       first = begin_beside(start);
       beside = first.has_value();
-      if (!beside) follower_.expect_families();
     }
     if (!first) first = follower_.begin(found.z, from_, true);
     if (first) {
@@ -268,9 +267,6 @@ class Diagram {
       out_.message = "The start is a singular state; begin beside it.";
       return;
     }
-    Workspace& w = follower_.workspace();
-    if (!find_stability(factor_at(follower_.problem_at(*first), first->z, w), false).neutral.empty())
-      follower_.expect_families();
     add(follower_.follow(*first, true), true);
   }
 
@@ -349,7 +345,6 @@ class Diagram {
     Unknowns z{configuration_of(problem, state.coordinates), Eigen::VectorXd::Zero(problem.system.rows)};
     if (!newton(problem, z, w, {}, nullptr).converged) return false;
     if (!holds(problem, z)) return false;
-    if (!find_stability(factor_at(problem, z, w), false).neutral.empty()) follower_.expect_families();
     const auto forth = follower_.begin(z, state.parameter, true),
                back = follower_.begin(z, state.parameter, false);
     if (!forth || !back) return false;
@@ -483,10 +478,9 @@ class Diagram {
       const Unknowns& z = states[i];
       const Problem problem = follower_.problem_at(value);
       if (!holds(problem, z)) continue;
-      // A family along a direction that nothing resists is no branch.
-      if (!find_stability(factor_at(problem, z, follower_.workspace()), false).neutral.empty()) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
       if (!forth || !back || known(*forth)) continue;
+      if (forth->drifts) continue; // of a family all would have to be known
       if (!room()) {
         states.erase(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(i));
         return states;
@@ -541,7 +535,7 @@ class Diagram {
     }
     if (follower_.cancelled()) text += "; cancelled";
     text += ".";
-    if (follower_.expects_families())
+    if (follower_.met_drifting())
       text += " Nothing resists some direction: folds and crossings were not looked for.";
     return text;
   }

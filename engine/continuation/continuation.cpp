@@ -35,7 +35,9 @@ void Continuation::move(const Eigen::VectorXd& step, BranchState& state) const {
 
 double Continuation::linearize(const BranchState& state) {
   family_.turn(state.starts);
-  return balance_->linearize(state.z, state.parameter);
+  const double residual = balance_->linearize(state.z, state.parameter);
+  if (state.still.cols() > 0 && std::isfinite(residual)) balance_->keep_still(state.still);
+  return residual;
 }
 
 bool Continuation::correct(const BranchState& from, const Eigen::VectorXd& tangent, double length,
@@ -66,6 +68,7 @@ bool Continuation::correct(const BranchState& from, const Eigen::VectorXd& tange
 
 bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previous) {
   linearize(state);
+  if (state.still.cols() > 0) state.still = balance_->keep_still_there();
   if (!balance_->direction(previous, state.tangent)) return false;
   const double norm = state.tangent.norm();
   if (!std::isfinite(norm) || norm == 0) return false;
@@ -74,6 +77,7 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
   const auto determinant = balance_->determinant(state.tangent);
   if (!determinant) return false;
   state.determinant = *determinant;
+  state.falling = balance_->falling();
   return true;
 }
 
@@ -85,6 +89,19 @@ bool Continuation::start(BranchState& state, double direction) {
 
 bool Continuation::step(const BranchState& from, double length, BranchState& to, int& iterations) {
   return correct(from, from.tangent, length, to, iterations) && find_tangent(to, from.tangent);
+}
+
+bool Continuation::slide(BranchState& state, const Eigen::VectorXd& by) {
+  BranchState moved = state, at;
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(unknowns());
+  step.head(state.still.rows()) = state.still * by;
+  move(step, moved);
+  int iterations = 0;
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(unknowns(), unknowns() - 1);
+  if (!correct(moved, unit, 0, at, iterations) || !find_tangent(at, state.tangent)) return false;
+  at.parameter = state.parameter; // without rounding
+  state = std::move(at);
+  return true;
 }
 
 bool Continuation::land(BranchState& state) {
@@ -108,6 +125,10 @@ bool Continuation::switch_branch(const BranchState& at, double length, BranchSta
   if (!balance_->second_direction(at.tangent, other)) return false;
   int iterations = 0;
   if (!correct(at, other, length, to, iterations)) return false;
+  // What is symmetric about an axis leaves it to any side: then the family is larger than that of the
+  // crossing.
+  linearize(to);
+  to.still = balance_->keep_null_space_still(other);
   return find_tangent(to, length > 0 ? other : Eigen::VectorXd(-other));
 }
 

@@ -18,6 +18,13 @@ struct BranchState {
   double turning = 0;       // the tangent's last entry: changes sign at a fold
   double determinant = 0;   // of the bordered balance, scaled: changes sign at a branch point
   Eigen::VectorXd starts{}; // by link, of one that stands turned: Family::turn()
+  // Directions that nothing resists (n, d; scaled, orthonormal columns): the state is one of a family, and
+  // the curve goes on orthogonally to it.
+  Eigen::MatrixXd still{};
+  // The same where they are not kept still: the determinant is rounding.
+  bool drifts = false;
+  int falling = 0; // eigenvalues of K across the family that have a negative real part; 0 where not counted
+  bool one_of_many() const { return still.cols() > 0 || drifts; }
 };
 
 // Farther than any mechanism goes: a hundred times its reach, or at a found speed that is followed no
@@ -40,6 +47,10 @@ class Continuation {
   // The point `length` further along (scaled arclength). False where the corrector fails. `iterations` tells
   // how hard it was.
   bool step(const BranchState& from, double length, BranchState& to, int& iterations);
+
+  // Moves a state along its family, by so much (scaled) along each of its directions. False where the
+  // corrector fails.
+  bool slide(BranchState& state, const Eigen::VectorXd& by);
 
   // Solves at exactly the state's parameter, from its z.
   bool land(BranchState& state);

@@ -4,6 +4,8 @@
 #include "engine/linear/spectral.hpp"
 #include "engine/solve/newton.hpp"
 
+#include <algorithm>
+
 namespace flyball {
 namespace {
 
@@ -23,6 +25,12 @@ std::optional<Eigen::MatrixXd> last_right_vectors(const Eigen::MatrixXd& h) {
   return Eigen::MatrixXd(smallest->right.rowwise().reverse());
 }
 
+// How many of the singular values of H, descending, are zero but for rounding.
+Eigen::Index unresisted(const Eigen::VectorXd& values) {
+  constexpr double resists = 1e-9; // of the largest entry of H
+  return std::ranges::count_if(values, [](double size) { return size <= resists; });
+}
+
 } // namespace
 
 double DenseBorders::linearize(const Unknowns& z, double parameter) {
@@ -40,6 +48,7 @@ double DenseBorders::linearize(const Unknowns& z, double parameter) {
     w_.dense.constraints().solve(-w_.residual.phi.cwiseProduct(problem.scaling.row), r0_);
     w_.dense.constraints().solve(-loop_rate_, r1_);
   }
+  still_.resize(k, 0);
   h_.resize(k, k + 1);
   h_.leftCols(k) = large::projected(w_.dense.stiffness(), basis_);
   // A state without loads has stiffness only, one without stiffness loads only.
@@ -50,6 +59,50 @@ double DenseBorders::linearize(const Unknowns& z, double parameter) {
   h_.col(k) = basis_.transpose() * (w_.dense.stiffness() * r1_ + force_rate_) / size;
   g_ = basis_.transpose() * (force_ + w_.dense.stiffness() * r0_) / size;
   return residual;
+}
+
+void DenseBorders::keep_still(const Eigen::MatrixXd& directions) {
+  keep_still_reduced(basis_.transpose() * directions);
+}
+
+Eigen::MatrixXd DenseBorders::keep_still_reduced(const Eigen::MatrixXd& directions) {
+  auto stiffness = h_.leftCols(basis_.cols());
+  if (still_.cols() > 0) stiffness -= still_ * still_.transpose();
+  still_ = directions;
+  if (still_.cols() > 0) stiffness += still_ * still_.transpose();
+  return basis_ * still_;
+}
+
+Eigen::MatrixXd DenseBorders::keep_still_there() {
+  // H v = 0 makes (H + V V^T) v = V (V^T v).
+  const Eigen::Index k = basis_.cols();
+  Eigen::MatrixXd nearly = still_;
+  for (auto column : nearly.colwise())
+    if (const auto solved = solve_square(h_.leftCols(k), column)) column = *solved;
+  const Eigen::MatrixXd before = still_;
+  keep_still_reduced(Eigen::MatrixXd(k, 0));
+  const auto span = singular_vectors(nearly);
+  if (!span) return keep_still_reduced(before);
+  const Eigen::MatrixXd directions = span->left.leftCols(nearly.cols());
+  const auto effect = singular_vectors(h_.leftCols(k) * directions);
+  if (!effect) return keep_still_reduced(before);
+  return keep_still_reduced(directions * effect->right.rightCols(unresisted(effect->values)));
+}
+
+Eigen::MatrixXd DenseBorders::keep_null_space_still(const Eigen::VectorXd& along) {
+  const Eigen::Index n = basis_.rows(), k = basis_.cols();
+  keep_still_reduced(Eigen::MatrixXd(k, 0));
+  if (k == 0 || k >= large::from) return keep_still_reduced(Eigen::MatrixXd(k, 0));
+  const auto parts = singular_vectors(h_.leftCols(k));
+  if (!parts) return keep_still_reduced(Eigen::MatrixXd(k, 0));
+  const Eigen::MatrixXd null_space = parts->right.rightCols(unresisted(parts->values));
+  if (null_space.cols() == 0) return keep_still_reduced(null_space);
+  // A branch at one value of the parameter is such a direction itself.
+  const Eigen::MatrixXd shares = along.head(n).transpose() * basis_ * null_space; // (1, d)
+  const auto split = singular_vectors(shares);
+  if (!split) return keep_still_reduced(Eigen::MatrixXd(k, 0));
+  const Eigen::Index own = split->values[0] > 0.5 ? 1 : 0;
+  return keep_still_reduced(null_space * split->right.rightCols(null_space.cols() - own));
 }
 
 // Scaled step and parameter from reduced unknowns.
@@ -113,6 +166,13 @@ std::optional<double> DenseBorders::determinant(const Eigen::VectorXd& border) {
   Lu lu;
   const bool regular = lu.compute(m) && (*values)[0] > 0;
   return regular ? lu.sign_of_determinant() * (*values)[k] / (*values)[0] : 0;
+}
+
+int DenseBorders::falling() {
+  const Eigen::Index k = basis_.cols();
+  if (k == 0 || k >= large::from) return 0;
+  const auto found = eigenvalues(h_.leftCols(k));
+  return found ? static_cast<int>(std::ranges::count_if(*found, [](auto s) { return s.real() < 0; })) : 0;
 }
 
 bool DenseBorders::second_direction(const Eigen::VectorXd& tangent, Eigen::VectorXd& out) {

@@ -12,19 +12,26 @@ class DenseBorders final : public BorderedBalance {
   DenseBorders(Family& family, Workspace& w) : BorderedBalance(family, w) {}
 
   double linearize(const Unknowns& z, double parameter) override;
+  void keep_still(const Eigen::MatrixXd& directions) override;
+  Eigen::MatrixXd keep_still_there() override;
+  Eigen::MatrixXd keep_null_space_still(const Eigen::VectorXd& along) override;
   bool step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
             Eigen::VectorXd& lambda) override;
   bool direction(const Eigen::VectorXd& border, Eigen::VectorXd& out) override;
   std::optional<double> determinant(const Eigen::VectorXd& border) override;
+  int falling() override;
   bool second_direction(const Eigen::VectorXd& tangent, Eigen::VectorXd& out) override;
 
  private:
   Eigen::MatrixXd bordered(const Eigen::VectorXd& border) const;
+  // From here on, instead of what was.
+  Eigen::MatrixXd keep_still_reduced(const Eigen::MatrixXd& directions);
   Eigen::VectorXd expand(const Eigen::VectorXd& reduced, double with_r0) const;
 
   Eigen::MatrixXd basis_;   // N
   Eigen::VectorXd r0_, r1_; // range parts: closing the loops, following the parameter
-  Eigen::MatrixXd h_;       // [H b]: (k, k + 1)
+  Eigen::MatrixXd h_;       // [H b]: (k, k + 1); with what keeps still
+  Eigen::MatrixXd still_;   // N^T V: (k, d)
   Eigen::VectorXd g_;
   Eigen::VectorXd force_; // scaled, without multipliers
 };
