@@ -6,6 +6,7 @@
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/focus_order.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
+#include "app/ui/load_view.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/ui_style.hpp"
@@ -451,6 +452,31 @@ TEST_CASE("F6 goes round all regions, and Tab in the view goes on switching Buil
   CHECK(app.view.camera.azimuth != azimuth);
   hand.key('+');
   CHECK(app.view.camera.distance < distance);
+}
+
+TEST_CASE("free-body diagrams are gone through by Page Down and Page Up in the view") {
+  Typist hand;
+  App& app = hand.app;
+  const std::vector<Body>& bodies = app.session.mechanism().bodies;
+  const auto chosen = [&] {
+    const std::vector<Part>& parts = app.session.selection().parts;
+    return parts.size() == 1 && parts.front().kind == PartKind::body ? parts.front().name : std::string();
+  };
+  hand.key('A');
+  for (const Body& body : bodies) {
+    hand.key(keys::page_down);
+    hand.frames(2);
+    CHECK(chosen() == body.name);
+    CHECK(shows_diagram(app.view));
+  }
+  hand.key(keys::page_down);
+  CHECK(chosen() == bodies.front().name); // round
+  hand.key(keys::page_up);
+  CHECK(chosen() == bodies.back().name);
+  hand.key(key_escape);
+  hand.frames(2);
+  CHECK(app.session.selection().parts.empty());
+  CHECK_FALSE(shows_diagram(app.view));
 }
 
 TEST_CASE("the tabs of the studies are one stop, the open one, and arrows go along them") {

@@ -1,5 +1,6 @@
-// The view by keys: arrows turn it, with Shift they move it, plus and minus zoom; while a tool places, they
-// move its cursor instead.
+// The view by keys: arrows turn it, with Shift they move it, plus and minus zoom, Page Down and Page Up go
+// from body to body; while a tool places, they move its cursor instead.
+#include "app/session/session.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/tools/tool_cursor.hpp"
@@ -8,6 +9,7 @@
 
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace flyball {
@@ -36,6 +38,20 @@ bool steer_by_key(const Ui& ui, ViewState& view, const KeyPress& key, ViewSize s
   return true;
 }
 
+// In the scene's order, round; at first to the first or the last.
+bool go_to_body(Session& session, const KeyPress& key) {
+  const bool on = key.key == keys::page_down;
+  const std::vector<Body>& bodies = session.mechanism().bodies;
+  if ((!on && key.key != keys::page_up) || key.ctrl || key.shift || bodies.empty()) return false;
+  const std::vector<Part>& chosen = session.selection().parts;
+  const auto last = std::ranges::find(chosen.rbegin(), chosen.rend(), PartKind::body, &Part::kind);
+  const int now = last == chosen.rend() ? -1 : body_index(session.mechanism(), last->name),
+            count = static_cast<int>(bodies.size()),
+            next = now < 0 ? (on ? 0 : count - 1) : (now + (on ? 1 : count - 1)) % count;
+  select(session, {{{PartKind::body, bodies[static_cast<std::size_t>(next)].name}}});
+  return true;
+}
+
 } // namespace
 
 void take_view_keys(const ViewContext& context) {
@@ -49,6 +65,7 @@ void take_view_keys(const ViewContext& context) {
     if (context.session.mode == Mode::build && places(context.tool.tool) &&
         take_cursor_key(context, key, size))
       return true;
+    if (go_to_body(context.session, key)) return true;
     return steer_by_key(context.ui, context.view, key, size);
   });
 }

@@ -155,7 +155,7 @@ const std::array view_commands{
     Command{.id = "view.loads",
             .title = "Forces",
             .help = "Arrows of reactions, drive torques, springs' forces and inertial loads; with one body "
-                    "chosen, its free-body diagram.",
+                    "chosen (Page Down: the next one), its free-body diagram.",
             .key = plain('A'),
             .run =
                 [](App& app) {
