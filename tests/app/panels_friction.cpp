@@ -1,6 +1,7 @@
 // What rests on dry friction in the window: its branches in the response curve, its states in the list.
 #include "robot.hpp"
 
+#include "app/session/friction.hpp"
 #include "app/session/response.hpp"
 #include "app/session/states.hpp"
 #include "app/ui/panel_list.hpp"
@@ -79,6 +80,26 @@ TEST_CASE("the response curve shows what friction holds and what slips, each in 
     CHECK(session.answer.solution.frictions.at(0).slips == lines[i].points[1].frictions.at(0).slips);
     CHECK(session.notice.empty());
   }
+}
+
+TEST_CASE("below the choice of the band it stands why there is no bound") {
+  // Friction of 12 N m holds a pendulum of 10 N m at any angle.
+  Robot robot({1280, 900});
+  Session& session = robot.app.session;
+  Mechanism m = rubbing_pendulum(12);
+  m.sliders.push_back({.parameter = "bodies.bob.mass", .from = 1, .to = 2, .description = ""});
+  open_document(session, Document(std::move(m)));
+  robot.frames(3);
+  robot.key('C');
+  robot.frames(6);
+  const auto& widgets = robot.app.ui.widgets;
+  REQUIRE(widgets.count("response/ribbon") == 1);
+  CHECK(widgets.count("response/ribbon/gap/1") == 1);
+  const std::vector<RibbonGap> gaps = ribbon_gaps(session);
+  REQUIRE(gaps.size() >= 1);
+  CHECK_THAT(gaps[0].why, ContainsSubstring("Friction holds it at any angle"));
+  CHECK(std::min(gaps[0].from, gaps[0].to) == 1);
+  CHECK(std::max(gaps[0].from, gaps[0].to) == 2);
 }
 
 TEST_CASE("a state that slips is in the list of states, with its speed") {
