@@ -28,11 +28,17 @@ struct LinearizeArguments {
 
 // "from:to:count" in Hz.
 std::vector<double> parse_frequencies(const std::string& text) {
-  const char* option = "--frequencies";
-  const Range range = parse_range(option, "Hz=" + text, true);
-  if (!(range.from > 0) || !(range.to > range.from) || range.count < 2 || range.count > 100000)
-    throw SceneError(std::string(option) + " " + text,
-                     "expected FROM:TO:COUNT in Hz, 0 < FROM < TO, 2 to 100000 of them");
+  const auto fail = [&] {
+    return SceneError("--frequencies " + text,
+                      "expected FROM:TO:COUNT in Hz, 0 < FROM < TO, 2 to 100000 of them");
+  };
+  Range range;
+  try {
+    range = parse_range("--frequencies", "Hz=" + text, true);
+  } catch (const SceneError&) { // in words of addresses
+    throw fail();
+  }
+  if (!(range.from > 0) || !(range.to > range.from) || range.count < 2 || range.count > 100000) throw fail();
   return log_spaced(range.from, range.to, range.count);
 }
 

@@ -172,7 +172,7 @@ void add_spread(CLI::App& app, Ending& ending) {
       ->take_all()
       ->allow_extra_args(false);
   command->add_option("--samples", arguments->samples, "How many samples")
-      ->check(CLI::Range(1., 1e8))
+      ->check(CLI::Range(2., 1e8)) // one has no deviation
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Which samples: the same seed gives the same to the bit")
       ->capture_default_str();

@@ -118,6 +118,9 @@ class ExpressionParser {
   void number() {
     double value = 0;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    if (error == std::errc::result_out_of_range)
+      fail("expected a number of a size between 1e-307 and 1e308, found \"" +
+           std::string(text_.substr(at_, static_cast<std::size_t>(end - text_.data()) - at_)) + "\"");
     if (error != std::errc() || !std::isfinite(value)) fail("expected a number");
     at_ = static_cast<std::size_t>(end - text_.data());
     Expression::Step step{.operation = Operation::number, .value = value, .dimension = {{}, true}};

@@ -214,8 +214,9 @@ def refusals(folder):
     check("JSON tells the reason", ended == 1 and json.loads(out)["A"] is None and json.loads(out)["message"])
     ended, _, error = run(scene, "--inputs", "torque(slide)", "--outputs", "slide", "-o", folder / "model.xls")
     check(f"endings that are none are refused: {error}", ended == 2 and ".npz" in error)
-    ended, _, error = run(scene, "--inputs", "torque(slide)", "--outputs", "slide", "--frequencies", "1:0:5")
-    check(f"frequencies that are none are refused: {error}", ended == 2 and "FROM" in error)
+    for wrong in ("1:0:5", "1:10:0", "1:10", "1:ten:5"):
+        ended, _, error = run(scene, "--inputs", "torque(slide)", "--outputs", "slide", "--frequencies", wrong)
+        check(f"frequencies that are none are refused: {error}", ended == 2 and f"{wrong}: expected FROM:TO" in error)
 
 
 def main():

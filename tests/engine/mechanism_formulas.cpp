@@ -142,6 +142,9 @@ TEST_CASE("What is wrong with an expression is said by its place") {
   CHECK_THAT(mistake_in("sqrt(-1)", ""), ContainsSubstring("not finite"));
   CHECK_THAT(mistake_in("1 + ", ""),
              ContainsSubstring("column 5: expected a number, a name or (, found the end"));
+  CHECK_THAT(
+      mistake_in("2 + 1e400", ""),
+      ContainsSubstring("column 5: expected a number of a size between 1e-307 and 1e308, found \"1e400\""));
   CHECK_THAT(mistake_in("2 L", "m"), ContainsSubstring("column 3: expected an operator or a unit"));
   CHECK_THAT(mistake_in("L L", "m"), ContainsSubstring("column 3: expected an operator"));
   CHECK_THAT(mistake_in("atan2(L)", ""), ContainsSubstring("another argument of atan2"));
