@@ -367,6 +367,7 @@ std::string directions_in_words(const ReportInput& in, std::size_t joints) {
 std::string friction_at_standstill(const ReportInput& in) {
   if (!rubs_anywhere(in.mechanism)) return {};
   const System& system = in.problem.system;
+  const std::vector<CoordinateReference> holding = find_frictions(in.mechanism); // not at a given speed
   std::vector<double> limits(system.drives.size(), 0); // of what is geared together, as the drive sees it
   for (const DrivenCoordinate& d : system.drives) {
     const Link& link = system.links[static_cast<std::size_t>(d.link)];
@@ -374,7 +375,7 @@ std::string friction_at_standstill(const ReportInput& in) {
     const int joint = system.tree_joints[static_cast<std::size_t>(link.tree_joint)].joint;
     if (joint < 0 || p.speed != 0) continue;
     const CoordinateReference at{joint, link.coordinate};
-    if (coordinate_of(in.mechanism, at).friction && is_at_given_speed(in.mechanism, at))
+    if (coordinate_of(in.mechanism, at).friction && !std::ranges::count(holding, at))
       limits[static_cast<std::size_t>(d.motor)] +=
           friction_limit(friction_at(in.mechanism, at)) * std::abs(p.gear_ratio);
   }
