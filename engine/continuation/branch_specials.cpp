@@ -64,6 +64,7 @@ bool BranchFollower::jumps_aside(const BranchState& state, double along) {
   int iterations = 0;
   return !continuation_.step(state, along - beside, before, iterations) ||
          !continuation_.step(state, along + beside, after, iterations) ||
+         !(before.determinant * after.determinant < 0) || // it was not located
          size_of(before, difference(before, after)) > apart;
 }
 
