@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <random>
 
 namespace flyball {
 namespace {
@@ -188,43 +189,73 @@ void BranchFollower::untie() {
 std::optional<BranchState> BranchFollower::begin(BranchState state, bool forth) {
   const double way = (to_ > from_) == forth ? 1 : -1;
   try {
-    find_family(state);
-    if (!continuation_.start(state, way)) return {};
+    if (!start(state, way)) return {};
   } catch (const InfiniteRate&) { // such as of a square root at zero: it begins beside
     state.parameter += way * beside_infinite_rate * family_.scale();
-    if (!continuation_.land(state)) return {};
-    find_family(state);
-    if (!continuation_.start(state, way)) return {};
+    if (!continuation_.land(state) || !start(state, way)) return {};
   }
   return state;
 }
 
-void BranchFollower::find_family(BranchState& state) {
-  const Problem problem = problem_at(state);
-  const Stability stability = find_stability(factor_at(problem, state.z, w_), false);
-  if (stability.neutral.empty()) return;
-  const Eigen::MatrixXd& directions = stability.neutral_directions;
-  if (problem.form == KktForm::dense && !family_.ties() && directions.cols() > 0)
-    if (const auto span = singular_vectors(directions)) {
-      state.still = span->left.leftCols(directions.cols());
-      return;
-    }
-  state.drifts = drifting_ = true;
+bool BranchFollower::start(BranchState& state, double way) {
+  state.drifts = false;
+  if (!continuation_.keep_null_space_still(state)) {
+    const Problem problem = problem_at(state);
+    state.drifts = !find_stability(factor_at(problem, state.z, w_), false).neutral.empty();
+    drifting_ = drifting_ || state.drifts;
+  }
+  if (!continuation_.start(state, way)) return false;
+  if (is_a_family(state)) return true;
+  state.still.resize(state.still.rows(), 0); // a singular state, such as that of a fold
+  return continuation_.start(state, way);
 }
 
-BranchState BranchFollower::nearest_of_family(BranchState state, const BranchState& to) {
+bool BranchFollower::is_a_family(const BranchState& state) {
+  constexpr double away = 1e-3; // scaled
+  const Eigen::Index count = state.still.cols();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    BranchState moved = state;
+    if (!continuation_.slide(moved, away * Eigen::VectorXd::Unit(count, i)) || moved.still.cols() < count)
+      return false;
+    const Eigen::VectorXd step = scaled_difference(family_.problem(), state.z.q, moved.z.q);
+    if (!(state.still.col(i).dot(step) > away / 2)) return false;
+  }
+  return true;
+}
+
+std::vector<BranchState> BranchFollower::family(const BranchState& state) {
+  std::vector<BranchState> out{state};
+  constexpr double step = 0.7; // scaled
+  std::mt19937 random(11);
+  BranchState at = state;
+  for (Eigen::Index i = 0; i < 16 * state.still.cols(); ++i) {
+    Eigen::VectorXd by(at.still.cols());
+    for (double& entry : by)
+      entry = static_cast<double>(random()) / 2147483648. - 1;
+    // Of one direction to the same side, so that a circle is gone all round.
+    const double size = by.size() == 1 ? by[0] : by.norm();
+    if (!(std::abs(size) > 0) || !continuation_.slide(at, step / size * by)) break;
+    out.push_back(at);
+  }
+  return out;
+}
+
+BranchState BranchFollower::nearest_of_family(const std::vector<BranchState>& family, const BranchState& to) {
   constexpr double longest = 0.3, there = 1e-9; // scaled
   constexpr double level = 1e-3;                // of the distance: it hardly changes along the family
   constexpr int most = 60;
-  for (int i = 0; i < most && state.still.cols() > 0; ++i) {
+  if (family.size() == 1 && family.front().still.cols() == 0) return family.front();
+  const auto distance = [&](const BranchState& s) {
+    return scaled_difference(family_.problem(), s.z.q, to.z.q).norm();
+  };
+  BranchState state = *std::ranges::min_element(family, {}, distance);
+  for (int i = 0; i < most; ++i) {
     const Eigen::VectorXd away = scaled_difference(family_.problem(), state.z.q, to.z.q);
-    Eigen::VectorXd by = state.still.transpose() * away;
+    const Eigen::VectorXd by = state.still.transpose() * away;
     const double size = by.norm();
     if (!(size > std::max(there, level * away.norm()))) break;
     BranchState next = state;
-    if (!continuation_.slide(next, std::min(1., longest / size) * by) ||
-        scaled_difference(family_.problem(), next.z.q, to.z.q).norm() >= away.norm())
-      break;
+    if (!continuation_.slide(next, std::min(1., longest / size) * by) || distance(next) >= away.norm()) break;
     state = std::move(next);
   }
   return state;
@@ -280,12 +311,12 @@ double BranchFollower::size_of(const BranchState& at, Eigen::VectorXd step) cons
 
 bool BranchFollower::same(const BranchState& a, const BranchState& b) {
   return std::abs(a.parameter - b.parameter) < tolerance::same_parameter * family_.scale() &&
-         same_place(nearest_of_family(a, b), b, tolerance::same_branch_pose);
+         same_place(nearest_of_family({a}, b), b, tolerance::same_branch_pose);
 }
 
-bool BranchFollower::lies_on(const BranchState& asked, const FollowedBranch& branch) {
+bool BranchFollower::lies_on(const std::vector<BranchState>& family, const FollowedBranch& branch) {
   const double near = 2 * options_.largest_step;
-  BranchState state = asked, beside = asked;
+  BranchState state = family.front();
   const BranchState* nearest = nullptr;
   Eigen::VectorXd offset;
   double least = near;
@@ -293,17 +324,16 @@ bool BranchFollower::lies_on(const BranchState& asked, const FollowedBranch& bra
     if (s.starts.size() != state.starts.size() ||
         std::abs(s.parameter - state.parameter) > near * family_.scale())
       continue;
-    state = nearest_of_family(std::move(state), s);
-    const Eigen::VectorXd d = difference(s, state);
+    BranchState beside = nearest_of_family(family, s);
+    const Eigen::VectorXd d = difference(s, beside);
     if (const double size = size_of(s, d); size < least) {
       least = size;
       offset = d;
       nearest = &s;
-      beside = state;
+      state = std::move(beside);
     }
   }
   if (!nearest) return false;
-  state = std::move(beside);
   if (same(*nearest, state)) return true;
   // Beyond its ends it may go on as another branch: the two halves of a pitchfork are one curve.
   const double along = nearest->tangent.dot(offset);
@@ -313,7 +343,7 @@ bool BranchFollower::lies_on(const BranchState& asked, const FollowedBranch& bra
   int iterations = 0;
   try {
     return continuation_.step(*nearest, along, there, iterations) &&
-           size_of(there, difference(there, nearest_of_family(state, there))) < 1e-2 * least;
+           size_of(there, difference(there, nearest_of_family({state}, there))) < 1e-2 * least;
   } catch (const SceneError&) { // no mechanism can be made there
     return false;
   }
@@ -473,7 +503,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     out.states.push_back(next);
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
     if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale()) {
-      const BranchState last = nearest_of_family(next, origin);
+      const BranchState last = nearest_of_family({next}, origin);
       if (same_place(last, origin, length) && last.tangent.dot(origin.tangent) > 0.9) {
         out.end = closed_branch;
         out.closed = true;

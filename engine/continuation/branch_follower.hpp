@@ -7,6 +7,7 @@
 #include "engine/report/measures.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace flyball {
 
@@ -78,8 +79,10 @@ class BranchFollower {
   // A sentence on what is not looked for in a mechanism this large; empty where all is.
   std::string limits() const;
 
-  // Whether a state is a point of a branch that was followed.
-  bool lies_on(const BranchState& asked, const FollowedBranch& branch);
+  // States here and there in the family of a state, itself the first: all there are where it has none.
+  std::vector<BranchState> family(const BranchState& state);
+  // Whether a state is a point of a branch that was followed, or another of that one's family is.
+  bool lies_on(const std::vector<BranchState>& family, const FollowedBranch& branch);
   bool same(const BranchState& a, const BranchState& b);
 
  private:
@@ -139,11 +142,12 @@ class BranchFollower {
   bool holds_at_every_phase(const BranchState& state);
   double position(double parameter) const { return (parameter - from_) / (to_ - from_); }
   std::optional<BranchState> begin(BranchState state, bool forth);
-  // Whether it is one of a family, whose directions are kept still where that is known to be done: of dense
-  // problems as drawn.
-  void find_family(BranchState& state);
-  // Of the family of a state the one nearest to `to`.
-  BranchState nearest_of_family(BranchState state, const BranchState& to);
+  // Continuation's, with what nothing resists kept still.
+  bool start(BranchState& state, double way);
+  // Whether a little along each of the directions that it keeps still there are others.
+  bool is_a_family(const BranchState& state);
+  // Of a family the one nearest to `to`, from the nearest of these on.
+  BranchState nearest_of_family(const std::vector<BranchState>& family, const BranchState& to);
   // Whether folds and crossings between them are to be told by their determinants.
   static bool comparable(const BranchState& a, const BranchState& b) {
     return !a.drifts && !b.drifts && a.still.cols() == b.still.cols();

@@ -406,8 +406,9 @@ class Diagram {
   }
 
   bool known(const BranchState& state) {
+    const std::vector<BranchState> family = follower_.family(state);
     return std::ranges::any_of(followed_,
-                               [&](const FollowedBranch& b) { return follower_.lies_on(state, b); });
+                               [&](const FollowedBranch& b) { return follower_.lies_on(family, b); });
   }
 
   // Both ways off every crossing that is left.

@@ -81,6 +81,13 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
   return true;
 }
 
+bool Continuation::keep_null_space_still(BranchState& state) {
+  state.still.resize(family_.problem().system.nv, 0);
+  if (!std::isfinite(linearize(state)) || !balance_->keeps_still()) return false;
+  state.still = balance_->keep_null_space_still(Eigen::VectorXd::Unit(unknowns(), unknowns() - 1));
+  return true;
+}
+
 bool Continuation::start(BranchState& state, double direction) {
   Eigen::VectorXd along = Eigen::VectorXd::Zero(unknowns());
   along[along.size() - 1] = direction < 0 ? -1 : 1;

@@ -38,6 +38,10 @@ class Continuation {
   // After the family's angles were tied.
   void tied();
 
+  // Keeps still what nothing resists at a state whose z solves the balance, but along the parameter. False
+  // where that is not known to be done.
+  bool keep_null_space_still(BranchState& state);
+
   // Completes a state whose z solves the balance at its parameter: tangent with the parameter growing, or
   // falling for direction < 0. False at a singular state that has no single tangent.
   bool start(BranchState& state, double direction);

@@ -86,13 +86,22 @@ Eigen::MatrixXd DenseBorders::keep_still_there() {
   const Eigen::MatrixXd directions = span->left.leftCols(nearly.cols());
   const auto effect = singular_vectors(h_.leftCols(k) * directions);
   if (!effect) return keep_still_reduced(before);
-  return keep_still_reduced(directions * effect->right.rightCols(unresisted(effect->values)));
+  Eigen::MatrixXd there = directions * effect->right.rightCols(unresisted(effect->values));
+  // Turned among each other as before, so that one may go on in one of them.
+  if (there.cols() == before.cols())
+    if (const auto turn = singular_vectors(there.transpose() * before))
+      there = (there * turn->left * turn->right.transpose()).eval();
+  return keep_still_reduced(there);
+}
+
+bool DenseBorders::keeps_still() const {
+  return basis_.cols() < large::from;
 }
 
 Eigen::MatrixXd DenseBorders::keep_null_space_still(const Eigen::VectorXd& along) {
   const Eigen::Index n = basis_.rows(), k = basis_.cols();
   keep_still_reduced(Eigen::MatrixXd(k, 0));
-  if (k == 0 || k >= large::from) return keep_still_reduced(Eigen::MatrixXd(k, 0));
+  if (k == 0 || !keeps_still()) return keep_still_reduced(Eigen::MatrixXd(k, 0));
   const auto parts = singular_vectors(h_.leftCols(k));
   if (!parts) return keep_still_reduced(Eigen::MatrixXd(k, 0));
   const Eigen::MatrixXd null_space = parts->right.rightCols(unresisted(parts->values));
@@ -170,7 +179,7 @@ std::optional<double> DenseBorders::determinant(const Eigen::VectorXd& border) {
 
 int DenseBorders::falling() {
   const Eigen::Index k = basis_.cols();
-  if (k == 0 || k >= large::from) return 0;
+  if (k == 0 || !keeps_still()) return 0;
   const auto found = eigenvalues(h_.leftCols(k));
   return found ? static_cast<int>(std::ranges::count_if(*found, [](auto s) { return s.real() < 0; })) : 0;
 }

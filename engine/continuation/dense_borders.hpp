@@ -14,6 +14,7 @@ class DenseBorders final : public BorderedBalance {
   double linearize(const Unknowns& z, double parameter) override;
   void keep_still(const Eigen::MatrixXd& directions) override;
   Eigen::MatrixXd keep_still_there() override;
+  bool keeps_still() const override;
   Eigen::MatrixXd keep_null_space_still(const Eigen::VectorXd& along) override;
   bool step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
             Eigen::VectorXd& lambda) override;
