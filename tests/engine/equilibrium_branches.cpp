@@ -303,7 +303,7 @@ TEST_CASE("where nothing resists a direction no crossings are made up", "[branch
   const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 10);
   CHECK(d.status == Status::converged);
   CHECK(d.branches.size() <= 2);
-  CHECK_THAT(d.message, ContainsSubstring("Nothing resists"));
+  CHECK(d.message.find("not looked for") == std::string::npos);
   CHECK(d.special.empty());
   // Each point is a steady state: solved from there, nothing moves.
   for (std::size_t i = 0; i < d.branches.back().points.size(); i += 20) {
