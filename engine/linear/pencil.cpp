@@ -10,6 +10,8 @@ namespace {
 using Complex = std::complex<double>;
 using Eigenvalues = std::optional<std::vector<Complex>>;
 
+constexpr double massless_inertia = 1e-13; // of the heaviest
+
 void sort_eigenvalues(std::vector<Complex>& s) {
   for (Complex& x : s)
     x += Complex(0, 0); // no negative zeros
@@ -116,6 +118,81 @@ Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::Matr
   return regular_eigenvalues((m + m.transpose()) / 2, reduced(d), reduced(k), cancel);
 }
 
+// What pencil_eigenvalues() finds, of matrices as measured. `graded`: some of what is not massless is far
+// lighter, and far faster, than the rest, which M's inverse would lose.
+Eigenvalues finite_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                               const Eigen::MatrixXd& stiffness, bool graded, CancelFlag cancel) {
+  const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
+  if (m == 0) {
+    if (d == 0) return std::vector<Complex>();
+    const auto z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
+    if (!z) return {};
+    return singular_eigenvalues(onto(*z, mass), onto(*z, velocity), onto(*z, stiffness), cancel);
+  }
+  // Time in units in which mass and stiffness are alike.
+  const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
+  const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
+  interruption_point();
+  SymmetricEigen shape;
+  if (!shape.compute((m1 + m1.transpose()) / 2)) return {};
+  Eigen::Index massless = 0;
+  while (massless < m1.rows() && shape.values()[massless] < massless_inertia)
+    ++massless;
+  Eigenvalues s;
+  if (massless == 0) {
+    s = graded ? singular_eigenvalues(m1, d1, k1, cancel)
+               : regular_eigenvalues((m1 + m1.transpose()) / 2, d1, k1, cancel);
+  } else {
+    const Eigen::MatrixXd light = shape.vectors().leftCols(massless),
+                          r = shape.vectors().rightCols(m1.rows() - massless);
+    // A mass of m_z couples gyroscopically like sqrt(m_z m_r): where masses are neglected up to 1e-13, so is
+    // the coupling up to its root. As rounding it would be a damper, or hold what it couples.
+    const Eigen::MatrixXd gyroscopic = (d1 - d1.transpose()) / 2, coupling = gyroscopic * light;
+    Eigen::MatrixXd d2 = d1;
+    if (coupling.norm() <= 5e-7 * (d1.norm() + 1)) {
+      const Eigen::MatrixXd one_side = coupling * light.transpose();
+      d2 -= one_side - one_side.transpose() - light * (light.transpose() * one_side);
+    }
+    const auto felt_directions = felt(light, d2, k1);
+    if (!felt_directions) return {};
+    const Eigen::MatrixXd& z = *felt_directions;
+    const bool damped = (d2 * z).norm() + (z.transpose() * d2).norm() > 1e-13 * (d1.norm() + 1);
+    if (damped) {
+      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
+      all << z, r;
+      s = singular_eigenvalues(onto(all, m1), onto(all, d2), onto(all, k1), cancel);
+    } else {
+      s = condensed_eigenvalues(m1, d2, k1, z, r, cancel);
+    }
+  }
+  if (!s) return {};
+  for (Complex& x : *s)
+    x *= rate;
+  sort_eigenvalues(*s);
+  return s;
+}
+
+constexpr double rounding_of_inertia = 1e-13, light_inertia = 1e-10; // of what it is made of, of the heaviest
+constexpr double much_faster = 1e4;   // than the others, whose squares then keep eight digits
+constexpr double no_velocity = 1e-13; // of all there is
+
+// 1/s, of a direction by itself.
+double own_rate(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                const Eigen::MatrixXd& stiffness, Eigen::Index i) {
+  return std::max(std::sqrt(std::abs(stiffness(i, i)) / mass(i, i)), std::abs(velocity(i, i)) / mass(i, i));
+}
+
+// The largest of those that are not light.
+double rate_of_heavy(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                     const Eigen::MatrixXd& stiffness) {
+  const double heaviest = mass.rows() > 0 ? mass.diagonal().maxCoeff() : 0;
+  double out = 0;
+  for (Eigen::Index i = 0; i < mass.rows(); ++i)
+    if (mass(i, i) > 0 && mass(i, i) >= light_inertia * heaviest)
+      out = std::max(out, own_rate(mass, velocity, stiffness, i));
+  return out;
+}
+
 } // namespace
 
 // With x = P p + C c, C cyclic, and the velocities u: p' = P^T u, M u' = -D u - K P p.
@@ -157,26 +234,54 @@ Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen:
 }
 
 Eigen::VectorXd units_of_inertia(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
-                                 const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& made_of) {
-  constexpr double rounding = 1e-13, light = 1e-10;
-  constexpr double fast = 1e4; // times the rates of the others, whose squares then keep eight digits
+                                 const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& made_of,
+                                 std::vector<Eigen::Index>* fast) {
   const double heaviest = mass.rows() > 0 ? mass.diagonal().maxCoeff() : 0;
-  const auto rate = [&](Eigen::Index i) { // 1/s, by itself
-    return std::max(std::sqrt(std::abs(stiffness(i, i)) / mass(i, i)), std::abs(velocity(i, i)) / mass(i, i));
-  };
-  double others = 0;
-  for (Eigen::Index i = 0; i < mass.rows(); ++i)
-    if (mass(i, i) > 0 && mass(i, i) >= light * heaviest) others = std::max(others, rate(i));
+  const double others = rate_of_heavy(mass, velocity, stiffness);
   Eigen::VectorXd units = Eigen::VectorXd::Ones(mass.rows());
   bool any_light = false;
   for (Eigen::Index i = 0; i < mass.rows(); ++i) {
-    const bool is_light = mass(i, i) < light * heaviest;
-    if (!(mass(i, i) > rounding * made_of[i])) continue;
-    if (is_light && others > 0 && rate(i) > fast * others) continue;
+    const bool is_light = mass(i, i) < light_inertia * heaviest;
+    if (!(mass(i, i) > rounding_of_inertia * made_of[i])) continue;
+    if (is_light && others > 0 && own_rate(mass, velocity, stiffness, i) > much_faster * others) {
+      if (fast) fast->push_back(i);
+      continue;
+    }
     units[i] = std::sqrt(heaviest / mass(i, i));
     any_light |= is_light;
   }
   return any_light ? units : Eigen::VectorXd::Ones(mass.rows());
+}
+
+MeasuredPencil measured_pencil(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                               const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& made_of) {
+  std::vector<Eigen::Index> fast;
+  Eigen::VectorXd units = units_of_inertia(mass, velocity, stiffness, made_of, &fast);
+  const double others = rate_of_heavy(mass, velocity, stiffness),
+               heaviest = mass.rows() > 0 ? mass.diagonal().maxCoeff() : 0;
+  const bool known =
+      std::ranges::any_of(fast, [&](Eigen::Index i) { return mass(i, i) >= massless_inertia * heaviest; });
+  if (known && velocity.isZero(0)) fast.clear();
+  for (const Eigen::Index i : fast)
+    units[i] = std::sqrt(heaviest / std::max(std::abs(stiffness(i, i)) / (others * others),
+                                             std::abs(velocity(i, i)) / others));
+  const auto measured = [&](const Eigen::MatrixXd& a) {
+    return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
+  };
+  MeasuredPencil out{measured(mass), measured(velocity), measured(stiffness)};
+  const double none = no_velocity * (out.velocity.norm() + heaviest * others);
+  out.graded = !fast.empty() && (known || std::ranges::any_of(fast, [&](Eigen::Index i) {
+                                   return out.velocity.row(i).norm() + out.velocity.col(i).norm() > none;
+                                 }));
+  if (out.graded) {
+    if (!known) out.known = much_faster * others;
+    return out;
+  }
+  for (const Eigen::Index i : fast) {
+    out.mass.row(i).setZero();
+    out.mass.col(i).setZero();
+  }
+  return out;
 }
 
 Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
@@ -186,59 +291,12 @@ Eigenvalues pencil_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
   const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
   if (!std::isfinite(m + k + d)) return {};
   if (made_of.size() > 0) {
-    const Eigen::VectorXd units = units_of_inertia(mass, velocity, stiffness, made_of);
-    const auto measured = [&](const Eigen::MatrixXd& a) {
-      return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
-    };
-    if ((units.array() != 1).any())
-      return pencil_eigenvalues(measured(mass), measured(velocity), measured(stiffness), cancel);
+    const MeasuredPencil in = measured_pencil(mass, velocity, stiffness, made_of);
+    Eigenvalues s = finite_eigenvalues(in.mass, in.velocity, in.stiffness, in.graded, cancel);
+    if (s) std::erase_if(*s, [&](Complex x) { return x.real() < 0 && std::abs(x) > in.known; });
+    return s;
   }
-  if (m == 0) {
-    if (d == 0) return std::vector<Complex>();
-    const auto z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
-    if (!z) return {};
-    return singular_eigenvalues(onto(*z, mass), onto(*z, velocity), onto(*z, stiffness), cancel);
-  }
-  // Time in units in which mass and stiffness are alike.
-  const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
-  const Eigen::MatrixXd m1 = mass / m, d1 = velocity / (m * rate), k1 = stiffness / (m * rate * rate);
-  interruption_point();
-  SymmetricEigen shape;
-  if (!shape.compute((m1 + m1.transpose()) / 2)) return {};
-  Eigen::Index massless = 0;
-  while (massless < m1.rows() && shape.values()[massless] < 1e-13)
-    ++massless;
-  Eigenvalues s;
-  if (massless == 0) {
-    s = regular_eigenvalues((m1 + m1.transpose()) / 2, d1, k1, cancel);
-  } else {
-    const Eigen::MatrixXd light = shape.vectors().leftCols(massless),
-                          r = shape.vectors().rightCols(m1.rows() - massless);
-    // A mass of m_z couples gyroscopically like sqrt(m_z m_r): where masses are neglected up to 1e-13, so is
-    // the coupling up to its root. As rounding it would be a damper, or hold what it couples.
-    const Eigen::MatrixXd gyroscopic = (d1 - d1.transpose()) / 2, coupling = gyroscopic * light;
-    Eigen::MatrixXd d2 = d1;
-    if (coupling.norm() <= 5e-7 * (d1.norm() + 1)) {
-      const Eigen::MatrixXd one_side = coupling * light.transpose();
-      d2 -= one_side - one_side.transpose() - light * (light.transpose() * one_side);
-    }
-    const auto felt_directions = felt(light, d2, k1);
-    if (!felt_directions) return {};
-    const Eigen::MatrixXd& z = *felt_directions;
-    const bool damped = (d2 * z).norm() + (z.transpose() * d2).norm() > 1e-13 * (d1.norm() + 1);
-    if (damped) {
-      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
-      all << z, r;
-      s = singular_eigenvalues(onto(all, m1), onto(all, d2), onto(all, k1), cancel);
-    } else {
-      s = condensed_eigenvalues(m1, d2, k1, z, r, cancel);
-    }
-  }
-  if (!s) return {};
-  for (Complex& x : *s)
-    x *= rate;
-  sort_eigenvalues(*s);
-  return s;
+  return finite_eigenvalues(mass, velocity, stiffness, false, cancel);
 }
 
 } // namespace flyball

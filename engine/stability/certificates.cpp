@@ -67,12 +67,8 @@ bool energy_keeps(const System& system, const SteadyMotion& motion) {
 // have mass: with a mass e of theirs, e s^2 and m s^2 on the diagonal and c beside it, s^2 = +-c / sqrt(e m).
 std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
   if (motion.mass.rows() == 0) return false;
-  const Eigen::VectorXd units =
-      units_of_inertia(motion.mass, motion.velocity, motion.stiffness, motion.inertia);
-  const auto measured = [&](const Eigen::MatrixXd& a) {
-    return Eigen::MatrixXd(units.asDiagonal() * a * units.asDiagonal());
-  };
-  const Eigen::MatrixXd mass = measured(motion.mass);
+  const auto [mass, velocity, stiffness, graded, known] =
+      measured_pencil(motion.mass, motion.velocity, motion.stiffness, motion.inertia);
   SymmetricEigen shape;
   if (!shape.compute((mass + mass.transpose()) / 2)) return {};
   Eigen::Index massless = 0;
@@ -80,8 +76,7 @@ std::optional<bool> massless_directions_tip(const SteadyMotion& motion) {
          shape.values()[massless] < tolerance::massless * std::max(mass.norm(), 1e-300))
     ++massless;
   if (massless == 0) return false;
-  const Eigen::MatrixXd velocity = measured(motion.velocity), stiffness = measured(motion.stiffness),
-                        z = shape.vectors().leftCols(massless),
+  const Eigen::MatrixXd z = shape.vectors().leftCols(massless),
                         r = shape.vectors().rightCols(mass.rows() - massless);
   SymmetricEigen local;
   if (!local.compute(z.transpose() * (stiffness + stiffness.transpose()) * z / 2)) return {};

@@ -627,3 +627,28 @@ TEST_CASE("a light part on a stiff spring leaves the motions of the others what 
                               [](Complex s) { return std::abs(s - Complex(-0.26681, 5.85443)) < 2e-3; }));
   }
 }
+
+TEST_CASE("A tiny link that falls off a heavy one, slowly by its damper, is told to be unstable") {
+  // Upside down at the end of a pendulum of a ton, 1e-5 m long and of 1e-12 kg: by itself I q'' + d q' - k q
+  // = 0 with I = 1.05 m L^2 and k = m L (g + ...), so that q grows at about k / d. By an evaluation of the
+  // equations of motion with 40 digits: 97.10980 / s and 0.0981000 / s.
+  const double mass = 1e-12, length = 1e-5, inertia = 0.05 * mass * length * length;
+  for (const auto& [damping, growth] : {std::pair(1e-18, 97.1098), {1e-15, 0.0981}}) {
+    CAPTURE(damping);
+    Mechanism m;
+    m.gravity = {0, -9.81, 0};
+    m.bodies = {body("hub", 1, {}, {}), body("big", 1e3, {0.02, -10, 0}, {1e3, 1e3, 1e3}),
+                body("small", mass, {0.02, -15 + length, 0}, {inertia, inertia, inertia})};
+    m.joints = {driven(revolute("spin", "ground", "hub", {0, 0, 0}, Vec3::UnitY()), 0.3),
+                dampened(revolute("a", "hub", "big", {0.02, 0, 0}), 500),
+                dampened(revolute("b", "big", "small", {0.02, -15, 0}), damping)};
+    const Solution s = solve(m, nearest());
+    REQUIRE(s.status == Status::converged);
+    CHECK(s.stable == false);
+    REQUIRE(s.eigenvalues);
+    CHECK(
+        std::ranges::any_of(*s.eigenvalues, [&](Complex x) { return std::abs(x - growth) < 1e-4 * growth; }));
+    CHECK(std::ranges::any_of(
+        *s.eigenvalues, [](Complex x) { return std::abs(x - Complex(-0.0024752475, 0.9392401793)) < 1e-8; }));
+  }
+}
