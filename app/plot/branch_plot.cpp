@@ -17,6 +17,9 @@ namespace {
 // How a point looks, as a curve without points.
 PlotCurve look_of(const ResponsePoint& point) {
   if (!point.frictions.empty()) return friction_curve(slips_on_friction(point), point.stable);
+  if (!point.stable &&
+      point.stability_reason == StabilityReason::neutral) // stable, but for where in its family
+    return {.name = "neutral", .points = {}, .line = PlotLine::dotted, .color = plot_color::neutral};
   const bool stable = point.stable == true;
   return {.name = stable ? "stable" : "not stable",
           .points = {},

@@ -34,7 +34,7 @@ PlotCurve look_of(Kind kind, const ResponsePoint& point) {
             .width = 1.6};
   case Kind::undecided: break;
   }
-  return {.name = "undecided",
+  return {.name = point.stability_reason == StabilityReason::neutral ? "neutral" : "undecided",
           .points = {},
           .line = PlotLine::dotted,
           .color = plot_color::neutral,
