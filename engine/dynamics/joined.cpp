@@ -8,11 +8,11 @@
 namespace flyball {
 namespace {
 
-// `to` with all but the first entry of `from` behind its first `count`.
+// `to` with all but the first entry of `from` behind its first `count`; of what neither has, nothing.
 template <class T>
 void append(std::vector<T>& to, std::size_t count, const std::vector<T>& from) {
   to.resize(std::min(count, to.size()));
-  to.insert(to.end(), from.begin() + 1, from.end());
+  if (!from.empty()) to.insert(to.end(), from.begin() + 1, from.end());
 }
 // The same with each raised by `by`.
 void append(std::vector<double>& to, std::size_t count, const std::vector<double>& from, double by) {
