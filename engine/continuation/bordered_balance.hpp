@@ -43,12 +43,12 @@ class BorderedBalance {
   // there.
   virtual Eigen::MatrixXd keep_still_there();
 
-  // Whether that is known to be done at the state that is linearised.
-  virtual bool keeps_still() const { return false; }
-
   // All such directions there that are orthogonal to `along`: the null space of K beside a crossing,
   // where only what is a symmetry's stays singular. Kept still from here on.
   virtual Eigen::MatrixXd keep_null_space_still(const Eigen::VectorXd& along);
+
+  // Whether of what was asked last something resists a direction by little more than rounding.
+  virtual bool hardly_resists() const { return false; }
 
   // The step that balances the forces and closes the loops to first order and has the product `along` with
   // the border, and the multipliers (N, N m) after it. False where B is singular.

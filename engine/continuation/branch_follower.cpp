@@ -1,6 +1,7 @@
 #include "engine/continuation/branch_follower.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/large.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
@@ -198,21 +199,36 @@ std::optional<BranchState> BranchFollower::begin(BranchState state, bool forth) 
 }
 
 bool BranchFollower::start(BranchState& state, double way) {
+  state.still.resize(system_.nv, 0);
   state.drifts = false;
-  if (!continuation_.keep_null_space_still(state)) {
-    const Problem problem = problem_at(state);
-    state.drifts = !find_stability(factor_at(problem, state.z, w_), false).neutral.empty();
-    drifting_ = drifting_ || state.drifts;
+  const Problem problem = problem_at(state);
+  const Stability stability = find_stability(factor_at(problem, state.z, w_), false);
+  if (stability.neutral.empty()) return continuation_.start(state, way);
+  const Eigen::MatrixXd& directions = stability.neutral_directions;
+  const bool known = problem.form == KktForm::dense && !family_.ties() && system_.nv < large::from;
+  if (const auto span = known ? singular_vectors(directions) : std::nullopt) {
+    state.still = span->left.leftCols(directions.cols());
+    if (continuation_.start(state, way) && is_a_family(state)) return true;
+    state.still.resize(system_.nv, 0);
   }
-  if (!continuation_.start(state, way)) return false;
-  if (is_a_family(state)) return true;
-  state.still.resize(state.still.rows(), 0); // a singular state, such as that of a fold
+  state.drifts = true;
   return continuation_.start(state, way);
 }
 
 bool BranchFollower::is_a_family(const BranchState& state) {
-  constexpr double away = 1e-3; // scaled
+  constexpr double away = 1e-3;      // scaled
+  constexpr double singular = 1e-12; // determinant: other directions are singular, too
   const Eigen::Index count = state.still.cols();
+  if (count == 0 || state.drifts || !(std::abs(state.determinant) > singular)) return false;
+  // A balance that is special at this value, as of a shaft that stands, says nothing of those beside it.
+  BranchState beside;
+  int iterations = 0;
+  try {
+    if (!continuation_.step(state, away, beside, iterations) || beside.drifts || beside.still.cols() < count)
+      return false;
+  } catch (const SceneError&) { // no mechanism can be made there
+    return false;
+  }
   for (Eigen::Index i = 0; i < count; ++i) {
     BranchState moved = state;
     if (!continuation_.slide(moved, away * Eigen::VectorXd::Unit(count, i)) || moved.still.cols() < count)
@@ -416,6 +432,9 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
   Described now = describe(state);
   out.points.push_back(now.point);
   out.states.push_back(state);
+  drifting_ = drifting_ || state.drifts;
+  constexpr int most_leaps = 64;
+  int leaps = 0;
   // A shorter step from the same state meets it again.
   std::optional<Crossing> crossing;
   double length = options_.largest_step / 4;
@@ -473,6 +492,11 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     const double shortest = options_.largest_step / 64;
     if (straight && length >= shortest && crossing && crossing->leaps) {
+      if (++leaps == most_leaps) { // the determinant's sign is rounding
+        state.drifts = drifting_ = true;
+        crossing.reset();
+        continue;
+      }
       do
         length /= 2;
       while (length >= shortest && length > crossing->along);
@@ -501,6 +525,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     out.points.push_back(then.point);
     out.states.push_back(next);
+    drifting_ = drifting_ || next.drifts || next.still.cols() != state.still.cols();
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
     if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale()) {
       const BranchState last = nearest_of_family({next}, origin);

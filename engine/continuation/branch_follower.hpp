@@ -6,6 +6,8 @@
 #include "engine/continuation/pair_crossing.hpp"
 #include "engine/report/measures.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -150,7 +152,9 @@ class BranchFollower {
   BranchState nearest_of_family(const std::vector<BranchState>& family, const BranchState& to);
   // Whether folds and crossings between them are to be told by their determinants.
   static bool comparable(const BranchState& a, const BranchState& b) {
-    return !a.drifts && !b.drifts && a.still.cols() == b.still.cols();
+    constexpr double rounding = 1e-9; // beside directions that are kept still
+    return !a.drifts && !b.drifts && a.still.cols() == b.still.cols() &&
+           (a.still.cols() == 0 || std::max(std::abs(a.determinant), std::abs(b.determinant)) > rounding);
   }
   // Of the angles that are tied, from a to b.
   Eigen::VectorXd angles(const BranchState& a, const BranchState& b) const;

@@ -116,13 +116,14 @@ int BranchFollower::find_even_crossings(const BranchState& state, const BranchSt
     const int more = std::abs(beyond.falling - falling);
     falling = beyond.falling;
     // A fold's balance is regular, and so is one where a pair of K's eigenvalues turns over.
-    if (!(std::abs(at.determinant) <= singular * size) ||
-        std::ranges::any_of(out.crossings, [&](const BranchState& other) { return same(at, other); }))
+    if (!(std::abs(at.determinant) <= singular * size)) continue;
+    found += more;
+    if (std::ranges::any_of(out.crossings, [&](const BranchState& other) { return same(at, other); }))
       continue;
     at.tangent = state.tangent;
+    at.twofold = more > 1;
     out.special.emplace_back(SpecialPointType::branch_point, point(at));
     out.crossings.push_back(std::move(at));
-    found += more;
   }
   return found;
 }

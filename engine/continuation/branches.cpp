@@ -419,7 +419,10 @@ class Diagram {
       for (double length : {off_crossing, -off_crossing}) {
         if (!going()) return;
         const auto first = follower_.off(at, length);
-        if (!first || known(*first)) continue;
+        if (!first) continue;
+        // Of a symmetry all that leave are one family.
+        several_ = several_ || (at.twofold && first->still.cols() == at.still.cols());
+        if (known(*first)) continue;
         FollowedBranch branch = follower_.follow(*first, false);
         branch.points.insert(branch.points.begin(), follower_.point(at));
         branch.lead = off_crossing;
@@ -536,6 +539,7 @@ class Diagram {
     }
     if (follower_.cancelled()) text += "; cancelled";
     text += ".";
+    if (several_) text += " Where two eigenvalues vanish at once, more branches may leave than are followed.";
     if (follower_.met_drifting())
       text += " Nothing resists some direction: folds and crossings were not looked for.";
     return text;
@@ -547,6 +551,7 @@ class Diagram {
   const BranchOptions& options_;
   BranchFollower follower_;
   int room_ = options_.max_branches; // for branches, so far
+  bool several_ = false;             // branches may leave one crossing, of which one is followed
   bool crowded_ = false;             // there are more than that
   std::vector<FollowedBranch> followed_;
   std::vector<BranchState> crossings_, found_;

@@ -68,7 +68,10 @@ bool Continuation::correct(const BranchState& from, const Eigen::VectorXd& tange
 
 bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previous) {
   linearize(state);
-  if (state.still.cols() > 0) state.still = balance_->keep_still_there();
+  if (state.still.cols() > 0) {
+    state.still = balance_->keep_still_there();
+    state.drifts = state.drifts || balance_->hardly_resists();
+  }
   if (!balance_->direction(previous, state.tangent)) return false;
   const double norm = state.tangent.norm();
   if (!std::isfinite(norm) || norm == 0) return false;
@@ -78,13 +81,6 @@ bool Continuation::find_tangent(BranchState& state, const Eigen::VectorXd& previ
   if (!determinant) return false;
   state.determinant = *determinant;
   state.falling = balance_->falling();
-  return true;
-}
-
-bool Continuation::keep_null_space_still(BranchState& state) {
-  state.still.resize(family_.problem().system.nv, 0);
-  if (!std::isfinite(linearize(state)) || !balance_->keeps_still()) return false;
-  state.still = balance_->keep_null_space_still(Eigen::VectorXd::Unit(unknowns(), unknowns() - 1));
   return true;
 }
 
@@ -136,6 +132,8 @@ bool Continuation::switch_branch(const BranchState& at, double length, BranchSta
   // crossing.
   linearize(to);
   to.still = balance_->keep_null_space_still(other);
+  to.drifts = balance_->hardly_resists();
+  to.twofold = false;
   return find_tangent(to, length > 0 ? other : Eigen::VectorXd(-other));
 }
 

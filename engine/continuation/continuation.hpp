@@ -21,9 +21,10 @@ struct BranchState {
   // Directions that nothing resists (n, d; scaled, orthonormal columns): the state is one of a family, and
   // the curve goes on orthogonally to it.
   Eigen::MatrixXd still{};
-  // The same where they are not kept still: the determinant is rounding.
+  // The same where they are not kept still, or something hardly resists them: the determinant is rounding.
   bool drifts = false;
   int falling = 0; // eigenvalues of K across the family that have a negative real part; 0 where not counted
+  bool twofold = false; // a crossing at which two eigenvalues of K are zero
   bool one_of_many() const { return still.cols() > 0 || drifts; }
 };
 
@@ -37,10 +38,6 @@ class Continuation {
 
   // After the family's angles were tied.
   void tied();
-
-  // Keeps still what nothing resists at a state whose z solves the balance, but along the parameter. False
-  // where that is not known to be done.
-  bool keep_null_space_still(BranchState& state);
 
   // Completes a state whose z solves the balance at its parameter: tangent with the parameter growing, or
   // falling for direction < 0. False at a singular state that has no single tangent.

@@ -25,12 +25,6 @@ std::optional<Eigen::MatrixXd> last_right_vectors(const Eigen::MatrixXd& h) {
   return Eigen::MatrixXd(smallest->right.rowwise().reverse());
 }
 
-// How many of the singular values of H, descending, are zero but for rounding.
-Eigen::Index unresisted(const Eigen::VectorXd& values) {
-  constexpr double resists = 1e-9; // of the largest entry of H
-  return std::ranges::count_if(values, [](double size) { return size <= resists; });
-}
-
 } // namespace
 
 double DenseBorders::linearize(const Unknowns& z, double parameter) {
@@ -94,14 +88,19 @@ Eigen::MatrixXd DenseBorders::keep_still_there() {
   return keep_still_reduced(there);
 }
 
-bool DenseBorders::keeps_still() const {
-  return basis_.cols() < large::from;
+Eigen::Index DenseBorders::unresisted(const Eigen::VectorXd& values) {
+  constexpr double rounding = 1e-11, resists = 1e-7; // of the largest entry of H
+  const auto up_to = [&](double size) {
+    return std::ranges::count_if(values, [=](double value) { return value <= size; });
+  };
+  hardly_resists_ = up_to(resists) > up_to(rounding);
+  return up_to(rounding);
 }
 
 Eigen::MatrixXd DenseBorders::keep_null_space_still(const Eigen::VectorXd& along) {
   const Eigen::Index n = basis_.rows(), k = basis_.cols();
   keep_still_reduced(Eigen::MatrixXd(k, 0));
-  if (k == 0 || !keeps_still()) return keep_still_reduced(Eigen::MatrixXd(k, 0));
+  if (k == 0 || k >= large::from) return keep_still_reduced(Eigen::MatrixXd(k, 0));
   const auto parts = singular_vectors(h_.leftCols(k));
   if (!parts) return keep_still_reduced(Eigen::MatrixXd(k, 0));
   const Eigen::MatrixXd null_space = parts->right.rightCols(unresisted(parts->values));
@@ -179,7 +178,7 @@ std::optional<double> DenseBorders::determinant(const Eigen::VectorXd& border) {
 
 int DenseBorders::falling() {
   const Eigen::Index k = basis_.cols();
-  if (k == 0 || !keeps_still()) return 0;
+  if (k == 0 || k >= large::from) return 0;
   const auto found = eigenvalues(h_.leftCols(k));
   return found ? static_cast<int>(std::ranges::count_if(*found, [](auto s) { return s.real() < 0; })) : 0;
 }

@@ -14,8 +14,8 @@ class DenseBorders final : public BorderedBalance {
   double linearize(const Unknowns& z, double parameter) override;
   void keep_still(const Eigen::MatrixXd& directions) override;
   Eigen::MatrixXd keep_still_there() override;
-  bool keeps_still() const override;
   Eigen::MatrixXd keep_null_space_still(const Eigen::VectorXd& along) override;
+  bool hardly_resists() const override { return hardly_resists_; }
   bool step(const Eigen::VectorXd& border, double along, Eigen::VectorXd& step,
             Eigen::VectorXd& lambda) override;
   bool direction(const Eigen::VectorXd& border, Eigen::VectorXd& out) override;
@@ -27,12 +27,15 @@ class DenseBorders final : public BorderedBalance {
   Eigen::MatrixXd bordered(const Eigen::VectorXd& border) const;
   // From here on, instead of what was.
   Eigen::MatrixXd keep_still_reduced(const Eigen::MatrixXd& directions);
+  // How many of the singular values of H, descending, are zero but for rounding.
+  Eigen::Index unresisted(const Eigen::VectorXd& values);
   Eigen::VectorXd expand(const Eigen::VectorXd& reduced, double with_r0) const;
 
   Eigen::MatrixXd basis_;   // N
   Eigen::VectorXd r0_, r1_; // range parts: closing the loops, following the parameter
   Eigen::MatrixXd h_;       // [H b]: (k, k + 1); with what keeps still
   Eigen::MatrixXd still_;   // N^T V: (k, d)
+  bool hardly_resists_ = false;
   Eigen::VectorXd g_;
   Eigen::VectorXd force_; // scaled, without multipliers
 };
