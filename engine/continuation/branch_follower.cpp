@@ -224,7 +224,8 @@ bool BranchFollower::is_a_family(const BranchState& state) {
   BranchState beside;
   int iterations = 0;
   try {
-    if (!continuation_.step(state, away, beside, iterations) || beside.drifts || beside.still.cols() < count)
+    if (!continuation_.step(state, options_.largest_step, beside, iterations) || beside.drifts ||
+        beside.still.cols() < count)
       return false;
   } catch (const SceneError&) { // no mechanism can be made there
     return false;

@@ -165,7 +165,11 @@ void BranchFollower::find_pair_crossings(const BranchState& state, const BranchS
       if ((found = locate_pair_crossing(state, next, length, at))) break;
     }
     if (!found) found = jumping_pair(state, at);
-    if (found) out.special.emplace_back(found->first, point(found->second));
+    // A pair that goes through zero counts a while later.
+    const bool crosses = found && std::ranges::any_of(out.crossings, [&](const BranchState& other) {
+                           return same(found->second, other);
+                         });
+    if (found && !crosses) out.special.emplace_back(found->first, point(found->second));
     at.low = at.high;
     at.right_low = at.right_high;
   }
