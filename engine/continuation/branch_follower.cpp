@@ -341,7 +341,8 @@ bool BranchFollower::lies_on(const std::vector<BranchState>& family, const Follo
     if (s.starts.size() != state.starts.size() ||
         std::abs(s.parameter - state.parameter) > near * family_.scale())
       continue;
-    BranchState beside = nearest_of_family(family, s);
+    const bool alike = s.still.cols() == family.front().still.cols();
+    BranchState beside = alike ? nearest_of_family(family, s) : family.front();
     const Eigen::VectorXd d = difference(s, beside);
     if (const double size = size_of(s, d); size < least) {
       least = size;
@@ -418,7 +419,14 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
   FollowedBranch out;
   const Interruptible scope(options_.cancel);
   try {
-    follow(std::move(state), tell_progress, out);
+    follow(state, tell_progress, out);
+    if (out.drifts && state.still.cols() > 0) { // what it was followed across resists after all
+      const Eigen::VectorXd along = state.tangent;
+      state.still.resize(system_.nv, 0);
+      state.drifts = true;
+      out = {};
+      if (continuation_.start(state, along)) follow(std::move(state), tell_progress, out);
+    }
   } catch (const Interrupted&) {
     out.end = "cancelled"; // what was found until then stays
     if (out.points.empty()) throw;
@@ -433,7 +441,8 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
   Described now = describe(state);
   out.points.push_back(now.point);
   out.states.push_back(state);
-  drifting_ = drifting_ || state.drifts;
+  out.drifts = state.drifts;
+  drifting_ = drifting_ || out.drifts;
   constexpr int most_leaps = 64;
   int leaps = 0;
   // A shorter step from the same state meets it again.
@@ -526,7 +535,9 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     out.points.push_back(then.point);
     out.states.push_back(next);
-    drifting_ = drifting_ || next.drifts || next.still.cols() != state.still.cols();
+    out.drifts = out.drifts || next.drifts || next.still.cols() != state.still.cols();
+    drifting_ = drifting_ || out.drifts;
+    if (out.drifts && origin.still.cols() > 0) return; // to be followed otherwise
     report_progress(options_.progress, tell_progress ? "following" : "following another branch", p);
     if (out.points.size() > 6 && std::abs(next.parameter - origin.parameter) < length * family_.scale()) {
       const BranchState last = nearest_of_family({next}, origin);

@@ -21,6 +21,7 @@ struct FollowedBranch {
   double lead = 0;                    // scaled length from a crossing that it begins at to the first state
   std::string end;                    // why it stops
   bool closed = false;                // came back to where it began
+  bool drifts = false;                // along directions that nothing, or hardly anything, resists
 };
 
 // A valid mechanism with one number changed. Throws SceneError.

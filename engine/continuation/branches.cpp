@@ -353,7 +353,10 @@ class Diagram {
   }
 
   void add_both_ways(const BranchState& forth, const BranchState& back, bool tell_progress, bool connected) {
-    FollowedBranch ahead = follower_.follow(forth, tell_progress);
+    add_both_ways(follower_.follow(forth, tell_progress), back, connected);
+  }
+
+  void add_both_ways(FollowedBranch ahead, const BranchState& back, bool connected) {
     if (ahead.closed) return add(std::move(ahead), connected);
     FollowedBranch behind = follower_.follow(back, false);
     std::string begin = behind.end;
@@ -489,7 +492,9 @@ class Diagram {
         states.erase(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(i));
         return states;
       }
-      add_both_ways(*forth, *back, false, false);
+      FollowedBranch ahead = follower_.follow(*forth, false);
+      if (ahead.drifts) continue; // so would many others
+      add_both_ways(std::move(ahead), *back, false);
       if (out_.status != Status::converged) {
         out_.message = "Nothing is followed from the drawn pose. " + out_.message;
         out_.status = Status::converged;
