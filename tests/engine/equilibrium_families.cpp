@@ -118,3 +118,45 @@ TEST_CASE("a family has one branch, wherever in it a search arrives", "[branches
   for (std::size_t i = 0; i < of_balls.size(); ++i)
     CHECK(std::abs(of_balls[i] - of_hinges[i]) < 1e-8);
 }
+
+TEST_CASE("two rods on ball joints leave the axis where hinged ones do", "[branches][families]") {
+  const ResponseDiagram balls = branches(two(JointType::spherical, 0), 0, 10, false),
+                        hinges = branches(two(JointType::revolute, 0), 0, 10, false);
+  const std::vector<double> of_balls = places(balls, SpecialPointType::branch_point),
+                            of_hinges = places(hinges, SpecialPointType::branch_point);
+  REQUIRE(of_balls.size() == 2);
+  REQUIRE(of_hinges.size() == 2);
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(std::abs(of_balls[i] - of_hinges[i]) < 1e-6);
+  CHECK(places(balls, SpecialPointType::hopf).empty()); // the pair goes through zero
+  CHECK(balls.branches.size() == hinges.branches.size());
+}
+
+TEST_CASE("of two like pendulums on one axis more leave it than are followed, and it is said",
+          "[branches][families]") {
+  Mechanism m = pendulum(JointType::revolute, 0);
+  m.bodies.push_back(body("other", 1, {0, -length, 0}, {1e-3, 1e-3, 1e-3}));
+  m.joints.push_back(joint(JointType::revolute, "other", "hub", "other", Vec3::Zero()));
+  const ResponseDiagram d = branches(m, 0, 10, false);
+  const std::vector<double> crossings = places(d, SpecialPointType::branch_point);
+  REQUIRE(crossings.size() == 1);
+  CHECK(std::abs(crossings[0] - std::sqrt(standard_gravity / length)) < 1e-7);
+  CHECK_THAT(d.message, ContainsSubstring("more branches may leave"));
+}
+
+TEST_CASE("no crossings are made up where a shaft stands", "[branches][families]") {
+  // Two ball joints, then two hinges, beside the axis: while the shaft stands they may turn about the
+  // vertical.
+  Mechanism m = two(JointType::spherical, 0.1);
+  for (const int i : {2, 3}) {
+    const std::string name = "rod" + std::to_string(i);
+    m.bodies.push_back(body(name, 1, {0.1, -(i + 1) * length, 0}, {1e-3, 1e-3, 1e-3}));
+    m.joints.push_back(joint(JointType::revolute, "hinge" + std::to_string(i), i == 2 ? "second" : "rod2",
+                             name, {0.1, -i * length, 0}));
+  }
+  const ResponseDiagram d = branches(m, 2, -1, false);
+  REQUIRE(d.status == Status::converged);
+  CHECK(places(d, SpecialPointType::branch_point).empty());
+  for (const ResponseBranch& branch : d.branches)
+    CHECK(branch.points.back().parameter == Approx(-1));
+}
