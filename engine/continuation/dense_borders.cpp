@@ -71,8 +71,9 @@ Eigen::MatrixXd DenseBorders::keep_still_there() {
   // H v = 0 makes (H + V V^T) v = V (V^T v).
   const Eigen::Index k = basis_.cols();
   Eigen::MatrixXd nearly = still_;
-  for (auto column : nearly.colwise())
-    if (const auto solved = solve_square(h_.leftCols(k), column)) column = *solved;
+  if (Lu lu; lu.compute(h_.leftCols(k)))
+    for (auto column : nearly.colwise())
+      column = lu.solve(column);
   const Eigen::MatrixXd before = still_;
   keep_still_reduced(Eigen::MatrixXd(k, 0));
   const auto span = singular_vectors(nearly);

@@ -243,10 +243,12 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   point.coordinates = state.coordinates;
   std::optional<ResponseDiagram> diagram;
   do { // a band of a few steps, as beside the end of a tip, would go out of the range within one of them
-    diagram = follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
-    if (!diagram || diagram->branches.empty()) return false;
+    auto found = follow_branches_through(mechanism, share.address, share.from, share.to, point, options);
+    if (!found || found->branches.empty()) break;
+    diagram = std::move(found);
     options.largest_step /= 4;
   } while (diagram->branches.front().points.size() < few_points && options.largest_step > least_step);
+  if (!diagram) return false;
   // An end that is none of the share's: it goes on, as a pendulum does that friction holds at any angle.
   std::vector<const ResponsePoint*> open;
   std::string why;
