@@ -424,8 +424,10 @@ FollowedBranch BranchFollower::follow(BranchState state, bool tell_progress) {
       const Eigen::VectorXd along = state.tangent;
       state.still.resize(system_.nv, 0);
       state.drifts = true;
-      out = {};
-      if (continuation_.start(state, along)) follow(std::move(state), tell_progress, out);
+      if (continuation_.start(state, along)) {
+        out = {};
+        follow(std::move(state), tell_progress, out);
+      }
     }
   } catch (const Interrupted&) {
     out.end = "cancelled"; // what was found until then stays

@@ -486,14 +486,14 @@ class Diagram {
       const Problem problem = follower_.problem_at(value);
       if (!holds(problem, z)) continue;
       const auto forth = follower_.begin(z, value, true), back = follower_.begin(z, value, false);
-      if (!forth || !back || known(*forth)) continue;
-      if (forth->drifts) continue; // of a family all would have to be known
+      // Of a family that is not kept still all would have to be known.
+      if (!forth || !back || forth->drifts || known(*forth)) continue;
       if (!room()) {
         states.erase(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(i));
         return states;
       }
       FollowedBranch ahead = follower_.follow(*forth, false);
-      if (ahead.drifts) continue; // so would many others
+      if (ahead.drifts && forth->still.cols() > 0) continue; // as it was found to be
       add_both_ways(std::move(ahead), *back, false);
       if (out_.status != Status::converged) {
         out_.message = "Nothing is followed from the drawn pose. " + out_.message;

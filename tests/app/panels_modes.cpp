@@ -464,15 +464,24 @@ TEST_CASE("why there is no Campbell diagram is said in the units and names that 
   CHECK(campbell_problem(robot.app.session).starts_with("At n = 47.7465 rpm: No steady state"));
 }
 
-TEST_CASE("where the balance turns with the drives the modes' panel leads to the response") {
-  Robot robot(wide, LiveSolver::Mode::background); // the curve that is led to takes seconds
-  open_scene(robot.app.session, shipped_file("horizontal_rotor"));
+namespace {
+
+// By the button of the modes' panel.
+void go_on_to_response(Robot& robot) {
   robot.key('O');
   REQUIRE(
       steps_until([&] { robot.frames(1); }, [&] { return robot.app.ui.widgets.contains("modes/response"); }));
   robot.click("modes/response");
   robot.frames(2);
   CHECK(robot.app.session.study.open == StudyKind::response);
+}
+
+} // namespace
+
+TEST_CASE("where the balance turns with the drives the modes' panel leads to the response") {
+  Robot robot(wide, LiveSolver::Mode::background); // the curve that is led to takes seconds
+  open_scene(robot.app.session, shipped_file("horizontal_rotor"));
+  go_on_to_response(robot);
   ModesRobot steady("governor");
   CHECK_FALSE(steady.app.ui.widgets.contains("modes/response"));
 }
@@ -486,12 +495,7 @@ TEST_CASE("where a torque drives what turns so the response is offered over what
   set_expression(m, "joints.spin.drive.load", "0.06 N m s*rate(spin)");
   Robot robot(wide, LiveSolver::Mode::background);
   open_document(robot.app.session, Document(m));
-  robot.key('O');
-  REQUIRE(
-      steps_until([&] { robot.frames(1); }, [&] { return robot.app.ui.widgets.contains("modes/response"); }));
-  robot.click("modes/response");
-  robot.frames(2);
-  CHECK(robot.app.session.study.open == StudyKind::response);
+  go_on_to_response(robot);
   CHECK(robot.app.session.study.response.choice.address == "parameters.T");
 }
 

@@ -35,18 +35,23 @@ const char* const clutch = R"~({
   ]
 })~";
 
+// The response over a number, with its ribbon of friction.
+void follow_over(Session& session, const std::string& address, double from, double to) {
+  open_study(session, StudyKind::response);
+  update(session, 0);
+  choose_response(session, address);
+  choose_response_end(session, &ResponseChoice::from, from);
+  choose_response_end(session, &ResponseChoice::to, to);
+  for (int i = 0; i < 4; ++i)
+    update(session, 0);
+}
+
 } // namespace
 
 TEST_CASE("Session: a clutch engages along the edge of what friction holds, past the kink of the law") {
   Session session({.mode = LiveSolver::Mode::immediate});
   open_document(session, Document(parse_scene(clutch)));
-  open_study(session, StudyKind::response);
-  update(session, 0);
-  choose_response(session, "joints.input.drive.speed");
-  choose_response_end(session, &ResponseChoice::from, 110);
-  choose_response_end(session, &ResponseChoice::to, 160);
-  for (int i = 0; i < 4; ++i)
-    update(session, 0);
+  follow_over(session, "joints.input.drive.speed", 110, 160);
   const auto ribbon = shown_ribbon(session);
   REQUIRE(ribbon);
   const std::vector<RibbonPoint>& points = ribbon->result.points;
@@ -99,13 +104,7 @@ TEST_CASE("Session: the ribbon is about unstable states, too, and it is told whe
   for (const double down : {-1., 1.}) {
     Session session({.mode = LiveSolver::Mode::immediate});
     open_document(session, Document(parse_scene(rods(down))));
-    open_study(session, StudyKind::response);
-    update(session, 0);
-    choose_response(session, "parameters.g");
-    choose_response_end(session, &ResponseChoice::from, 5);
-    choose_response_end(session, &ResponseChoice::to, 8);
-    for (int i = 0; i < 4; ++i)
-      update(session, 0);
+    follow_over(session, "parameters.g", 5, 8);
     const auto ribbon = shown_ribbon(session);
     REQUIRE(ribbon);
     CAPTURE(down, session.study.response.choice.quantity);
