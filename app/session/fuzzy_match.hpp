@@ -16,7 +16,8 @@ struct FuzzyMatch {
 
 // Every word that is typed has to be found: in `name` together, at best as a word of it, then at the
 // beginning of one, or spread over it from a word's beginning on ("sos" in "speed of spin"), or in `more`,
-// which is not shown, together. Upper and lower case count as the same. Nothing typed answers everything, with 0.
+// which is not shown, together. Upper and lower case count as the same. Nothing typed answers everything,
+// with 0.
 FuzzyMatch fuzzy_match(std::string_view typed, std::string_view name, std::string_view more = {});
 
 // Whether every word that is typed begins a word of the text, or continues it behind a sign: "bar" is in
