@@ -34,7 +34,7 @@ void place_mouse([[maybe_unused]] GLFWwindow* window, [[maybe_unused]] double x,
 }
 
 // As they are once the event has happened: GLFW tells them as they were before.
-void set_modifiers_after(const WindowEvent& event) {
+[[maybe_unused]] void set_modifiers_after(const WindowEvent& event) {
   const auto down = [&](int left, int right, int bit) {
     if (event.code == left || event.code == right) return event.action != GLFW_RELEASE;
     return (event.modifiers & bit) != 0;

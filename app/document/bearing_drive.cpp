@@ -180,7 +180,8 @@ std::string give_bearing_drive(Mechanism& mechanism, const std::string& body, do
       idle.add({PartKind::joint, joint.name});
   remove_parts(next, idle);
   bool upwards = false;
-  const auto [first, second] = across(held.axis, next.gravity, upwards);
+  const std::array<Vec3, 2> axes = across(held.axis, next.gravity, upwards);
+  const Vec3 &first = axes[0], &second = axes[1];
   std::string last = held.in;
   // Where slides are drawn changes nothing; where the sleeve tilts is the place whose shifts are told.
   const auto massless = [&](const char* stem, const Vec3& at) {

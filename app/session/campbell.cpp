@@ -85,8 +85,9 @@ std::vector<std::string> drive_speeds(const Mechanism& mechanism) {
     std::vector<std::string> set_by{number_alone(mechanism, speed.address)};
     if (set_by.front().empty()) {
       set_by = sources_of(mechanism, *formula_at(mechanism, speed.address));
-      std::ranges::stable_partition(
-          set_by, [&](const std::string& address) { return parameter_unit(mechanism, address) == "rad/s"; });
+      std::stable_partition(set_by.begin(), set_by.end(), [&](const std::string& address) {
+        return parameter_unit(mechanism, address) == "rad/s";
+      });
     }
     for (std::string& address : set_by)
       if (std::ranges::find(speeds, address) == speeds.end()) speeds.push_back(std::move(address));

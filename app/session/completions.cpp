@@ -101,7 +101,8 @@ Completions completions_at(const Mechanism& mechanism, std::string_view text, st
     all.push_back(std::move(each));
   for (Completion& each : all)
     if (begins_with(each.text, word)) found.list.push_back(std::move(each));
-  std::ranges::stable_partition(found.list, [&](const Completion& each) { return each.text == word; });
+  std::stable_partition(found.list.begin(), found.list.end(),
+                        [&](const Completion& each) { return each.text == word; });
   return found;
 }
 

@@ -59,7 +59,7 @@ LoadScales::LoadScales(const std::vector<Load>& loads, LoadLengths lengths, doub
   }
   // Moments of a mechanism that has none are rounding of its forces at their arms.
   const std::array least{load_rounding * full_[0], load_rounding * std::max(full_[1], full_[0] * longest)};
-  for (const std::size_t moment : {0, 1}) {
+  for (const std::size_t moment : {0u, 1u}) {
     for (auto& of_kind : largest_)
       if (!(of_kind[moment] > least[moment])) of_kind[moment] = 0;
     if (!(full_[moment] > least[moment])) full_[moment] = 0;

@@ -223,7 +223,7 @@ class Collector {
     for (const GearReaction& g : solution_.gears) {
       const auto gear = joints_.find(g.joint);
       if (gear == joints_.end()) continue;
-      for (const std::size_t end : {0, 1}) {
+      for (const std::size_t end : {0u, 1u}) {
         const CoordinateReference at =
             find_coordinate(mechanism_, mechanism_.joints[gear->second].joints[end]);
         if (at.joint >= 0)

@@ -107,9 +107,10 @@ int BranchFollower::find_even_crossings(const BranchState& state, const BranchSt
   int found = 0, falling = state.falling;
   double low = 0;
   for (int i = 0; i < most && falling != next.falling; ++i) {
-    auto [at, along] = locate(state, low, -1, length, 1, next,
-                              [&](const BranchState& s, double) { return s.falling == falling ? -1. : 1.; });
-    low = along + past * length;
+    auto located = locate(state, low, -1, length, 1, next,
+                          [&](const BranchState& s, double) { return s.falling == falling ? -1. : 1.; });
+    BranchState& at = located.first;
+    low = located.second + past * length;
     BranchState beyond;
     int iterations = 0;
     if (low >= length || !continuation_.step(state, low, beyond, iterations)) break;
@@ -160,11 +161,12 @@ void BranchFollower::find_pair_crossings(const BranchState& state, const BranchS
     at.right_high = after;
     // Their number is blurred by rounding where they meet: it brackets, and a smooth function locates.
     std::optional<std::pair<SpecialPointType, BranchState>> found;
+    const auto one = [&] { return std::abs(at.right_high - at.right_low) == 1; }; // no pair
     for (const double width : {1e-3 * length, 1e-7 * length}) {
       if (!narrow(state, width, at)) return;
-      if ((found = locate_pair_crossing(state, next, length, at))) break;
+      if (!one() && (found = locate_pair_crossing(state, next, length, at))) break;
     }
-    if (!found) found = jumping_pair(state, at);
+    if (!found && !one()) found = jumping_pair(state, at);
     // A pair that goes through zero counts a while later.
     const bool crosses = found && std::ranges::any_of(out.crossings, [&](const BranchState& other) {
                            return same(found->second, other);

@@ -205,8 +205,8 @@ class Diagram {
     out_.status = Status::converged;
     std::optional<BranchState> first;
     bool beside = false;
-    if (!find_stability(factor_at(problem, found.z, w), false).neutral.empty()) {
-      first = begin_beside(start);
+    if (const Eigen::Index neutral = count_neutral(problem, found.z); neutral > 0) {
+      first = begin_beside(start, neutral);
       beside = first.has_value();
     }
     if (!first) first = follower_.begin(found.z, from_, true);
@@ -217,20 +217,26 @@ class Diagram {
       add(std::move(branch), true);
     } else
       out_.message = "The start is a singular state; begin beside it.";
-    from_answer(start);
+    constexpr double inside = 1e-3; // of the range
+    from_answer(start, beside ? from_ + inside * (to_ - from_) : from_);
+  }
+
+  // In how many directions nothing resists; one for any number where pivots tell it.
+  Eigen::Index count_neutral(const Problem& problem, const Unknowns& z) {
+    const Stability at = find_stability(factor_at(problem, z, follower_.workspace()), false);
+    return std::max<Eigen::Index>(at.neutral_directions.cols(), at.neutral.empty() ? 0 : 1);
   }
 
   // Where nothing resists some direction at the beginning of the range alone, as of a load that begins at
-  // zero: from a state a little inside. None where it is so there, too.
-  std::optional<BranchState> begin_beside(const Eigen::VectorXd& start) {
+  // zero: from a state a little inside. None where as many are so there, too.
+  std::optional<BranchState> begin_beside(const Eigen::VectorXd& start, Eigen::Index neutral) {
     constexpr double inside = 1e-6; // of the range
     const double value = from_ + inside * (to_ - from_);
     std::optional<BranchState> out;
     try {
       const Problem problem = follower_.problem_at(value);
       const auto z = steady_state(problem, start, true);
-      if (z && find_stability(factor_at(problem, *z, follower_.workspace()), false).neutral.empty())
-        out = follower_.begin(*z, value, true);
+      if (z && count_neutral(problem, *z) < neutral) out = follower_.begin(*z, value, true);
     } catch (const SceneError&) { // no mechanism can be made there
     }
     follower_.problem_at(from_);
@@ -286,8 +292,8 @@ class Diagram {
 
   // Newton-Raphson may have stopped at another state than the answer that solving gives, which has its
   // branch, too. Where torques drive that may be the one which the motion from the start comes to.
-  void from_answer(const Eigen::VectorXd& start) {
-    const Problem problem = follower_.problem_at(from_);
+  void from_answer(const Eigen::VectorXd& start, double value) try {
+    const Problem problem = follower_.problem_at(value);
     std::optional<Unknowns> z;
     if (problem.system.torques.empty()) {
       z = steady_state(problem, start, false);
@@ -297,10 +303,15 @@ class Diagram {
       if (answer.holds) z = std::move(answer.found.z);
     }
     if (!z) return;
-    const auto first = follower_.begin(*z, from_, true);
+    const auto first = follower_.begin(*z, value, true);
     if (!first || known(*first)) return;
-    add(follower_.follow(*first, out_.branches.empty()), true);
+    if (value == from_)
+      add(follower_.follow(*first, out_.branches.empty()), true);
+    else if (const auto back = follower_.begin(*z, value, false))
+      add_both_ways(*first, *back, false, true);
     out_.message.clear();
+  } catch (const SceneError&) { // no mechanism can be made there
+    if (value == from_) throw;
   }
 
   // Where loops are singular the balance does not tell where another branch leaves, as those of a governor

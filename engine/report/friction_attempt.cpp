@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace flyball {
 namespace {
@@ -55,9 +54,7 @@ class Attempt {
     for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held())) {
       auto out = solve_with(at_rest, options, loose);
       if (!out) continue;
-      if (std::ranges::none_of(std::views::iota(std::size_t(0), parts_.size()),
-                               [&](std::size_t i) { return parts_[i] == Part::none && out->margins[i] < 0; }))
-        return out;
+      if (!any_without_a_part([&](std::size_t i) { return out->margins[i] < 0; })) return out;
       if (!first) first = std::move(out);
     }
     return loose ? std::move(first) : std::nullopt;
@@ -112,11 +109,16 @@ class Attempt {
     return std::nullopt;
   }
 
+  template <class Condition>
+  bool any_without_a_part(Condition condition) const {
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (parts_[i] == Part::none && condition(i)) return true;
+    return false;
+  }
+
   // Whether gears tie what has no part to what is held or has come to rest: it would hold some of it.
   bool stands_without_a_part(const Mechanism& changed) const {
-    return std::ranges::any_of(std::views::iota(std::size_t(0), parts_.size()), [&](std::size_t i) {
-      return parts_[i] == Part::none && is_at_given_speed(changed, frictions_[i]);
-    });
+    return any_without_a_part([&](std::size_t i) { return is_at_given_speed(changed, frictions_[i]); });
   }
 
   std::vector<CoordinateReference> held() const {

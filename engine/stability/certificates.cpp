@@ -143,15 +143,14 @@ Verdict by_spectrum(const FactoredState& at, const SteadyMotion& motion, std::ve
       eigenvalues.begin(),
       eigenvalues.begin() + std::min(null_eigenvalues, static_cast<int>(eigenvalues.size())),
       [&](Complex s) { return !(std::abs(s) < tolerance::null_eigenvalue * largest); });
-  const std::ranges::subrange moving(begin, eigenvalues.end());
   const auto tips = massless_directions_tip(motion);
   if (!tips) return {};
-  const bool grows = *tips || std::ranges::any_of(moving, [&](Complex s) {
+  const bool grows = *tips || std::any_of(begin, eigenvalues.end(), [&](Complex s) {
     return s.real() > real_part_rounding(s, largest);
   });
-  const bool decays = (!moving.empty() || balance.null == 0) && std::ranges::all_of(moving, [&](Complex s) {
-                        return s.real() < -real_part_rounding(s, largest);
-                      });
+  const bool decays = (begin != eigenvalues.end() || balance.null == 0) &&
+                      std::all_of(begin, eigenvalues.end(),
+                                  [&](Complex s) { return s.real() < -real_part_rounding(s, largest); });
   // Where the energy falls nowhere it grows nowhere either, whatever rounding makes of the eigenvalues.
   if (grows && balance.falls != false) return {false, StabilityReason::unstable};
   if (balance.neutral > 0) return {{}, StabilityReason::neutral};

@@ -100,8 +100,11 @@ void MessageSharing::serve(const SharedWork& work) {
     } while (queue.deliver(work, moment));
     queue.stop();
     // All others have to be told; what they made meanwhile is not wanted.
-    for (answer(); answers > 0; answer())
+    answer();
+    while (answers > 0) {
       handle(*passing_.receive(true));
+      answer();
+    }
   }
   queue.rethrow();
 }

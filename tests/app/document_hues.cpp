@@ -71,7 +71,7 @@ TEST_CASE("deleting, renaming, sorting and undoing recolour no body") {
   CHECK(hues_of(document).at("spindle") == before.at("spindle"));
   change(document, [](Mechanism& m) {
     duplicate_parts(m, {{{PartKind::body, "collar"}}}, {1, 0, 0});
-    std::ranges::rotate(m.bodies, m.bodies.end() - 1);
+    std::rotate(m.bodies.begin(), m.bodies.end() - 1, m.bodies.end());
   });
   CHECK(hues_of(document).at("spindle") == before.at("spindle"));
   CHECK(hues_of(document).at("weight") == before.at("ball1"));

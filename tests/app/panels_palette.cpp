@@ -259,14 +259,15 @@ TEST_CASE("what is typed and Enter in one frame takes what was typed, not what w
 
 TEST_CASE("commands are found by what they show, and what is not possible says what it waits for") {
   Finder robot;
-  const auto [typed, id] = GENERATE(table<const char*, const char*>({{"hunting", "study.map"},
-                                                                     {"droop", "study.response"},
-                                                                     {"eigenvalues", "study.modes"},
-                                                                     {"resonance", "study.response"},
-                                                                     {"tutorial", "file.examples"}}));
-  robot.find(typed);
+  const auto asked = GENERATE(table<const char*, const char*>({{"hunting", "study.map"},
+                                                               {"droop", "study.response"},
+                                                               {"eigenvalues", "study.modes"},
+                                                               {"resonance", "study.response"},
+                                                               {"tutorial", "file.examples"}}));
+  const char* const command = std::get<1>(asked);
+  robot.find(std::get<0>(asked));
   const std::vector<PaletteEntry>& found = robot.app.panels->palette.found();
-  CHECK(std::ranges::any_of(found, [&](const PaletteEntry& entry) { return entry.name == id; }));
+  CHECK(std::ranges::any_of(found, [&](const PaletteEntry& entry) { return entry.name == command; }));
   robot.key(key_escape);
   robot.frames(2);
   robot.find("Export the run");

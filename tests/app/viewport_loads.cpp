@@ -232,7 +232,8 @@ TEST_CASE("of a geared wheel drive, mesh and damper are told one by one") {
 
 TEST_CASE("of a drive by torque what it gives and its load are told, though they leave nothing") {
   const Steady clutch = solved(shipped("centrifugal_clutch"));
-  const auto& [mechanism, solution, turning] = clutch;
+  const Mechanism& mechanism = clutch.mechanism;
+  const Solution& solution = clutch.solution;
   const Assembly assembly(mechanism, solution.poses);
   for (const char* name : {"motor", "drum"}) {
     CAPTURE(name);
@@ -243,7 +244,7 @@ TEST_CASE("of a drive by torque what it gives and its load are told, though they
     const auto joint = static_cast<std::size_t>(joint_index(mechanism, name));
     const int child = assembly.joint_bodies[joint][1];
     for (const int body : {-1, child}) {
-      const std::vector<Load> loads = loads_of(assembly, solution, turning, body);
+      const std::vector<Load> loads = loads_of(assembly, solution, clutch.turning, body);
       const auto along = [&](LoadKind kind) {
         double sum = 0;
         for (const Load& load : loads)

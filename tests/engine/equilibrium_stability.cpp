@@ -646,8 +646,8 @@ TEST_CASE("A tiny link that falls off a heavy one, slowly by its damper, is told
     REQUIRE(s.status == Status::converged);
     CHECK(s.stable == false);
     REQUIRE(s.eigenvalues);
-    CHECK(
-        std::ranges::any_of(*s.eigenvalues, [&](Complex x) { return std::abs(x - growth) < 1e-4 * growth; }));
+    CHECK(std::ranges::any_of(*s.eigenvalues,
+                              [rate = growth](Complex x) { return std::abs(x - rate) < 1e-4 * rate; }));
     CHECK(std::ranges::any_of(
         *s.eigenvalues, [](Complex x) { return std::abs(x - Complex(-0.0024752475, 0.9392401793)) < 1e-8; }));
   }

@@ -83,8 +83,8 @@ std::vector<Json> mutations(const Json& scene, const Json::json_pointer& place) 
     change([](Json& part) { part["description"] = 1; });
     change([](Json& part) { part["cut"] = true; });
     change([](Json& part) { part["damping"] = 1; });
-    for (const auto& [key, value] : scene[place].items())
-      change([&](Json& part) { part.erase(key); });
+    for (const auto& item : scene[place].items())
+      change([&](Json& part) { part.erase(item.key()); });
   }
   if (scene[place].is_array() && !scene[place].empty()) {
     change([](Json& part) { part.push_back(part.back()); });

@@ -246,9 +246,9 @@ TEST_CASE("a bearing of six rows bears a moment about its point", "[bearings][me
   m.gravity = {0, -standard_gravity, 0};
   m.bodies = {body("beam", mass, {arm, 0, 0}, {0.01, 0.02, 0.02})};
   BearingMatrix entries(36, 0);
-  for (const std::size_t i : {0, 1, 2})
+  for (const std::size_t i : {0u, 1u, 2u})
     entries[7 * i] = 1e4;
-  for (const std::size_t i : {3, 4, 5})
+  for (const std::size_t i : {3u, 4u, 5u})
     entries[7 * i] = stiffness;
   m.forces = {bearing("ground", "beam", {0, 0, 0}, entries)};
   m.measures = {{"turned", "", "couple_z(bearing)", "N m"},
@@ -358,9 +358,9 @@ TEST_CASE("a bearing that resists turns is refused where a drive turns one body 
 
 TEST_CASE("a motion that takes a bearing over half a turn ends there", "[bearings]") {
   BearingMatrix k(36, 0.);
-  for (const std::size_t i : {0, 7, 14})
+  for (const std::size_t i : {0u, 7u, 14u})
     k[i] = 400;
-  for (const std::size_t i : {21, 28, 35})
+  for (const std::size_t i : {21u, 28u, 35u})
     k[i] = 0.5;
   Mechanism m;
   m.bodies = {body("block", 1, {0, 0, 0}, {0.01, 0.01, 0.01})};

@@ -262,9 +262,12 @@ TEST_CASE("all states of a top in a heavy yoke that keep its momenta are found, 
     m.joints[1].coordinates[0].drawn = 0.6;
     validate(m);
     const double of_spin = inertia * (spin + 1.5 * std::cos(0.6));
-    const double of_precession = (yoke + across * std::pow(std::sin(0.6), 2)) * 1.5 + of_spin * std::cos(0.6);
+    const auto inertia_about_axis = [&, of_yoke = yoke](double a) {
+      return of_yoke + across * std::pow(std::sin(a), 2);
+    };
+    const double of_precession = inertia_about_axis(0.6) * 1.5 + of_spin * std::cos(0.6);
     const auto precession = [&](double a) {
-      return (of_precession - of_spin * std::cos(a)) / (yoke + across * std::pow(std::sin(a), 2));
+      return (of_precession - of_spin * std::cos(a)) / inertia_about_axis(a);
     };
     const auto slope = [&](double a) {
       const double p = precession(a);
@@ -530,7 +533,7 @@ TEST_CASE("a gear between what a shaft left to itself carries keeps its momentum
   m.joints = {left_to_itself(revolute("spin", "ground", "rod", {0, 0, 0}, {0, 1, 0}), begun),
               joint(JointType::prismatic, "out", "rod", "one", {drawn, 0, 0}, {1, 0, 0}),
               joint(JointType::prismatic, "back", "rod", "other", {-drawn, 0, 0}, {-1, 0, 0})};
-  for (const std::size_t j : {1, 2})
+  for (const std::size_t j : {1u, 2u})
     m.joints[j].coordinates[0].drawn = drawn;
   m.joints[1].coordinates[0].spring = CoordinateSpring{stiffness, free};
   m.joints[2].coordinates[0].damping = 8;

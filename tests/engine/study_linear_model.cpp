@@ -439,7 +439,8 @@ TEST_CASE("rounding in reactions of a long chain is no kink", "[linear-model]") 
     m.joints.push_back(revolute("j" + number, before, "b" + number, {0, -i * length, 0}, {0, 0, 1}));
     if (i % 3 == 0)
       m.joints.back() =
-          sprung(m.joints.back(), std::array{1., 100., 1e4}[i % 4 % 3], i % 2 != 0 ? 0.3 : -0.2);
+          sprung(m.joints.back(), std::array{1., 100., 1e4}[static_cast<std::size_t>(i % 4 % 3)],
+                 i % 2 != 0 ? 0.3 : -0.2);
     before = "b" + number;
   }
   for (std::size_t i = links; i-- > 0;)

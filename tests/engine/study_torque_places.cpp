@@ -151,7 +151,7 @@ Mechanism swinging(const std::string& law) {
               sprung(revolute("hinge", "shaft", "arm", {0.1, 0, 0}, {0, 0.3, 1}), 3),
               joint(JointType::spherical, "ball", "arm", "bob", {0.35, -0.35, 0.1}),
               sprung(prismatic("slide", "shaft", "collar", {0, 0.2, 0}, {0, 1, 0}), 40)};
-  for (const std::size_t i : {0, 1, 2})
+  for (const std::size_t i : {0u, 1u, 2u})
     m.joints[2] = sprung(m.joints[2], 1.5, 0, i);
   return with_torque(std::move(m), law);
 }
