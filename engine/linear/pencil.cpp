@@ -84,29 +84,44 @@ std::optional<Eigen::MatrixXd> felt(const Eigen::MatrixXd& z, const Eigen::Matri
   return Eigen::MatrixXd(z * qr.q().leftCols(rank));
 }
 
+// Of directions z without mass and damping, beside all others.
+struct Followers {
+  Eigen::MatrixXd stiffness; // for the others, which those of z that have stiffness follow statically
+  Eigen::MatrixXd holds_left, holding; // the rest of z, by rows and by columns
+};
+
+std::optional<Followers> follow_statically(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& z,
+                                           const Eigen::MatrixXd& others) {
+  if (z.cols() == 0) return Followers{stiffness, z, z};
+  const auto shape = singular_vectors(onto(z, stiffness));
+  if (!shape) return {};
+  const Eigen::MatrixXd rows = z * shape->left, columns = z * shape->right,
+                        left = rows.transpose() * stiffness, right = stiffness * columns;
+  constexpr double none = 1e-12; // beside the coupling
+  Eigen::Index stiff = 0;
+  while (stiff < z.cols() && shape->values[stiff] > 0 &&
+         shape->values[stiff] > none * std::max((left.row(stiff) * others).norm(),
+                                                (others.transpose() * right.col(stiff)).norm()))
+    ++stiff;
+  const Eigen::Index holding = z.cols() - stiff;
+  return Followers{stiffness - right.leftCols(stiff) * shape->values.head(stiff).cwiseInverse().asDiagonal() *
+                                   left.topRows(stiff),
+                   rows.rightCols(holding), columns.rightCols(holding)};
+}
+
 // With directions z that have neither mass nor damping, beside the rest r. Where they have stiffness they
 // follow statically; where they have none, but forces couple them with the rest, they hold it like the
 // multipliers of a constraint: no motion of the rest may change the forces along them.
 Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                                   const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& z,
                                   const Eigen::MatrixXd& r, CancelFlag cancel) {
-  Eigen::MatrixXd m = onto(r, mass), d = onto(r, velocity), k = onto(r, stiffness);
-  if (z.cols() == 0) return regular_eigenvalues(m, d, k, cancel);
-  const auto shape = singular_vectors(onto(z, stiffness));
-  if (!shape) return {};
-  const Eigen::MatrixXd left = shape->left.transpose() * z.transpose() * stiffness * r,
-                        right = r.transpose() * stiffness * z * shape->right;
-  constexpr double none = 1e-12; // beside the coupling
-  Eigen::Index stiff = 0;
-  while (stiff < z.cols() && shape->values[stiff] > 0 &&
-         shape->values[stiff] > none * std::max(left.row(stiff).norm(), right.col(stiff).norm()))
-    ++stiff;
-  k -= right.leftCols(stiff) * shape->values.head(stiff).cwiseInverse().asDiagonal() * left.topRows(stiff);
-  const Eigen::Index holding = z.cols() - stiff;
-  if (holding == 0) return regular_eigenvalues(m, d, k, cancel);
+  const auto with = follow_statically(stiffness, z, r);
+  if (!with) return {};
+  Eigen::MatrixXd m = onto(r, mass), d = onto(r, velocity), k = onto(r, with->stiffness);
+  if (with->holding.cols() == 0) return regular_eigenvalues(m, d, k, cancel);
   const bool symmetric = (stiffness - stiffness.transpose()).norm() <= 1e-12 * stiffness.norm();
-  const auto along = null_space(left.bottomRows(holding));
-  const auto across = symmetric ? along : null_space(right.rightCols(holding).transpose());
+  const auto along = null_space(with->holds_left.transpose() * stiffness * r);
+  const auto across = symmetric ? along : null_space((r.transpose() * stiffness * with->holding).transpose());
   if (!along || !across || along->cols() != across->cols()) return {};
   if (along->cols() == 0) return std::vector<Complex>();
   const auto reduced = [&](const Eigen::MatrixXd& a) {
@@ -118,6 +133,49 @@ Eigenvalues condensed_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::Matr
   return regular_eigenvalues((m + m.transpose()) / 2, reduced(d), reduced(k), cancel);
 }
 
+// With directions z that have no mass, some of them damped, beside the rest r. Only what has mass has
+// velocities of its own, and what is not damped either follows statically: as states they would be infinite
+// eigenvalues in Jordan chains, which rounding makes huge ones.
+Eigenvalues damped_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                               const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& z,
+                               const Eigen::MatrixXd& r, CancelFlag cancel) {
+  Eigen::MatrixXd feels(z.cols(), 2 * z.rows());
+  feels << (velocity * z).transpose(), z.transpose() * velocity;
+  const auto shape = singular_vectors(feels);
+  if (!shape) return {};
+  const double rounding = 1e-13 * (velocity.norm() + stiffness.norm());
+  const auto damped = static_cast<Eigen::Index>((shape->values.array() > rounding).count());
+  const Eigen::MatrixXd along = z * shape->left, dampers = along.leftCols(damped);
+  Eigen::MatrixXd others(z.rows(), damped + r.cols());
+  others << dampers, r;
+  const auto with = follow_statically(stiffness, along.rightCols(z.cols() - damped), others);
+  if (!with) return {};
+  if (with->holding.cols() > 0) {
+    Eigen::MatrixXd all(z.rows(), z.cols() + r.cols());
+    all << z, r;
+    return singular_eigenvalues(onto(all, mass), onto(all, velocity), onto(all, stiffness), cancel);
+  }
+  const Eigen::Index n = r.cols();
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n + damped, 2 * n + damped), b = a;
+  const auto fill = [&](Eigen::MatrixXd& into, Eigen::Index row, Eigen::Index column,
+                        const Eigen::MatrixXd& left, const Eigen::MatrixXd& of,
+                        const Eigen::MatrixXd& right) {
+    into.block(row, column, left.cols(), right.cols()) = left.transpose() * of * right;
+  };
+  a.block(0, n, n, n).setIdentity();
+  b.topLeftCorner(n, n).setIdentity();
+  fill(b, n, n, r, mass, r);
+  fill(b, n, 2 * n, r, velocity, dampers);
+  fill(b, 2 * n, 2 * n, dampers, velocity, dampers);
+  fill(a, n, 0, r, -with->stiffness, r);
+  fill(a, n, n, r, -velocity, r);
+  fill(a, n, 2 * n, r, -with->stiffness, dampers);
+  fill(a, 2 * n, 0, dampers, -with->stiffness, r);
+  fill(a, 2 * n, n, dampers, -velocity, r);
+  fill(a, 2 * n, 2 * n, dampers, -with->stiffness, dampers);
+  return generalized_eigenvalues(a, b, cancel);
+}
+
 // What pencil_eigenvalues() finds, of matrices as measured. `graded`: some of what is not massless is far
 // lighter, and far faster, than the rest, which M's inverse would lose.
 Eigenvalues finite_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
@@ -127,7 +185,7 @@ Eigenvalues finite_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
     if (d == 0) return std::vector<Complex>();
     const auto z = felt(Eigen::MatrixXd::Identity(mass.rows(), mass.rows()), velocity, stiffness);
     if (!z) return {};
-    return singular_eigenvalues(onto(*z, mass), onto(*z, velocity), onto(*z, stiffness), cancel);
+    return damped_eigenvalues(mass, velocity, stiffness, *z, Eigen::MatrixXd(mass.rows(), 0), cancel);
   }
   // Time in units in which mass and stiffness are alike.
   const double rate = k > 0 ? std::sqrt(k / m) : d > 0 ? d / m : 1;
@@ -157,13 +215,8 @@ Eigenvalues finite_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixX
     if (!felt_directions) return {};
     const Eigen::MatrixXd& z = *felt_directions;
     const bool damped = (d2 * z).norm() + (z.transpose() * d2).norm() > 1e-13 * (d1.norm() + 1);
-    if (damped) {
-      Eigen::MatrixXd all(m1.rows(), z.cols() + r.cols());
-      all << z, r;
-      s = singular_eigenvalues(onto(all, m1), onto(all, d2), onto(all, k1), cancel);
-    } else {
-      s = condensed_eigenvalues(m1, d2, k1, z, r, cancel);
-    }
+    s = damped ? damped_eigenvalues(m1, d2, k1, z, r, cancel)
+               : condensed_eigenvalues(m1, d2, k1, z, r, cancel);
   }
   if (!s) return {};
   for (Complex& x : *s)

@@ -531,6 +531,47 @@ TEST_CASE("a gyroscopic coupling as small as the mass that is neglected is negle
     CHECK(std::abs((*with)[i] - (*without)[i]) < 1e-12);
 }
 
+TEST_CASE("springs without mass beside dampers without mass make no eigenvalues") {
+  // Bodies on springs, points that dampers and springs hold and points that springs alone hold, all coupled
+  // by springs and turned against the axes. What springs alone hold is condensed, the velocities of points
+  // are no states: then all eigenvalues are finite.
+  constexpr int bodies = 4, damped = 3, sprung = 4, n = bodies + damped + sprung, rest = bodies + damped;
+  std::mt19937 random(5);
+  std::normal_distribution<double> any;
+  const auto filled = [&](Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return any(random); }).eval();
+  };
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(n, n), velocity = mass;
+    mass.diagonal().head(bodies).setLinSpaced(1, 2);
+    velocity.diagonal().segment(bodies, damped).setLinSpaced(0.1, 10);
+    const Eigen::MatrixXd half = filled(n, n);
+    const Eigen::MatrixXd stiffness = half * half.transpose() + 0.3 * Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd k =
+        stiffness.topLeftCorner(rest, rest) -
+        stiffness.topRightCorner(rest, sprung) *
+            stiffness.bottomRightCorner(sprung, sprung).llt().solve(stiffness.bottomLeftCorner(sprung, rest));
+    // Positions of the bodies and of the points, velocities of the bodies.
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(bodies + rest, bodies + rest);
+    a.block(0, rest, bodies, bodies).setIdentity();
+    a.block(bodies, 0, damped, rest) =
+        -(velocity.diagonal().segment(bodies, damped).cwiseInverse().asDiagonal() * k.bottomRows(damped));
+    a.block(rest, 0, bodies, rest) =
+        -(mass.diagonal().head(bodies).cwiseInverse().asDiagonal() * k.topRows(bodies));
+    const Eigen::VectorXcd expected = Eigen::EigenSolver<Eigen::MatrixXd>(a, false).eigenvalues();
+
+    const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(filled(n, n)).householderQ();
+    const auto turned = [&](const Eigen::MatrixXd& m) { return Eigen::MatrixXd(q * m * q.transpose()); };
+    const auto found = pencil_eigenvalues(turned(mass), turned(velocity), turned(stiffness)).value();
+    REQUIRE(found.size() == static_cast<std::size_t>(expected.size()));
+    for (const Complex x : expected) {
+      const auto apart = [&](Complex y) { return std::abs(x - y); };
+      CHECK(apart(*std::ranges::min_element(found, {}, apart)) < 1e-9 * std::abs(x));
+    }
+  }
+}
+
 TEST_CASE("what feels neither mass nor spring nor damper has no eigenvalue") {
   // A body on a spring beside coordinates without an equation of motion, all turned against the axes.
   std::mt19937 random(3);
