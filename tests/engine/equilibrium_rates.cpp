@@ -56,7 +56,7 @@ Eigen::VectorXd differences(const System& system, const Mechanism& m, const std:
 }
 
 struct Compared {
-  int numbers = 0, moving = 0;
+  int numbers = 0, moving = 0, kinks = 0;
 };
 
 // Every number of the mechanism, at a state beside the drawn pose with arbitrary multipliers.
@@ -87,9 +87,16 @@ Compared compare_all(const Mechanism& m, std::mt19937& random) {
     Eigen::VectorXd found(system.nv + system.rows);
     found << balance.force(), balance.phi();
     const Eigen::VectorXd expected = differences(system, mechanism, address, q, lambda, h);
-    CHECK((found - expected).lpNorm<Eigen::Infinity>() <
-          3e-11 * (size / scale + expected.lpNorm<Eigen::Infinity>()));
+    const double rounding = 3e-11 * (size / scale + expected.lpNorm<Eigen::Infinity>());
     ++compared.numbers;
+    // A stop begins, or a table has a knot, within the steps: they tell nothing.
+    if (!((found - expected).lpNorm<Eigen::Infinity>() < rounding) &&
+        (differences(system, mechanism, address, q, lambda, h / 3) - expected).lpNorm<Eigen::Infinity>() >
+            rounding / 3) {
+      ++compared.kinks;
+      continue;
+    }
+    CHECK((found - expected).lpNorm<Eigen::Infinity>() < rounding);
     if (found.lpNorm<Eigen::Infinity>() > 0) ++compared.moving;
   }
   return compared;
@@ -111,8 +118,10 @@ TEST_CASE("the balance's rates are exact in every number of random mechanisms", 
     const Compared one = compare_all(ref::random_mechanism(seed, options), random);
     all.numbers += one.numbers;
     all.moving += one.moving;
+    all.kinks += one.kinks;
   }
   CHECK(all.numbers > 3000);
+  CHECK(all.kinks < all.numbers / 200);
   CHECK(all.moving > 1000);
 }
 

@@ -39,12 +39,11 @@ ReferenceState random_state(const Mechanism& m, const std::vector<std::string>& 
 // extrapolation.
 template <typename Function>
 VectorR slope(const Mechanism& m, const Tree& tree, const ReferenceState& s, Eigen::Index coordinate,
-              const Function& f) {
+              const Function& f, Real h = 2e-3L) {
   const VectorR unit = VectorR::Unit(static_cast<Eigen::Index>(tree.coordinates.size()), coordinate);
   const auto central = [&](Real h) -> VectorR {
     return (f(advance(m, tree, s, h * unit)) - f(advance(m, tree, s, -h * unit))) / (2 * h);
   };
-  const Real h = 2e-3L;
   const VectorR d1 = central(h), d2 = central(h / 2), d4 = central(h / 4);
   return (16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15;
 }
@@ -146,6 +145,7 @@ TEST_CASE("B and Phi_q are the derivatives of positions and constraints") {
 }
 
 TEST_CASE("virtual work is the gradient of the amended potential") {
+  int compared = 0, kinks = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     RandomOptions options;
@@ -158,15 +158,24 @@ TEST_CASE("virtual work is the gradient of the amended potential") {
     const ReferenceState s = random_state(m, cuts, seed + 7, 0.15L);
     const Evaluation e = evaluate(m, cuts, s);
     for (const int c : e.free) {
-      const Real gradient = slope(m, e.tree, s, c, [&](const ReferenceState& there) {
+      const auto potential_at = [&](const ReferenceState& there) {
         return VectorR::Constant(1, potential(m, cuts, there)).eval();
-      })[0];
+      };
+      const Real gradient = slope(m, e.tree, s, c, potential_at)[0];
+      ++compared;
+      // A stop begins within the steps: they tell nothing.
+      if (std::abs(slope(m, e.tree, s, c, potential_at, 7e-4L)[0] - gradient) >
+          1e-9L * (1 + std::abs(gradient))) {
+        ++kinks;
+        continue;
+      }
       CAPTURE(c,
               m.joints[static_cast<std::size_t>(e.tree.coordinates[static_cast<std::size_t>(c)].joint)].name);
       CHECK(static_cast<double>(std::abs(gradient - e.balance[c])) <
             1e-8 * (1 + std::abs(static_cast<double>(gradient))));
     }
   }
+  CHECK(kinks < compared / 50);
 }
 
 TEST_CASE("the balance does not change with the phase of a root drive") {

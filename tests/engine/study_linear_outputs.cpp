@@ -153,12 +153,16 @@ TEST_CASE("A, B, C and D are the derivatives of the motion's accelerations and m
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(k);
     const double h = 1e-5;
     Eigen::MatrixXd all_rates(k + 5, 2 * k);
+    // Central differences, extrapolated from two steps to none.
+    const auto rate = [&](const auto& at, double step) {
+      const auto central = [&](double size) { return ((at(size) - at(-size)) / (2 * size)).eval(); };
+      return ((4 * central(step / 2) - central(step)) / 3).eval();
+    };
     for (Eigen::Index i = 0; i < k; ++i) {
-      const Eigen::VectorXd e =
-          h * model.scaling.column[chosen[static_cast<std::size_t>(i)]] * Eigen::VectorXd::Unit(k, i);
-      const double step = 2 * e[i];
-      all_rates.col(i) = (accelerations(model, e, none) - accelerations(model, -e, none)) / step;
-      all_rates.col(k + i) = (accelerations(model, none, e) - accelerations(model, none, -e)) / step;
+      const Eigen::VectorXd e = Eigen::VectorXd::Unit(k, i);
+      const double step = h * model.scaling.column[chosen[static_cast<std::size_t>(i)]];
+      all_rates.col(i) = rate([&](double by) { return accelerations(model, by * e, none); }, step);
+      all_rates.col(k + i) = rate([&](double by) { return accelerations(model, none, by * e); }, step);
     }
     const Eigen::MatrixXd a = all_rates.topRows(k);
     const auto close = [&](const Eigen::MatrixXd& found, const Eigen::MatrixXd& wanted, double scale) {
