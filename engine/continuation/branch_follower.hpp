@@ -66,6 +66,8 @@ class BranchFollower {
 
   // From here on states stand as drawn again.
   void untie();
+  // From here on branches that come back to the beginning of the range end here.
+  void begin_range_at(double parameter) { from_ = parameter; }
 
   // Whether states were met that belong to families, along which nothing resists, without these being kept
   // still: then folds and crossings were not looked for.

@@ -203,22 +203,27 @@ class Diagram {
       return;
     }
     out_.status = Status::converged;
+    const double border = from_;
     std::optional<BranchState> first;
-    bool beside = false;
-    if (const Eigen::Index neutral = count_neutral(problem, found.z); neutral > 0) {
+    if (const Eigen::Index neutral = count_neutral(problem, found.z); neutral > 0)
       first = begin_beside(start, neutral);
-      beside = first.has_value();
-    }
+    beside_ = first.has_value();
     if (!first) first = follower_.begin(found.z, from_, true);
     if (first) {
       FollowedBranch branch = follower_.follow(*first, true);
-      if (first->parameter != from_) // it could not begin there itself
-        begin_at_border(*first, beside ? first->z : found.z, branch);
+      if (first->parameter != border) // it could not begin there itself
+        begin_at_border(border, *first, beside_ ? first->z : found.z, branch);
       add(std::move(branch), true);
     } else
       out_.message = "The start is a singular state; begin beside it.";
+    from_answer(start, first_value());
+  }
+
+  // At which states are looked for at the beginning of the range: where branches begin beside it, so far
+  // inside that they are told from each other.
+  double first_value() const {
     constexpr double inside = 1e-3; // of the range
-    from_answer(start, beside ? from_ + inside * (to_ - from_) : from_);
+    return beside_ ? from_ + inside * (to_ - from_) : from_;
   }
 
   // In how many directions nothing resists; one for any number where pivots tell it.
@@ -228,7 +233,7 @@ class Diagram {
   }
 
   // Where nothing resists some direction at the beginning of the range alone, as of a load that begins at
-  // zero: from a state a little inside. None where as many are so there, too.
+  // zero: from a state a little inside, where the range begins then. None where as many are so there, too.
   std::optional<BranchState> begin_beside(const Eigen::VectorXd& start, Eigen::Index neutral) {
     constexpr double inside = 1e-6; // of the range
     const double value = from_ + inside * (to_ - from_);
@@ -237,20 +242,21 @@ class Diagram {
       const Problem problem = follower_.problem_at(value);
       const auto z = steady_state(problem, start, true);
       if (z && count_neutral(problem, *z) < neutral) out = follower_.begin(*z, value, true);
+      if (out) follower_.begin_range_at(from_ = value);
     } catch (const SceneError&) { // no mechanism can be made there
     }
     follower_.problem_at(from_);
     return out;
   }
 
-  // Puts the state at the beginning of the range before the branch, `z` or what Newton-Raphson makes of it
-  // there, where that is beside the first.
-  void begin_at_border(const BranchState& first, const Unknowns& z, FollowedBranch& branch) {
+  // Puts the state at `value`, where the range begins, before the branch: `z` or what Newton-Raphson makes of
+  // it there, where that is beside the first.
+  void begin_at_border(double value, const BranchState& first, const Unknowns& z, FollowedBranch& branch) {
     constexpr double near = 1e-3; // scaled
     BranchState border = first;
     border.z = z;
-    border.parameter = from_;
-    const Problem problem = follower_.problem_at(from_);
+    border.parameter = value;
+    const Problem problem = follower_.problem_at(value);
     if (!newton(problem, border.z, follower_.workspace(), {}, nullptr).converged ||
         !same_pose(problem, border.z.q, first.z.q, near))
       return;
@@ -447,7 +453,7 @@ class Diagram {
 
   std::vector<double> values_to_search() const {
     if (!options_.all_at.empty()) return options_.all_at;
-    std::vector<double> values{from_, to_};
+    std::vector<double> values{first_value(), to_};
     const double present = get_parameter(mechanism_, address_);
     if (present > std::min(from_, to_) && present < std::max(from_, to_))
       values.insert(values.begin(), present);
@@ -567,6 +573,7 @@ class Diagram {
   const BranchOptions& options_;
   BranchFollower follower_;
   int room_ = options_.max_branches; // for branches, so far
+  bool beside_ = false;              // branches begin beside the beginning of the range
   bool several_ = false;             // branches may leave one crossing, of which one is followed
   bool crowded_ = false;             // there are more than that
   std::vector<FollowedBranch> followed_;

@@ -104,10 +104,12 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
         // Else few starts would be left for what lies near.
         if (zeros.upper - zeros.lower > reach) range.even = std::abs(value) + around;
       }
-      // A stop gives way by what its stiffness allows.
-      if (f.has_lower) range.lower = std::max(range.lower, f.lower - 0.5 * reach);
-      if (f.has_upper) range.upper = std::min(range.upper, f.upper + 0.5 * reach);
+      // What is pushed rests at a stop, which gives way by what its stiffness allows.
+      const double before = range.upper - range.lower;
+      if (f.has_lower) range.lower = f.lower - 0.5 * reach;
+      if (f.has_upper) range.upper = f.upper + 0.5 * reach;
       if (range.upper < range.lower) range = {value - reach, value + reach};
+      if (range.upper - range.lower > 2 * before) range.even = std::abs(value) + around;
       ranges.push_back(range);
     }
   }

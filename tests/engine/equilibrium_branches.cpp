@@ -657,3 +657,41 @@ TEST_CASE("a branch goes on over a kink with the step that it came with", "[bran
   REQUIRE((beyond != points.begin() && beyond != points.end()));
   CHECK_THAT(beyond->parameter - std::prev(beyond)->parameter, Catch::Matchers::WithinAbs(0.1, 1e-6));
 }
+
+TEST_CASE("a bead that nothing holds where its rod stands lies at a stop where it turns", "[branches]") {
+  // Where the rod stands the bead may be anywhere between its stops. Where it turns at w it is in balance on
+  // the axis, unstable, and at either stop of k N/m, pressed in to x = 0.5 k / (k - m w^2).
+  constexpr double k = 1e4, mass = 2, drawn = 0.3, stop = 0.5;
+  Mechanism m;
+  m.bodies = {body("rod", 1, {0, 0, 0}, {1, 1, 1}), body("bead", mass, {drawn, 0, 0})};
+  m.joints = {driven(revolute("spin", "ground", "rod", {0, 0, 0}, Vec3::UnitY()), 0),
+              dampened(prismatic("slide", "rod", "bead", {drawn, 0, 0}, Vec3::UnitX()), 1)};
+  Coordinate& c = m.joints[1].coordinates[0];
+  c.drawn = drawn;
+  c.stop = Stop{.lower = -stop, .upper = stop, .stiffness = k};
+  BranchOptions options;
+  const auto ends = [&] {
+    std::vector<double> out;
+    const ResponseDiagram d = follow_branches(m, "joints.spin.drive.speed", 0, 8, options);
+    CHECK(d.special.empty());
+    for (const ResponseBranch& branch : d.branches) {
+      const ResponsePoint& last = branch.points.back();
+      CHECK(last.parameter == 8);
+      CHECK(branch.points.front().parameter < 1e-5);
+      CHECK(last.stable == (std::abs(last.coordinates.back().value) > 0.1));
+      out.push_back(last.coordinates.back().value);
+    }
+    std::ranges::sort(out);
+    return out;
+  };
+  const double pressed = stop * k / (k - mass * 64);
+  const std::vector<double> from_drawn = ends();
+  REQUIRE(from_drawn.size() == 2);
+  CHECK(std::abs(from_drawn[0]) < 1e-15);
+  CHECK(from_drawn[1] == Approx(pressed).epsilon(1e-12));
+  options.all = true;
+  const std::vector<double> all = ends();
+  REQUIRE(all.size() == 3);
+  CHECK(all[0] == Approx(-pressed).epsilon(1e-12));
+  CHECK(all[2] == Approx(pressed).epsilon(1e-12));
+}
