@@ -49,9 +49,10 @@ std::string complex_text(std::complex<double> s) {
 }
 
 std::string model_text(const Mechanism& mechanism, const LinearModel& model) {
-  std::string out = fmt::format("{}: {} states, {} inputs, {} outputs{}\n", printable(mechanism.name),
-                                model.states.size(), model.inputs.size(), model.outputs.size(),
-                                model.explicit_form ? "" : "; bodies without mass: E is singular");
+  std::string out =
+      fmt::format("{}: {} states, {} inputs, {} outputs{}\n", printable(mechanism.name), model.states.size(),
+                  model.inputs.size(), model.outputs.size(),
+                  model.explicit_form ? "" : "; bodies without mass, or with hardly any: E alone");
   const auto list = [&](const char* what, const auto& signals) {
     out += fmt::format("  {}:", what);
     for (const auto& signal : signals)

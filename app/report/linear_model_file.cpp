@@ -105,8 +105,10 @@ std::string script_head(const Mechanism& mechanism, const LinearModel& model, co
   std::string out =
       fmt::format("{0} {1}: linear model about the steady state, by flyball.\n{0} Small changes: ", sign,
                   printable(mechanism.name));
-  out += model.explicit_form ? "x' = A x + B u, y = C x + D u.\n"
-                             : "E x' = A x + B u, y = C x + D u; E is singular, some bodies have no mass.\n";
+  out += model.explicit_form
+             ? "x' = A x + B u, y = C x + D u.\n"
+             : "E x' = A x + B u, y = C x + D u; E is singular, or nearly so: some bodies have no mass, or "
+               "hardly any.\n";
   if (const std::string text = friction_text(model); !text.empty())
     out += fmt::format("{} {}\n", sign, printable(text));
   else if (has_friction(mechanism))
@@ -279,9 +281,9 @@ OrderedJson linear_model_json(const Mechanism& mechanism, const LinearModel& mod
   OrderedJson out;
   out["name"] = mechanism.name;
   const bool any = model.refusal.empty();
-  out["message"] = any ? model.explicit_form
-                             ? "x' = A x + B u, y = C x + D u."
-                             : "Bodies without mass follow the others at once: E x' = A x + B u alone."
+  out["message"] = any ? model.explicit_form ? "x' = A x + B u, y = C x + D u."
+                                             : "Bodies without mass, or with hardly any, follow the others "
+                                               "at once: E x' = A x + B u alone."
                        : model.refusal;
   if (const std::string text = friction_text(model); any && !text.empty())
     out["message"] = out["message"].get<std::string>() + " " + text;

@@ -14,7 +14,8 @@ void DrivePeriod::find_common() {
   if (period > 0) return;
   const std::vector<std::string_view> all(names.begin(), names.end());
   trouble = "The speeds of " + word_list(all, "and") + " have no common period of at most " +
-            std::to_string(followed_turns) + " turns: their motion is quasi-periodic and never comes back.";
+            std::to_string(followed_turns) +
+            " turns: their motion is quasi-periodic, or comes back after more turns.";
 }
 
 DrivePeriod drive_period(const MotionModel& model) {

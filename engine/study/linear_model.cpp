@@ -31,6 +31,7 @@ constexpr double nothing = 1e-9;    // of what a signal feels, beside the most t
 constexpr double rounding = 1e-11;  // the same: what differences leave of nothing
 constexpr double same_phase = 1e-7; // the same, of two phases
 constexpr double no_effect = 1e-14; // of an input, beside what holds the mechanism
+constexpr double most_lost = 1e-8;  // by the inverse of M, else E stands alone
 
 // Nothing acts along what is left to itself: as it moves it is what a torque of nothing drives.
 Mechanism with_momenta_free(Mechanism mechanism) {
@@ -102,6 +103,7 @@ class Builder {
     double stiffness_size = 0, momentum_size = 0, speed_size = 0; // momentum: of M at that speed
     Eigen::VectorXd held, inertia; // (k): what a radian or part of the reach takes of each
     Eigen::VectorXd made_of;       // (k): see MotionAt::inertia
+    double lost = 0;               // by M^-1 of what K and C + G are, in parts of what each coordinate feels
   };
 
   // What slips is driven by its friction from here on.
@@ -385,6 +387,17 @@ class Builder {
     out.explicit_stiffness = to * by_position;
     out.explicit_velocity = to * by_rate;
     out.explicit_b = to * by_input;
+    // What is left of slow motions where some parts are far lighter than others, so that terms of A cancel.
+    const Eigen::ArrayXd damped = (column.asDiagonal() * out.velocity * column.asDiagonal()).rowwise().norm();
+    const Eigen::ArrayXd felt =
+        out.held.array() + out.speed_size * (damped + out.speed_size * out.inertia.array());
+    const auto lost = [&](const Eigen::MatrixXd& accelerations) {
+      const Eigen::MatrixXd terms =
+          column.asDiagonal() * out.mass.cwiseAbs() * accelerations.cwiseAbs() * column.asDiagonal();
+      return std::numeric_limits<double>::epsilon() * (terms.rowwise().norm().array() / felt).maxCoeff();
+    };
+    if (k > 0)
+      out.lost = std::max(lost(out.explicit_stiffness), lost(out.explicit_velocity) * out.speed_size);
 
     add_outputs(motion, effects, {basis * from, basis * by_position, basis * by_rate, basis * by_input}, out);
     return out;
@@ -414,7 +427,9 @@ class Builder {
     Eigen::MatrixXd normalised(outputs, 2 * k + inputs), error = normalised, kink = normalised;
     Eigen::VectorXd sizes(2 * k + inputs);
     const auto take = [&](Eigen::Index i, MotionDirection d, double least) {
-      const double size = std::max(size_of(motion, d, rate), least);
+      double size = std::max(size_of(motion, d, rate), least);
+      // What moves nothing may bear on something all the same, as a force on a part that is driven does.
+      if (size == 0 && (d.change != 0 || !d.lambda.isZero(0))) size = 1;
       sizes[i] = size;
       if (!(size > 0)) { // nothing moves
         normalised.col(i).setZero();
@@ -638,7 +653,7 @@ class Builder {
       x.c.col(i) = m.c_position.col(p);
     }
     direct.c = x.c;
-    if (motion.without_mass == 0) out.explicit_form = std::move(direct);
+    if (motion.without_mass == 0 && !(m.lost > most_lost)) out.explicit_form = std::move(direct);
     for (const bool rate : {false, true})
       for (Eigen::Index i = 0; i < k; ++i) {
         const int v = chosen_.entries[static_cast<std::size_t>(i)];
@@ -662,9 +677,13 @@ class Builder {
     for (const StateSpace& form : {out.descriptor, best_form(out)})
       for (const Eigen::MatrixXd* matrix : {&form.e, &form.a, &form.b, &form.c, &form.d})
         if (!matrix->allFinite()) throw Refusal{"The numbers are too far apart for a linear model."};
-    const auto found = out.explicit_form
-                           ? poles(*out.explicit_form)
-                           : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel, m.made_of);
+    auto found = motion.without_mass == 0
+                     ? poles(best_form(out))
+                     : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel, m.made_of);
+    if (motion.without_mass > 0) // angles that are no states: as many of those nearest to zero
+      for (Eigen::Index phase = np; found && phase < k; ++phase)
+        if (!found->empty())
+          found->erase(std::ranges::min_element(*found, {}, [](auto pole) { return std::abs(pole); }));
     if (!found) throw Refusal{"The poles are not found: the numbers are too far apart."};
     out.poles = *found;
     out.stable = out.held.empty() ? out.steady.stable : stable_by(out);

@@ -51,7 +51,8 @@ struct LinearModel {
   std::vector<State> states;
   std::vector<LinearSignal> inputs, outputs;
   StateSpace descriptor; // with E; always there
-  // Without E: nothing where bodies without mass follow the others at once.
+  // Without E: nothing where bodies without mass follow the others at once, or where some are so light that
+  // the inverse of E would lose the digits of what is slow.
   std::optional<StateSpace> explicit_form;
   std::vector<std::complex<double>> poles; // 1/s, finite ones
   std::optional<Eigen::MatrixXd> gain; // (outputs, inputs), static; nothing where one feels what integrates

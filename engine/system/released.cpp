@@ -45,6 +45,8 @@ System released(const System& system) {
     join_again(out, e.ends);
   for (CutDamperElement& e : out.cut_dampers)
     join_again(out, e.ends);
+  for (BearingElement& e : out.bearings)
+    join_again(out, e.ends);
   for (TurningAirElement& e : out.turning_air)
     join_again(out, e.ends);
   for (CutJoint& c : out.cuts)

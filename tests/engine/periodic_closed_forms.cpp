@@ -390,6 +390,8 @@ TEST_CASE("Where the drives have no period, or friction sticks, it is refused wi
   const PeriodicState never = find_periodic_state(two);
   CHECK(never.status == PeriodicStatus::not_periodic);
   CHECK_THAT(never.message, ContainsSubstring("quasi-periodic"));
+  two.joints.back().coordinates[0].drive->speed = 30.01; // 3000 turns
+  CHECK_THAT(find_periodic_state(two).message, ContainsSubstring("or comes back after more turns"));
   two.joints.back().coordinates[0].drive->speed = 20;
   const PeriodicState together = find_periodic_state(two);
   REQUIRE(together.status == PeriodicStatus::found);

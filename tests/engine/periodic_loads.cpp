@@ -152,6 +152,36 @@ TEST_CASE("A bearing bears what accelerates the rotor in it, and its damper what
   }
 }
 
+TEST_CASE("A drive carries what a bearing beside its axis resists") {
+  const double r = 0.1, speed = 3, k = 100, cross = 30, c = 2;
+  Mechanism m;
+  m.bodies = {body("disc", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {driven(revolute("spin", "ground", "disc", {0, 0, 0}, {0, 0, 1}), speed)};
+  Force bearing;
+  bearing.name = "seat";
+  bearing.type = ForceType::bearing;
+  bearing.bodies = {"ground", "disc"};
+  bearing.at = {r, 0, 0};
+  bearing.bearing_stiffness = {k, cross, -cross, k};
+  bearing.bearing_damping = {c, 0, 0, c};
+  m.forces = {bearing};
+  // The moment about the axis of what moves the bearing's point.
+  const auto torque = [&](double a) {
+    const double x = r * (std::cos(a) - 1), y = r * std::sin(a);
+    const double vx = -r * speed * std::sin(a), vy = r * speed * std::cos(a);
+    return r * std::cos(a) * (k * y - cross * x + c * vy) - r * std::sin(a) * (k * x + cross * y + c * vx);
+  };
+  const PeriodicState s = find_periodic_state(m);
+  CAPTURE(s.message);
+  REQUIRE(s.status == PeriodicStatus::found);
+  REQUIRE(s.drive_torques.size() == 1);
+  check_range(s.drive_torques[0].range, exact(torque), k * r * r);
+  check_range(s.drive_torques[0].power, exact([&](double a) { return speed * torque(a); }),
+              k * r * r * speed);
+  for (const double error : simulate(m, lasting(2)).energy.balance)
+    CHECK_THAT(error, WithinAbs(0, 1e-8 * k * r * r));
+}
+
 TEST_CASE("A slider-crank's pins and slide bear what accelerates its piston") {
   const double r = 0.25, l = 0.7762, speed = 20.9, mass = 2;
   const double drawn = 0.7; // the crank's angle

@@ -288,6 +288,74 @@ TEST_CASE("bodies without mass leave E singular", "[linear-model]") {
   CHECK_THAT(refusal(m, {"torque(x2)"}, {"ax(light)"}), ContainsSubstring("without mass"));
 }
 
+TEST_CASE("the angle of a shaft is no pole beside bodies without mass", "[linear-model]") {
+  Mechanism m = shipped("governor_engine");
+  const LinearModel without = linear_model(m, {"torque(spin)"}, {"slide"});
+  m.bodies.push_back(body("light", 0, {0.1, 0.3, 0}));
+  m.joints.push_back(dampened(sprung(prismatic("along", "spindle", "light", {0.1, 0.3, 0}, {0, 1, 0}), 100),
+                              1)); // a pole at -100
+  const LinearModel model = linear_model(m, {"torque(spin)"}, {"slide"});
+  REQUIRE(model.states.size() == 5);
+  REQUIRE(model.poles.size() == without.poles.size() + 1);
+  const auto nearest = [&](Complex to) {
+    double out = 1e300;
+    for (const Complex pole : model.poles)
+      out = std::min(out, std::abs(pole - to));
+    return out;
+  };
+  CHECK(nearest(-100) < 1e-9);
+  for (const Complex pole : without.poles)
+    CHECK(nearest(pole) < 1e-9);
+}
+
+TEST_CASE("what is far lighter than the rest costs no digits of it", "[linear-model]") {
+  // x1 of the light body, x2 of the heavy one against it.
+  const double heavy = 2, k1 = 30, c1 = 1, k2 = 50, c2 = 0.5;
+  for (const double light : {1e-3, 1e-6, 1e-9, 1e-10, 1e-12, 1e-14}) {
+    CAPTURE(light);
+    Mechanism m;
+    m.bodies = {body("light", light, {0, 0, 0}), body("heavy", heavy, {1, 0, 0})};
+    m.joints = {dampened(sprung(prismatic("x1", "ground", "light", {0, 0, 0}, {1, 0, 0}), k1), c1),
+                dampened(sprung(prismatic("x2", "light", "heavy", {1, 0, 0}, {1, 0, 0}), k2), c2)};
+    const LinearModel model = linear_model(m, {"torque(x1)", "torque(x2)"}, {"x1", "x2"});
+    CHECK(model.explicit_form.has_value() == (light > 1e-8));
+    REQUIRE(model.gain);
+    CHECK((*model.gain - Eigen::Matrix2d{{1 / k1, 0}, {0, 1 / k2}}).norm() < 1e-10);
+    const auto characteristic = [&](Complex s) {
+      return (light * s * s + c1 * s + k1) * (heavy * s * s + c2 * s + k2) + heavy * s * s * (c2 * s + k2);
+    };
+    int slow = 0;
+    for (const Complex s : model.poles) {
+      if (std::abs(s) > 1e3) continue; // of the light body alone
+      ++slow;
+      const Complex step = 1e-4 * s,
+                    slope = (characteristic(s + step) - characteristic(s - step)) / (2. * step);
+      CHECK(std::abs(characteristic(s) / slope) < 1e-9 * std::abs(s));
+    }
+    CHECK(slow == 3);
+  }
+}
+
+TEST_CASE("what moves nothing is borne all the same", "[linear-model]") {
+  // A force and a torque on a governor's spindle, which its drive and its bearing take.
+  Mechanism m = shipped("governor");
+  Force& torque = m.forces.emplace_back();
+  torque.name = "twist";
+  torque.type = ForceType::torque;
+  torque.body = "spindle";
+  const LinearModel model = linear_model(m, {"force_y(spindle)", "forces.twist.vector.1"},
+                                         {"slide", "reaction_y(spin)", "torque(spin)"});
+  REQUIRE(model.gain);
+  CHECK((*model.gain - Eigen::MatrixXd{{0, 0}, {-1, 0}, {0, -1}}).norm() < 1e-9);
+  // Of bodies without mass the spring alone takes it.
+  Mechanism light;
+  light.bodies = {body("block", 0, {0, 0, 0})};
+  light.joints = {dampened(sprung(prismatic("x", "ground", "block", {0, 0, 0}, {1, 0, 0}), 30), 2)};
+  const LinearModel massless = linear_model(light, {"force_x(block)"}, {"x", "reaction_x(x)"});
+  REQUIRE(massless.gain);
+  CHECK((*massless.gain - Eigen::Vector2d(1. / 30, -1)).norm() < 1e-9);
+}
+
 TEST_CASE("loops that hold nothing leave the coordinates free", "[linear-model]") {
   // A door on two hinges of one axis: every row of the second says what the first says.
   const LinearModel model =
