@@ -90,8 +90,13 @@ std::vector<RunColumn> columns_of(const Run& run) {
     add(column_name(coordinate_label(c)), c.value);
   for (const CoordinateTrack& c : run.coordinates)
     add(coordinate_label(c) + ".rate", c.rate);
-  for (const DriveTrack& d : run.drives)
+  for (const DriveTrack& d : run.drives) {
     add(coordinate_label(d) + ".torque", d.torque);
+    if (d.load.empty()) continue;
+    columns.push_back(
+        {coordinate_label(d) + ".given", [&d](std::size_t i) { return d.torque[i] + d.load[i]; }});
+    add(coordinate_label(d) + ".load", d.load);
+  }
   const EnergyTracks& e = run.energy;
   for (const auto& [name, values] : std::initializer_list<std::pair<const char*, const std::vector<double>*>>{
            {"energy.kinetic", &e.kinetic},

@@ -29,7 +29,7 @@ void add_ink(PlotInk& ink, const PlotBox& area, const PixelPoint& a, const Pixel
   }
 }
 
-PlotInk ink_of_curves(const PlotLayout& layout) {
+PlotInk ink_of_lines(const PlotLayout& layout) {
   const PlotBox& area = layout.area;
   PlotInk ink;
   ink.side = 4 * layout.scale;
@@ -43,6 +43,11 @@ PlotInk ink_of_curves(const PlotLayout& layout) {
     for (const PixelPoint& p : curve.shapes)
       add_ink(ink, area, p, p);
   }
+  for (const PlotBandLines& band : layout.bands)
+    for (const auto& lower_upper : band.lower_upper)
+      for (const PixelLine& edge : lower_upper)
+        for (std::size_t i = 0; i + 1 < edge.size(); ++i)
+          add_ink(ink, area, edge[i], edge[i + 1]);
   return ink;
 }
 
@@ -140,7 +145,7 @@ PlotBox around(double x, double y, double radius) {
 
 void place_labels(const Plot& plot, PlotLayout& layout, const PlotMetrics& metrics) {
   if (plot.references.empty() && plot.marks.empty() && !plot.marker) return;
-  layout.ink = ink_of_curves(layout);
+  layout.ink = ink_of_lines(layout);
   std::vector<Obstacle> taken;
   for (const PlotPlaced& mark : layout.marks)
     taken.push_back({around(mark.x, mark.y, 4 * metrics.scale), &mark});

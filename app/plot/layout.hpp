@@ -77,7 +77,7 @@ struct PlotBar { // of a heat map's colours
   std::optional<PlotText> label{};
 };
 
-// Which squares of the area have curves in them, for labels to avoid; rows from the top.
+// Which squares of the area have curves, or edges of bands, in them, for labels to avoid; rows from the top.
 struct PlotInk {
   double side = 0; // pixels
   std::size_t columns = 0, rows = 0;

@@ -134,7 +134,8 @@ void choose_first_quantity(Session& session) {
     });
   };
   const auto speed = first_in("rad/s"), length = first_in("m");
-  state.shown = speed != all.end() ? *speed : length != all.end() ? *length : all.front();
+  const bool found = speed != all.end() && finds_speeds(session.mechanism());
+  state.shown = found ? *speed : length != all.end() ? *length : all.front();
   state.choice.quantity = state.shown.key;
 }
 

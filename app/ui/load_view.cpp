@@ -17,12 +17,27 @@ std::optional<Quat> turn_of_loads(const Session& session) {
   return common_turn(*session.answer.mechanism, solution, session.poses);
 }
 
-// The moment of a periodic motion that is shown; null where a steady state is, or nothing.
-const PeriodicStudy::Posed* shown_moment(const Session& session) {
+// Of a motion that is shown in the steady state's place: a periodic one, or that of the motion's panel.
+struct Moment {
+  const Run* motion = nullptr;
+  double time = 0; // s
+};
+
+std::optional<Moment> moment_of_panel(const Session& session) {
+  const MotionState& motion = session.motion;
+  if (!motion.shown.run || !session.answer.mechanism ||
+      motion.poses.size() != session.answer.mechanism->bodies.size())
+    return std::nullopt;
+  return Moment{motion.shown.run.get(), motion.shown.time};
+}
+
+std::optional<Moment> shown_moment(const Session& session) {
+  if (converged(session)) return std::nullopt;
   const PeriodicStudy::Posed& posed = session.study.periodic.posed;
-  const bool there = !converged(session) && periodic_motion(session) && posed.motion &&
-                     session.answer.mechanism->bodies.size() == session.poses.size();
-  return there ? &posed : nullptr;
+  const bool periodic = periodic_motion(session) && posed.motion &&
+                        session.answer.mechanism->bodies.size() == session.poses.size();
+  if (!periodic) return moment_of_panel(session);
+  return Moment{posed.motion.get(), posed.time < 0 ? posed.time + posed.motion->time.back() : posed.time};
 }
 
 bool may_show_loads(const Session& session, const ToolState& tool, const ViewState& view) {
@@ -42,7 +57,7 @@ bool shows_roots(const ViewState& view) {
 }
 
 bool shows_moment(const Session& session) {
-  return shown_moment(session) != nullptr;
+  return shown_moment(session).has_value();
 }
 
 void show_loads(const Session& session, const ToolState& tool, const ViewState& view, ViewFrame& frame) {
@@ -52,10 +67,10 @@ void show_loads(const Session& session, const ToolState& tool, const ViewState& 
     if (std::ranges::count_if(frame.selected, is_body) == 1)
       frame.loads_body = std::ranges::find_if(frame.selected, is_body)->index;
   };
-  const PeriodicStudy::Posed* moment = shown_moment(session);
-  if (moment && view.loads && !tool.pull && session.mode == Mode::explore) {
-    frame.loads_motion = moment->motion.get();
-    frame.loads_time = moment->time < 0 ? moment->time + moment->motion->time.back() : moment->time;
+  if (const auto moment = shown_moment(session);
+      moment && view.loads && !tool.pull && session.mode == Mode::explore) {
+    frame.loads_motion = moment->motion;
+    frame.loads_time = moment->time;
     return choose_body();
   }
   if (!may_show_loads(session, tool, view)) return;
@@ -65,6 +80,17 @@ void show_loads(const Session& session, const ToolState& tool, const ViewState& 
   frame.loads_turning = session.answer.turning;
   frame.loads_turn = *turn;
   choose_body();
+}
+
+void show_motion_loads(const Session& session, const ViewState& view, ViewFrame& frame) {
+  const bool wanted = frame.loads || frame.loads_motion;
+  frame.loads = nullptr;
+  frame.loads_motion = nullptr;
+  const auto moment = moment_of_panel(session);
+  if (!wanted || !moment || !view.scene.scene) return;
+  frame.loads_motion = moment->motion;
+  frame.loads_time = moment->time;
+  frame.load_scales = &view.scene.scene->arrows.scales;
 }
 
 std::string loads_missing(const Session& session, const ToolState& tool, const ViewState& view) {

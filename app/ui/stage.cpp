@@ -90,7 +90,7 @@ void Stage::frame(App& app, PixelSize size, double seconds, bool further) {
   app.view.texture =
       prepare(app.view, view_, shown, show_scene(app.session, app.tool, app.view, shown), pixels_of(view));
   if (layout.beside.width > 0) {
-    ViewFrame motion = motion_frame(app.session, shown);
+    ViewFrame motion = motion_frame(app.session, app.view, shown);
     motion.options.triad = true; // there is no cube
     app.view.texture_beside =
         prepare(app.view, beside_, motion, show_motion_scene(app.session, app.tool, app.view, motion),
@@ -182,6 +182,7 @@ unsigned Stage::prepare(const ViewState& state, View& view, const ViewFrame& sho
   frame.poses = frame.ghost = frame.motion = {};
   frame.loads = nullptr;
   frame.loads_motion = nullptr;
+  frame.load_scales = nullptr;
   frame.loads_turning = {};
   frame.cut_joints = {};
   frame.options.draft = draft;

@@ -59,12 +59,11 @@ ViewFrame view_frame(const Session& session, const Ui& ui, const ToolState& tool
   return frame;
 }
 
-ViewFrame motion_frame(const Session& session, ViewFrame frame) {
+ViewFrame motion_frame(const Session& session, const ViewState& view, ViewFrame frame) {
   frame.poses = session.motion.poses;
   frame.ghost = {};
   frame.motion = {};
-  frame.loads = nullptr;
-  frame.loads_motion = nullptr;
+  show_motion_loads(session, view, frame);
   frame.hovered = {};
   return frame;
 }

@@ -17,7 +17,7 @@ const std::shared_ptr<const Mechanism>& shown_mechanism(const Session& session, 
 // Refers to these: use before they change. The stage makes one a frame; what is drawn over the view reads
 // view.scene, which was made of it.
 ViewFrame view_frame(const Session& session, const Ui& ui, const ToolState& tool, const ViewState& view);
-// What the view beside it shows: the motion alone.
-ViewFrame motion_frame(const Session& session, ViewFrame frame);
+// What the view beside it shows, once that frame's scene was made: the motion alone.
+ViewFrame motion_frame(const Session& session, const ViewState& view, ViewFrame frame);
 
 } // namespace flyball

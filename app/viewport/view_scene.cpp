@@ -40,6 +40,7 @@ void add_loads(const ViewFrame& frame, const Palette& colors, ViewScene& scene) 
     scales = load_scales(assembly, scene.loads,
                          scene.diagram ? std::optional(LoadLengths::in_proportion) : frame.load_lengths);
   }
+  if (frame.load_scales) scales = *frame.load_scales;
   scene.arrows = load_arrows(assembly, scene.loads, scales, colors, scene.diagram);
   for (const Instance& instance : scene.arrows.solids)
     scene.solid.bounds.add(instance_bounds(instance));

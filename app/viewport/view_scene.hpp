@@ -41,6 +41,7 @@ struct ViewFrame {
   // Its free-body diagram, in proportion, where that is known; -1: all loads.
   int loads_body = -1;
   std::optional<LoadLengths> load_lengths{}; // without: see load_scales()
+  const LoadScales* load_scales = nullptr;   // those of another view; null: of its own loads
   BodyColouring colouring;                   // without: as the mechanism alone says
   ViewCamera camera;
   Theme theme = Theme::light;

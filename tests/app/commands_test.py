@@ -384,6 +384,14 @@ def loads(folder):
         check("a power is torque times rate", abs(float(row["spin.power"]) - power) <= 1e-12 * abs(power))
         check("the drive's torque is in its joint's moment",
               abs(float(row["spin.moment.y"]) - float(row["spin.torque"])) < 1e-9)
+    engine = pathlib.Path(SCENE).parent / "governor_engine.json"
+    set_load = "joints.spin.drive.load=25"
+    table = list(csv.DictReader(run("simulate", engine, "--set", set_load, "--duration", "0.5", "--csv", "-")[1]
+                                .decode().splitlines()))
+    for row in table:
+        given, load, less = (float(row[f"spin.{part}"]) for part in ("given", "load", "torque"))
+        check("a drive by torque gives what its law says, against its load",
+              abs(given - 7500 * (float(row["slide"]) - 0.15)) < 1e-9 and load == 25 and abs(given - load - less) < 1e-9)
     linkage = pathlib.Path(SCENE).parent / "fourbar_turntable.json"
     reactions = json.loads(run("solve", linkage, "--json")[1])["reactions"]
     plane = [r for r in reactions.values() if r.get("nonunique")]

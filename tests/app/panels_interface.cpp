@@ -286,6 +286,34 @@ TEST_CASE("over an empty document either the first steps are shown or the tutori
   CHECK_FALSE(robot.app.ui.widgets.contains("welcome/examples"));
 }
 
+TEST_CASE("in a small window the first steps lie beside the tools, and what cannot be opened is told whole") {
+  Robot robot({640, 480});
+  robot.begin_empty(1);
+  robot.frames(4);
+  const WidgetRect tools = robot.widget("tool strip"), view = robot.widget("view");
+  const ImGuiWindow* steps = ImGui::FindWindowByName("welcome");
+  REQUIRE((steps && steps->WasActive));
+  CHECK(steps->Pos.x >= tools.to.x);
+  CHECK(steps->Pos.y >= view.from.y);
+  CHECK(steps->Pos.y + steps->Size.y <= view.to.y);
+  const auto whole = [&](const char* name, const char* words, const ImGuiWindow& card) {
+    const WidgetRect& rect = robot.widget(name);
+    CAPTURE(words);
+    CHECK(rect.to.x - rect.from.x >= ImGui::CalcTextSize(words).x);
+    CHECK(rect.to.x < card.Pos.x + card.Size.x);
+    CHECK(rect.to.y < card.Pos.y + card.Size.y);
+  };
+  whole("welcome/examples", "Start from an example…", *steps);
+  whole("welcome/open", "Open…", *steps);
+  open_scene(robot.app.session, "there_is_none.json");
+  robot.frames(4);
+  CHECK_FALSE(robot.app.ui.widgets.contains("welcome/examples")); // they would lie over each other
+  const ImGuiWindow* problem = ImGui::FindWindowByName("problem");
+  REQUIRE((problem && problem->WasActive));
+  whole("problem/close", "Keep the open scene", *problem);
+  whole("problem/open", "Open another…", *problem);
+}
+
 TEST_CASE("a menu taller than the window opens below its title and scrolls") {
   Robot robot({640, 480});
   App& app = robot.app;

@@ -11,6 +11,8 @@
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 
 using namespace flyball;
@@ -102,6 +104,43 @@ TEST_CASE("while a body is pulled along its joints the dashes are the pose befor
   robot.frames(3);
   CHECK(words(app).front() == "Drawn pose");
   CHECK(words(app).back() != "Before the pull");
+}
+
+TEST_CASE("the legend's frame is as high as what is in it, at once") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  robot.frames(3);
+  for (const bool loads : {true, false}) {
+    app.commands.run("view.loads");
+    for (int frame = 0; frame < 4; ++frame) {
+      robot.frames(1);
+      const ImGuiWindow* window = ImGui::FindWindowByName("legend");
+      REQUIRE(window);
+      std::size_t rows = 0; // drawn in this frame
+      while (app.ui.widgets.contains("legend/" + std::to_string(rows)))
+        ++rows;
+      REQUIRE(rows > 0);
+      const WidgetRect& last = robot.widget("legend/" + std::to_string(rows - 1));
+      const float below = window->Pos.y + window->Size.y - last.to.y;
+      CAPTURE(loads, frame, rows);
+      CHECK(below > 0);
+      CHECK(below < 0.5f * (last.to.y - last.from.y));
+    }
+    CHECK(app.view.loads == loads);
+  }
+}
+
+TEST_CASE("the legend keeps clear of a status of several lines") {
+  Robot robot({640, 480});
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("governor_friction"));
+  robot.frames(3);
+  robot.key('C');
+  robot.frames(5);
+  const WidgetRect &legend = robot.widget("legend frame"), &status = robot.widget("status");
+  CHECK(status.to.y - status.from.y > 2 * ImGui::GetTextLineHeight());
+  CHECK((legend.to.y <= status.from.y || legend.to.x <= status.from.x));
+  CHECK(app.session.problem.empty());
 }
 
 TEST_CASE("only dampers that act make a motion damped") {

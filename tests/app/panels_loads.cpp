@@ -1,6 +1,7 @@
 // Arrows of what acts, in the view: shown and taken away by a key, read with the mouse, exported.
 #include "app/document/document.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/session/motion.hpp"
 #include "app/session/periodic.hpp"
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/commands.hpp"
@@ -451,5 +452,78 @@ TEST_CASE("in a motion, too, arrows of a drive by torque are what it gives and t
       CHECK(along(LoadKind::applied) == Approx(-load).epsilon(1e-6));
     }
     CHECK(has_row(app, "Free body: wheel, adds up to zero"));
+  }
+}
+
+TEST_CASE(
+    "a limit cycle in a view of its own has the arrows of its moment, as long as those beside it would be") {
+  Robot robot({1280, 1400});
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("governor_engine"));
+  robot.frames(2);
+  change_parameter(app.session, "joints.slide.damping", 15); // it hunts
+  robot.frames(3);
+  robot.click("results/cycle");
+  robot.frames(3);
+  robot.click("results/cycle/motion");
+  robot.frames(3);
+  play(app.session, false);
+  robot.click("motion/beside");
+  robot.key('A');
+  REQUIRE(converged(app.session));
+  const Run& run = *shown_motion(app.session)->run;
+  const auto force = [&](const ViewScene& scene) { // of the collar's spring
+    for (const Load& load : scene.loads)
+      if (load.kind == LoadKind::spring && part_of(app.session.mechanism(), load.part).name == "slide")
+        return load.vector.norm();
+    return -1.;
+  };
+  const SpringTrack& spring = *std::ranges::find(run.springs, "slide", &SpringTrack::joint);
+  double steady = -1;
+  for (const std::size_t sample : {run.time.size() / 8, run.time.size() / 3}) {
+    seek_motion(app.session, run.time[sample]);
+    robot.frames(3);
+    REQUIRE(app.view.scene_beside.scene);
+    const ViewScene &shown = *app.view.scene.scene, &cycle = *app.view.scene_beside.scene;
+    CAPTURE(sample);
+    CHECK(force(cycle) == Approx(std::abs(spring.spring[sample])).epsilon(1e-6));
+    CHECK(cycle.arrows.scales.length(false, 10) == shown.arrows.scales.length(false, 10));
+    if (steady >= 0) CHECK(force(shown) == Approx(steady));
+    steady = force(shown); // that of the steady state, which stays
+  }
+  robot.key('A');
+  robot.frames(2);
+  CHECK(app.view.scene_beside.scene->loads.empty());
+}
+
+TEST_CASE("a motion in the place of a steady state that there is not has the arrows of its moment") {
+  Robot robot({1280, 1400});
+  App& app = robot.app;
+  Mechanism m = Document::empty_mechanism();
+  add_driven_slider_crank(m, 20);
+  m.joints.front().coordinates.front().drive->torque = 0;
+  set_expression(m, "joints." + m.joints.front().name + ".drive.torque",
+                 "60 N m - 3 N m s*rate(" + m.joints.front().name + ")");
+  open_document(app.session, Document(m));
+  set_mode(app.session, Mode::explore);
+  robot.frames(3);
+  REQUIRE(app.session.answer.solution.status == Status::not_converged);
+  robot.key('A');
+  CHECK(has_row(app, "Forces: no steady state"));
+  app.session.motion.duration = 1;
+  robot.key('M');
+  robot.frames(3);
+  play(app.session, false);
+  const Run& run = *shown_motion(app.session)->run;
+  const DriveTrack& drive = run.drives.front();
+  for (const std::size_t sample : {run.time.size() / 4, run.time.size() / 2}) {
+    seek_motion(app.session, run.time[sample]);
+    robot.frames(3);
+    CHECK_FALSE(has_row(app, "Forces: no steady state"));
+    CHECK(has_row(app, "Of this moment"));
+    double given = 0;
+    for (const Load& load : app.view.scene.scene->loads)
+      if (load.kind == LoadKind::drive) given += load.vector.norm();
+    CHECK(given == Approx(std::abs(drive.torque[sample] + drive.load[sample])).epsilon(1e-6));
   }
 }

@@ -18,6 +18,7 @@
 #include "engine/mechanism/text.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
+#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
@@ -85,6 +86,24 @@ TEST_CASE("lines of the Campbell diagram are called as the list's modes, circula
     }
   CHECK(listed.size() == 4);
   CHECK(names == listed);
+}
+
+TEST_CASE("in a small window every column of the list of modes is whole, and so are the diagram's choices") {
+  ModesRobot robot("governor", {640, 480});
+  const WidgetMap& widgets = robot.app.ui.widgets;
+  CHECK_FALSE(widgets.contains("modes/title/[rad/s]")); // the same frequency again
+  for (const char* title : {"Natural [Hz]", "Damping", "Real part [1/s]"}) {
+    CAPTURE(title);
+    const WidgetRect& rect = robot.widget("modes/title/" + std::string(title));
+    CHECK(rect.to.x - rect.from.x >= ImGui::CalcTextSize(title).x - 0.5f); // as far as it can be seen
+  }
+  for (const char* unit : {"hertz", "radians"}) {
+    CAPTURE(unit);
+    const WidgetRect& rect = robot.widget("campbell/" + std::string(unit));
+    const char* words = std::string_view(unit) == "hertz" ? "Hz" : "rad/s";
+    CHECK(rect.to.x - rect.from.x >= ImGui::CalcTextSize(words).x);
+    CHECK(rect.to.x <= 640);
+  }
 }
 
 TEST_CASE("no modes before they are asked for, and a closed study leaves nothing that moves") {

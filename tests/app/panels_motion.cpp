@@ -343,6 +343,50 @@ TEST_CASE("plots show the speed that a drive by torque settles at") {
   CHECK(motion_plot(app.session, "value " + found->joint).references.empty()); // it goes on
 }
 
+TEST_CASE("plots have what a drive by torque gives and its load apart, as the response does") {
+  Robot robot(wide);
+  App& app = robot.app;
+  open_document(app.session, Document(shipped("governor_engine")));
+  change_parameter(app.session, "joints.spin.drive.load", 25);
+  app.session.motion.duration = 0.5;
+  robot.frames(4);
+  robot.key('M');
+  robot.frames(3);
+  const Run& run = run_of(app);
+  const auto line = [&](const char* key, const char* title, double steady) {
+    CAPTURE(key);
+    const Plot plot = motion_plot(app.session, key);
+    CHECK(plot.y.label == title);
+    CHECK(plot.y.unit == "N m");
+    REQUIRE(plot.references.size() == 1);
+    CHECK(plot.references[0].at == Approx(steady).margin(1e-6));
+    for (const PlotCurve& curve : plot.curves)
+      if (curve.name == "damped") return curve.points;
+    return std::vector<std::array<double, 2>>();
+  };
+  const auto given = line("given spin", "drive torque of spin", 25),
+             load = line("load spin", "load on spin", 25),
+             less = line("drive spin", "torque less load of spin", 0);
+  REQUIRE(given.size() == run.time.size());
+  REQUIRE(load.size() == given.size());
+  REQUIRE(less.size() == given.size());
+  const CoordinateTrack& slide = track(run, "slide");
+  for (const std::size_t i : {std::size_t{0}, given.size() / 2, given.size() - 1}) {
+    CHECK(given[i][1] == Approx(7500 * (slide.value[i] - 0.15)).margin(1e-9)); // the engine's law
+    CHECK(load[i][1] == 25);
+    CHECK(less[i][1] == Approx(given[i][1] - 25).margin(1e-9));
+  }
+  // A drive at a given speed has one torque.
+  open_document(app.session, Document(shipped("governor")));
+  robot.frames(4);
+  robot.key('M');
+  robot.frames(3);
+  std::vector<std::string> drives;
+  for (const MotionQuantity& each : motion_quantities(run_of(app)))
+    if (std::string_view(each.group) == "Drives") drives.push_back(each.title);
+  CHECK(drives == std::vector<std::string>{"drive torque of spin"});
+}
+
 TEST_CASE("the state that is shown can be kept and started from") {
   MotionRobot robot;
   App& app = robot.app;

@@ -6,6 +6,7 @@
 #include "app/document/turns.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/ui/panel_list.hpp"
+#include "app/ui/widgets/quantity_field.hpp"
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 
@@ -14,6 +15,47 @@
 
 using namespace flyball;
 using namespace flyball::test;
+
+TEST_CASE("a number that has no room is not longer for it") {
+  Desk d;
+  const Ui& ui = d.app.ui;
+  const ImFont& font = *ui.fonts.digits;
+  const auto width = [&](const char* text) { return font.CalcTextSizeA(font.FontSize, 1e9f, 0, text).x; };
+  CHECK(fitting_text(ui, 1000, width("1000") - 0.25f) == "1000"); // of a room that was made for it
+  CHECK(fitting_text(ui, 1000, width("10")) == "1000");           // "1e+03" is longer
+  CHECK(fitting_text(ui, 1234567, width("1.23e+06")) == "1234567");
+  CHECK(fitting_text(ui, 11.0174123, width("11.017")) == "11.017");
+  CHECK(fitting_text(ui, 11.0174123, width("1")) == "11");
+  CHECK(fitting_text(ui, 1e-7 / 3, width("3.333e-08")) == "3.333e-08");
+}
+
+TEST_CASE("below a slider a long name leaves the rate its room") {
+  Desk d;
+  d.build();
+  d.pick(PartKind::joint, "arm1");
+  const std::string name = "arm1 of the rather lengthy demonstration apparatus in room 12b";
+  d.enter("inspector/name", "  " + name + " "); // blanks at its ends nobody sees
+  REQUIRE(joint_index(d.m(), name) >= 0);
+  set_mode(d.app.session, Mode::explore);
+  d.frames(3);
+  const WidgetRect label = d.widget("parameters/joints.spin.drive.speed/rate/name"),
+                   line = d.widget("parameters/joints.spin.drive.speed/rate");
+  CHECK(label.from.x >= line.from.x - 1);
+  CHECK(label.to.x < line.to.x - 100); // "-2.9 °/(rad/s)" and the margin
+}
+
+TEST_CASE("a name of blanks is none") {
+  Desk d;
+  d.build();
+  d.pick(PartKind::joint, "arm1");
+  d.enter("inspector/name", "   ");
+  CHECK(joint_index(d.m(), "arm1") >= 0);
+  CHECK(d.app.ui.fields.typing.mistake.find("not empty") != std::string::npos);
+  d.key(key_escape);
+  d.enter("inspector/name", "arm2 "); // looks like the other
+  CHECK(joint_index(d.m(), "arm1") >= 0);
+  CHECK(d.app.ui.fields.typing.mistake.find("already") != std::string::npos);
+}
 
 TEST_CASE("an expression is typed where a number is, and a number over it") {
   Desk d("governor_parametric");

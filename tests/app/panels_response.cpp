@@ -106,6 +106,11 @@ TEST_CASE("without being asked for there is no response curve") {
   CHECK(robot.app.ui.widgets.count("plot/response/area") == 0);
 }
 
+TEST_CASE("a speed that follows from the drive's is not what the curve shows first") {
+  ResponseRobot robot("governor_bearing"); // whose collar stands in a bearing on the turning sleeve
+  CHECK(robot.state().choice.quantity == "value slide");
+}
+
 TEST_CASE("the curve of the governor goes through what solves find at several speeds") {
   ResponseRobot robot;
   ResponseState& state = robot.state();

@@ -64,6 +64,21 @@ TEST_CASE("a band is read between its points, and not where it is broken") {
   CHECK_FALSE(nearest_along(plot, {}, layout, 100, 100)); // nothing is dragged along its edges
 }
 
+TEST_CASE("a label keeps off the edges of a band, which its ground would cover") {
+  Plot plot;
+  plot.x.range = PlotRange{0, 4};
+  plot.y.range = PlotRange{0, 5};
+  plot.bands.push_back({"range", {{0, 1, 3}, {4, 1, 3}}});
+  plot.marks.push_back({{2, 2.9}, "fold"});
+  const PlotLayout layout = layout_of(plot);
+  REQUIRE(layout.marks.size() == 1);
+  REQUIRE(layout.marks[0].label);
+  const PlotBox& box = layout.marks[0].label->box;
+  const double edge = layout.y.pixel(3);
+  CHECK((box.bottom < edge || box.top > edge));
+  CHECK_FALSE(layout.marks[0].label->backed);
+}
+
 TEST_CASE("on a logarithmic axis bars stand on the frame") {
   Plot plot = banded();
   plot.y.logarithmic = true;

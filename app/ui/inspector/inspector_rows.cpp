@@ -265,6 +265,17 @@ float row_label(const Ui& ui, const std::string& label, const char* help) {
   return std::max(width - labels - margin_width(ui), 20 * ui.scale);
 }
 
+namespace {
+
+// Without blanks at its ends: nobody sees them, and two names that differ in them alone look the same.
+std::string without_ends(const std::string& name) {
+  const std::size_t first = name.find_first_not_of(' ');
+  return first == std::string::npos ? std::string()
+                                    : name.substr(first, name.find_last_not_of(' ') - first + 1);
+}
+
+} // namespace
+
 bool name_field(Session& session, Ui& ui, const std::string& widget, const Part& part, float width) {
   TextField field{.name = widget,
                   .text = part.name,
@@ -272,7 +283,7 @@ bool name_field(Session& session, Ui& ui, const std::string& widget, const Part&
                       [&session, part](const std::string& typed) {
                         try {
                           Mechanism copy = session.mechanism();
-                          rename_part(copy, part, typed);
+                          rename_part(copy, part, without_ends(typed));
                           return std::string();
                         } catch (const SceneError& error) {
                           return error.expected();
@@ -280,10 +291,11 @@ bool name_field(Session& session, Ui& ui, const std::string& widget, const Part&
                       },
                   .take =
                       [&session, part](const std::string& typed) {
-                        edit(session, "Rename " + part.name + " to " + typed,
+                        const std::string name = without_ends(typed);
+                        edit(session, "Rename " + part.name + " to " + name,
                              [&](Mechanism& mechanism, Selection& selection) {
-                               rename_part(mechanism, part, typed);
-                               std::ranges::replace(selection.parts, part, Part{part.kind, typed});
+                               rename_part(mechanism, part, name);
+                               std::ranges::replace(selection.parts, part, Part{part.kind, name});
                              });
                       }};
   return text_field(session, ui, field, width);

@@ -168,9 +168,13 @@ float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size
   const Ui& ui = context.ui;
   const ViewState& state = context.view;
   const float s = ui.scale, left = view.x + view.width - 10 * s - size.x;
-  const auto explored = ui.widgets.find("explored"); // a chip at the bottom, as the status is
-  const float bottom =
-      explored == ui.widgets.end() ? view.y + view.height - 44 * s : explored->second.from.y - 14 * s;
+  // Chips at the bottom: the status, which may take several lines, and above it what is explored.
+  const auto explored = ui.widgets.find("explored"), status = ui.widgets.find("status");
+  float bottom = view.y + view.height - 44 * s;
+  if (explored != ui.widgets.end())
+    bottom = explored->second.from.y - 14 * s;
+  else if (status != ui.widgets.end())
+    bottom = std::min(bottom, status->second.from.y - 8 * s);
   const float upper = view.y + 10 * s, lower = bottom - size.y;
   if (lower <= upper) return upper;
   if (ImGui::GetIO().MouseWheel != 0) zoomed_ = {state.camera, rows};
@@ -220,6 +224,7 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
   ImGui::SetNextWindowPos(
       {std::round(view.x + view.width - 10 * s), std::round(top(context, view, size, shown.size()))},
       ImGuiCond_Always, {1, 0});
+  ImGui::SetNextWindowSize(size); // a window that finds its own is a frame behind what is in it
   ImGui::SetNextWindowBgAlpha(0.88f);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 5 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
@@ -228,8 +233,7 @@ void Legend::draw(const ViewContext& context, const PanelRect& view, bool folds)
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {6 * s, gap});
   ImGui::Begin("legend", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
-                   ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   const ImVec2 corner = ImGui::GetWindowPos();
   context.ui.widgets["legend frame"] = {corner, {corner.x + size.x, corner.y + size.y}};
   ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -218,12 +218,12 @@ void problem_banner(Session& session, Ui& ui, const CommandRunner& commands, con
   ImGui::SetNextWindowSize({width, 0});
   begin_card("problem", s, {16 * s, 14 * s});
   ImGui::PushFont(ui.fonts.strong);
-  ImGui::TextColored(colors.bad, "%s  The scene cannot be opened", icon::warning);
+  paragraph(std::string(icon::warning) + "  The scene cannot be opened", colors.bad);
   ImGui::PopFont();
   paragraph(session.problem, colors.text);
   ImGui::Dummy({0, 2 * s});
   if (text_button(ui, "problem/close", "Keep the open scene")) session.problem.clear();
-  ImGui::SameLine();
+  beside_or_below("Open another…");
   if (text_button(ui, "problem/open", "Open another…")) {
     session.problem.clear();
     commands.run("file.open");

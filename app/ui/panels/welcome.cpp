@@ -7,6 +7,9 @@
 #include "app/ui/widgets/card.hpp"
 #include "app/ui/widgets/widgets.hpp"
 
+#include <imgui_internal.h>
+
+#include <algorithm>
 #include <array>
 
 namespace flyball {
@@ -30,27 +33,42 @@ constexpr std::array first_steps{
               {nullptr, nullptr, nullptr}},
 };
 
+// Where the strip of tools ended in the last frame, and a gap: a card is begun before it.
+float right_of_tools(float otherwise, float gap) {
+  const ImGuiWindow* tools = ImGui::FindWindowByName("tools");
+  return tools && tools->WasActive ? tools->Pos.x + tools->Size.x + gap : otherwise;
+}
+
 } // namespace
 
 void welcome(const Session& session, Ui& ui, const ToolState& tool, const DialogState& dialog,
              const CommandRunner& commands, const PanelRect& view) {
-  if (!session.mechanism().bodies.empty() || tool.tool != Tool::select || dialog.showing) return;
+  if (!session.mechanism().bodies.empty() || tool.tool != Tool::select || dialog.showing ||
+      !session.problem.empty())
+    return;
   const UiColors& colors = colors_of(ui);
-  const float s = ui.scale, width = std::min(430 * s, view.width - 90 * s);
-  ImGui::SetNextWindowPos({view.x + view.width / 2, view.y + view.height / 2}, ImGuiCond_Always,
-                          {0.5f, 0.5f});
-  ImGui::SetNextWindowSize({width, 0});
-  begin_card("welcome", s, {20 * s, 16 * s});
+  const float s = ui.scale, right = view.x + view.width - 10 * s;
+  const float left = right_of_tools(view.x + 10 * s, 10 * s), middle = view.y + view.height / 2;
+  // Where there is no room for all of it: titles and two buttons, beside the tools.
+  const bool narrow = right - left < 340 * s || view.height < 420 * s;
+  if (narrow) {
+    ImGui::SetNextWindowPos({left, middle}, ImGuiCond_Always, {0, 0.5f});
+    ImGui::SetNextWindowSize({right - left, 0});
+  } else {
+    ImGui::SetNextWindowPos({view.x + view.width / 2, middle}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({std::min(430 * s, view.width - 90 * s), 0});
+  }
+  begin_card("welcome", s, narrow ? ImVec2(12 * s, 10 * s) : ImVec2(20 * s, 16 * s));
   heading(ui, "Build a mechanism");
   for (const FirstStep& step : first_steps) {
     ImGui::Dummy({0, 3 * s});
     ImGui::PushFont(ui.fonts.strong);
     ImGui::TextUnformatted(step.title);
     ImGui::PopFont();
-    paragraph(step.text, colors.dim);
+    if (!narrow) paragraph(step.text, colors.dim);
     bool first = true;
     for (const char* id : step.commands) {
-      if (!id) continue;
+      if (!id || narrow) continue; // there they are tools
       if (!first) ImGui::SameLine();
       first = false;
       if (text_button(ui, std::string("welcome/") + id, command(id).title)) commands.run(id);
@@ -59,7 +77,7 @@ void welcome(const Session& session, Ui& ui, const ToolState& tool, const Dialog
   }
   ImGui::Dummy({0, 6 * s});
   if (text_button(ui, "welcome/examples", "Start from an example…", true)) commands.run("file.examples");
-  ImGui::SameLine();
+  beside_or_below("Open…");
   if (text_button(ui, "welcome/open", "Open…")) commands.run("file.open");
   paragraph("Ctrl+P finds every command, ? lists the keys.", colors.dim);
   ImGui::End();

@@ -31,4 +31,10 @@ void begin_chip(const char* name, float scale, float rounding, ImVec2 padding) {
   ImGui::PopStyleVar();
 }
 
+void beside_or_below(const char* words) {
+  const float button = ImGui::CalcTextSize(words).x + 2 * ImGui::GetStyle().FramePadding.x;
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < button) ImGui::NewLine();
+}
+
 } // namespace flyball

@@ -334,15 +334,7 @@ float digits_width(const Ui& ui, const std::string& text) {
   return digits->CalcTextSizeA(digits->FontSize, 1e9f, 0, text.c_str()).x;
 }
 
-// As many digits as there is room for, nine at most.
-std::string fitting_text(const Ui& ui, double value, float room) {
-  std::string text;
-  for (int digits = 9; digits >= 3; --digits) {
-    text = short_text(value, digits);
-    if (digits_width(ui, text) <= room) break;
-  }
-  return text;
-}
+constexpr float rounding = 0.5f; // pixels, of a room that was made for a text
 
 float field_padding(const Ui& ui) {
   return 6 * ui.scale;
@@ -371,7 +363,7 @@ void draw_resting(const Ui& ui, const QuantityField& field, const ShownNumber& s
   list.PushClipRect(from, to, true);
   const ImVec4& color = field.standard ? colors.dim : colors.text;
   if (given) list.AddText({x - sign, y}, packed(colors.accent), "=");
-  const bool fits = words.empty() ? digits_width(ui, text) <= room : words_width <= room;
+  const bool fits = words.empty() ? digits_width(ui, text) <= room + rounding : words_width <= room;
   if (!words.empty())
     list.AddText({x, y}, packed(colors.dim), cut_to(words, fits ? room : room + behind).c_str());
   else
@@ -503,6 +495,16 @@ bool margin_button(Ui& ui, const std::string& name, const char* icon, const char
 
 float label_width(const Ui& ui) {
   return std::clamp(0.34f * ImGui::GetContentRegionAvail().x, 76 * ui.scale, 130 * ui.scale);
+}
+
+std::string fitting_text(const Ui& ui, double value, float room) {
+  std::string shortest = short_text(value, 9);
+  for (int digits = 9; digits >= 3; --digits) {
+    std::string text = short_text(value, digits);
+    if (digits_width(ui, text) <= room + rounding) return text;
+    if (text.size() < shortest.size()) shortest = std::move(text);
+  }
+  return shortest;
 }
 
 float resting_width(const Session& session, const Ui& ui, double value, const std::string& unit) {

@@ -40,6 +40,9 @@ struct QuantityField {
 
 // Pixels that a field needs for its number at rest with up to six digits; with less room it drops digits.
 float resting_width(const Session& session, const Ui& ui, double value, const std::string& unit);
+// As many digits as there is room for (pixels), nine at most; where there is room for none, the shortest,
+// which may have more digits ("1000", "1e+03").
+std::string fitting_text(const Ui& ui, double value, float room);
 // Without a label.
 void quantity_field(Session& session, Ui& ui, const QuantityField& field, float width);
 // With its label, the pin, and for an optional number that is given a way back: `reset` then makes it absent.

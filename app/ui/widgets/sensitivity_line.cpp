@@ -110,9 +110,11 @@ void sensitivity_line(const Session& session, Ui& ui, ShownRates& all, const Par
   x -= number_width;
   list.AddText(digits, digit_size, {x, from.y + digits_drop(ui) * small_text}, packed(colors.dim),
                number.c_str());
-  const float label_width = text->CalcTextSizeA(size, 1e9f, 0, most.name.c_str()).x;
-  x = std::max(from.x, x - 6 * ui.scale - label_width);
-  list.AddText(text, size, {x, from.y}, packed(colors.dim), most.name.c_str());
+  const float room = std::max(0.f, x - 6 * ui.scale - from.x);
+  const std::string label = cut_to(most.name, room / small_text);
+  x = from.x + room - text->CalcTextSizeA(size, 1e9f, 0, label.c_str()).x;
+  list.AddText(text, size, {x, from.y}, packed(colors.dim), label.c_str());
+  ui.widgets[name + "/name"] = {{x, from.y}, {from.x + room, from.y + height}};
   list.PopClipRect();
   if (!ImGui::IsItemHovered()) return;
   constexpr std::size_t most_lines = 12;

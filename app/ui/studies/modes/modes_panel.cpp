@@ -88,7 +88,18 @@ std::string mode_help(const VibrationMode& mode, const std::optional<Whirl>& whi
   return text;
 }
 
-void mode_row(Session& session, Ui& ui, std::size_t index, const FoundModes& found, double largest) {
+// The list's columns after the number, in their order.
+enum class ModeColumn { hertz, radians, damping, growth };
+
+std::string mode_text(const VibrationMode& mode, ModeColumn column, double largest) {
+  if (column == ModeColumn::growth) return some_digits(mode.eigenvalue.real(), largest, 4);
+  if (!mode.oscillates()) return "–";
+  if (column == ModeColumn::damping) return some_digits(mode.damping_ratio, 1, 3);
+  return short_text(column == ModeColumn::hertz ? hertz(mode.natural_frequency) : mode.natural_frequency, 4);
+}
+
+void mode_row(Session& session, Ui& ui, std::size_t index, const FoundModes& found, double largest,
+              const std::vector<ModeColumn>& listed) {
   const VibrationMode& mode = found.modes[index];
   const UiColors& colors = colors_of(ui);
   const bool chosen = session.study.modes.chosen == index, bad = grows(mode);
@@ -117,37 +128,51 @@ void mode_row(Session& session, Ui& ui, std::size_t index, const FoundModes& fou
                      : chosen ? icon::eye
                               : std::to_string(index + 1).c_str());
   const ImVec4& color = bad ? colors.bad : colors.text;
-  const bool swings = mode.oscillates();
-  const std::array<std::string, 4> values{swings ? short_text(hertz(mode.natural_frequency), 4) : "–",
-                                          swings ? short_text(mode.natural_frequency, 4) : "–",
-                                          swings ? some_digits(mode.damping_ratio, 1, 3) : "–",
-                                          some_digits(mode.eigenvalue.real(), largest, 4)};
-  for (const std::string& value : values)
-    if (ImGui::TableNextColumn()) right_digits(ui, value, color);
+  for (const ModeColumn column : listed)
+    if (ImGui::TableNextColumn()) right_digits(ui, mode_text(mode, column, largest), color);
 }
 
 void list(Session& session, Ui& ui, const FoundModes& found, float height) {
   const UiColors& colors = colors_of(ui);
-  constexpr std::array titles{"", "Natural [Hz]", "[rad/s]", "Damping", "Real part [1/s]"};
-  constexpr std::array helps{
-      "", "Of the undamped motion with this shape.", "Of the undamped motion with this shape.",
-      "The damping ratio: 0 swings for ever, 1 does not swing at all, below 0 it grows.",
-      "Of the eigenvalue: disturbances go as e to this times the time. Growing ones are marked."};
-  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {4 * ui.scale, 2 * ui.scale});
+  struct Shown {
+    ModeColumn column;
+    const char *title, *help;
+    float width; // points
+  };
+  constexpr std::array all{
+      Shown{ModeColumn::hertz, "Natural [Hz]", "Of the undamped motion with this shape.", 78},
+      Shown{ModeColumn::radians, "[rad/s]", "Of the undamped motion with this shape.", 70},
+      Shown{ModeColumn::damping, "Damping",
+            "The damping ratio: 0 swings for ever, 1 does not swing at all, below 0 it grows.", 70},
+      Shown{ModeColumn::growth, "Real part [1/s]",
+            "Of the eigenvalue: disturbances go as e to this times the time. Growing ones are marked.", 88}};
+  constexpr float number_width = 20, cell_padding = 4; // points
+  float needed = number_width + 2 * cell_padding;
+  for (const Shown& each : all)
+    needed += each.width + 2 * cell_padding;
+  // Of a narrow list the same frequency once more is what can be spared: pointing at the row tells it.
+  const bool narrow = ImGui::GetContentRegionAvail().x < needed * ui.scale + ImGui::GetStyle().ScrollbarSize;
+  std::vector<ModeColumn> listed;
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, {cell_padding * ui.scale, 2 * ui.scale});
   ImGui::PushStyleColor(ImGuiCol_TableHeaderBg, colors.panel);
   ImGui::PushStyleColor(ImGuiCol_TableBorderLight, colors.border);
-  if (ImGui::BeginTable("modes", 5, table_flags, {0, height})) {
+  if (ImGui::BeginTable("modes", narrow ? 4 : 5, table_flags, {0, height})) {
     ImGui::TableSetupScrollFreeze(0, 1);
-    constexpr std::array widths{20.f, 78.f, 70.f, 70.f, 88.f};
-    for (std::size_t i = 0; i < titles.size(); ++i)
-      ImGui::TableSetupColumn(titles[i], ImGuiTableColumnFlags_WidthFixed, widths[i] * ui.scale);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, number_width * ui.scale);
+    for (const Shown& each : all) {
+      if (narrow && each.column == ModeColumn::radians) continue;
+      ImGui::TableSetupColumn(each.title, ImGuiTableColumnFlags_WidthFixed, each.width * ui.scale);
+      listed.push_back(each.column);
+    }
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
-    for (std::size_t i = 1; i < titles.size(); ++i) {
-      if (!ImGui::TableSetColumnIndex(static_cast<int>(i))) continue;
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+      const Shown& shown = *std::ranges::find(all, listed[i], &Shown::column);
+      if (!ImGui::TableSetColumnIndex(static_cast<int>(i) + 1)) continue;
       ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.f, ImGui::GetContentRegionAvail().x -
-                                                                      ImGui::CalcTextSize(titles[i]).x));
-      ImGui::TextColored(colors.dim, "%s", titles[i]);
-      help_on_hover(helps[i]);
+                                                                      ImGui::CalcTextSize(shown.title).x));
+      ImGui::TextColored(colors.dim, "%s", shown.title);
+      note_widget(ui.widgets, std::string("modes/title/") + shown.title, KeyUse::none);
+      help_on_hover(shown.help);
     }
     double largest = 0;
     for (const VibrationMode& mode : found.modes)
@@ -156,7 +181,7 @@ void list(Session& session, Ui& ui, const FoundModes& found, float height) {
     clipper.Begin(static_cast<int>(found.modes.size()));
     while (clipper.Step())
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
-        mode_row(session, ui, static_cast<std::size_t>(i), found, largest);
+        mode_row(session, ui, static_cast<std::size_t>(i), found, largest, listed);
     ImGui::EndTable();
   }
   ImGui::PopStyleColor(2);
@@ -401,17 +426,19 @@ bool modes_list(Session& session, Ui& ui, CampbellView& drawn, ImVec2 beside, co
   return told;
 }
 
-// Drive, range and unit, in one line.
+// Drive, range and unit, in one line where there is room for it.
 void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::vector<std::string>& speeds,
                       const std::string& drive) {
   CampbellState& campbell = session.study.modes.campbell;
   const float s = ui.scale;
-  constexpr float others = 360; // points, of the range and the units
+  constexpr float others = 360, least = 70; // points, of the range and the units; of the drive
   const float room = ImGui::GetContentRegionAvail().x;
-  const bool narrow = room < (others + 70) * s; // then "from" goes without saying
-  ImGui::SetNextItemWidth(std::clamp(room - others * s, 70 * s, 140 * s));
+  const bool narrow = room < (others + least) * s; // then "from" goes without saying
+  // Then the only drive does so, too; one of several is chosen in a line of its own.
+  const bool tight = room < others * s, choice = !tight || speeds.size() > 1;
+  if (choice) ImGui::SetNextItemWidth(tight ? room : std::clamp(room - others * s, least * s, 140 * s));
   ImGui::PushStyleColor(ImGuiCol_Button, colors_of(ui).raised);
-  if (ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
+  if (choice && ImGui::BeginCombo("##drive", parameter_phrase(drive).c_str())) {
     for (const std::string& speed : speeds) {
       if (ImGui::Selectable(parameter_phrase(speed).c_str(), speed == drive) && speed != drive) {
         campbell.drive = speed;
@@ -422,15 +449,16 @@ void campbell_choices(Session& session, Ui& ui, CampbellView& drawn, const std::
       if (speed == drive) mark_chosen(ui.widgets);
     }
     ImGui::EndCombo();
-  } else {
+  } else if (choice) {
     note_widget(ui.widgets, "campbell/drive");
   }
   ImGui::PopStyleColor();
-  help_on_hover("The number along the axis: the speed of a drive, or a number that its expression uses.");
+  if (choice)
+    help_on_hover("The number along the axis: the speed of a drive, or a number that its expression uses.");
   const PlotRange range = campbell_range(session, drive);
   const std::string unit = parameter_unit(session.mechanism(), drive);
   const auto end = [&](const char* name, const char* word, std::size_t which) {
-    ImGui::SameLine(0, 10 * s);
+    if (which > 0 || !tight) ImGui::SameLine(0, 10 * s);
     if (*word) {
       ImGui::AlignTextToFramePadding();
       ImGui::TextColored(colors_of(ui).dim, "%s", word);

@@ -73,6 +73,14 @@ std::vector<double> changes(std::vector<double> values) {
   return values;
 }
 
+// Of a drive by torque, whose track tells what it gives less the load.
+std::vector<double> given_torque(const DriveTrack& drive) {
+  std::vector<double> given = drive.torque;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    given[i] += drive.load[i];
+  return given;
+}
+
 // The quantity in one run; no lines where the run has none of that name.
 ShownRun shown_quantity(const Run& run, const std::string& key) {
   ShownRun out;
@@ -82,10 +90,14 @@ ShownRun shown_quantity(const Run& run, const std::string& key) {
     if (key == "rate " + name) return {speed_words(words), c.angle ? "rad/s" : "m/s", {{"", c.rate}}};
   }
   for (const DriveTrack& d : run.drives) {
-    if (key == "drive " + coordinate_label(d))
-      return {(d.angle ? "drive torque of " : "drive force of ") + coordinate_words(d),
-              d.angle ? "N m" : "N",
-              {{"", d.torque}}};
+    const std::string name = coordinate_label(d), words = coordinate_words(d), unit = d.angle ? "N m" : "N",
+                      kind = d.angle ? "torque" : "force";
+    const bool apart = !d.load.empty(); // as the response has them
+    if (key == "drive " + name)
+      return {(apart ? kind + " less load of " : "drive " + kind + " of ") + words, unit, {{"", d.torque}}};
+    if (apart && key == "given " + name)
+      return {"drive " + kind + " of " + words, unit, {{"", given_torque(d)}}};
+    if (apart && key == "load " + name) return {"load on " + words, unit, {{"", d.load}}};
   }
   for (const MeasureTrack& m : run.measures)
     if (key == "measure " + m.name) return {m.name, m.unit, {{"", m.value}}};
@@ -124,8 +136,13 @@ std::optional<double> steady_value(const Session& session, const std::string& ke
   }
   for (const MeasureSolution& m : s.measures)
     if (key == "measure " + m.name) return m.value;
-  for (const DriveTorque& d : s.drive_torques)
-    if (key == "drive " + coordinate_label(d) && !d.varying) return d.value;
+  for (const DriveTorque& d : s.drive_torques) {
+    if (d.varying) continue;
+    const std::string name = coordinate_label(d);
+    if (key == "drive " + name) return d.value;
+    if (d.given && key == "given " + name) return d.given->torque;
+    if (d.given && key == "load " + name) return d.given->load;
+  }
   for (const Reaction& r : s.reactions) {
     if (r.varying) continue;
     if (key == "force " + r.joint) return r.force.norm();
@@ -171,8 +188,13 @@ std::vector<MotionQuantity> motion_quantities(const Run& run) {
     if (!c.driven) add("rate " + coordinate_label(c), "Speeds");
   for (const MeasureTrack& m : run.measures)
     add("measure " + m.name, "Measures");
-  for (const DriveTrack& d : run.drives)
+  for (const DriveTrack& d : run.drives) {
+    if (!d.load.empty()) {
+      add("given " + coordinate_label(d), "Drives");
+      add("load " + coordinate_label(d), "Drives");
+    }
     add("drive " + coordinate_label(d), "Drives");
+  }
   add("energies", "Energy");
   if (!run.energy.jacobi.empty()) add("jacobi", "Energy");
   add("balance", "Energy");
