@@ -6,6 +6,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
+#include "engine/study/counted_values.hpp"
 #include "engine/study/steady_map.hpp"
 
 #include <algorithm>
@@ -213,22 +214,22 @@ std::optional<double> crest_beside(const Mechanism& mechanism, const FreeNumber&
   return box.climb(0, sense, left).state.values[0];
 }
 
-// Takes into an extent what a branch reaches between its points.
+// Takes into an extent what a branch reaches between its points, whose values are given.
 void take_crests(const Mechanism& mechanism, const FreeNumber& share,
-                 const std::vector<ResponsePoint>& points, const std::atomic<bool>* cancel,
-                 BandExtent& extent) {
+                 const std::vector<ResponsePoint>& points, const std::vector<double>& values,
+                 const std::atomic<bool>* cancel, BandExtent& extent) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
     for (const double sense : {1., -1.}) {
       double& end = sense > 0 ? extent.high : extent.low;
-      const double value = told_value(points[i], extent.name),
-                   before = sense * (value - told_value(points[i - 1], extent.name)),
-                   after = sense * (value - told_value(points[i + 1], extent.name));
+      const double before = sense * (values[i] - values[i - 1]), after = sense * (values[i] - values[i + 1]);
       const double beyond = std::max(before, after); // less than this between them
-      if (!(before > 0) || !(after > 0) || !(sense * (value - end) + beyond > 0)) continue;
-      // A jump is an angle's that is told between -pi and pi.
+      if (!(before > 0) || !(after > 0) || !(sense * (values[i] - end) + beyond > 0)) continue;
+      // A jump is a measured angle's, told between -pi and pi.
       if (extent.unit == "rad" && beyond > std::numbers::pi) continue;
       const auto crest = crest_beside(mechanism, share, points, i, extent.name, sense, cancel);
-      if (crest && sense * (*crest - end) > 0) end = *crest;
+      if (!crest) continue;
+      const double top = *crest + values[i] - told_value(points[i], extent.name); // turns counted likewise
+      if (sense * (top - end) > 0) end = top;
     }
 }
 
@@ -250,18 +251,23 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   } while (diagram->branches.front().points.size() < few_points && options.largest_step > least_step);
   if (!diagram) return false;
   // An end that is none of the share's: it goes on, as a pendulum does that friction holds at any angle.
-  std::vector<const ResponsePoint*> open;
+  struct End {
+    std::size_t branch, point;
+  };
+  std::vector<End> open;
   std::string why;
-  for (const ResponseBranch& branch : diagram->branches)
+  for (std::size_t b = 0; b < diagram->branches.size(); ++b)
     for (const bool last : {false, true}) {
+      const ResponseBranch& branch = diagram->branches[b];
       const ResponsePoint& end = last ? branch.points.back() : branch.points.front();
       // One that was followed off a crossing begins on what is known.
       const std::string& reason = last ? branch.end : branch.begin;
       if (!branch.connected || reason.empty() || reason == closed_branch) continue;
       if (end.parameter == share.from || end.parameter == share.to) continue;
-      open.push_back(&end);
+      open.push_back({b, last ? branch.points.size() - 1 : 0});
       why = reason;
     }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> round, farther;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
@@ -269,8 +275,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     extent.error.reset();
     extent.shares_low.clear();
     extent.shares_high.clear();
-    const auto take = [&](const ResponsePoint& at) {
-      const double value = told_value(at, extent.name);
+    const auto take = [&](double value, const ResponsePoint& at) {
       if (value < extent.low) {
         extent.low = value;
         extent.stable_low = at.stable;
@@ -280,22 +285,29 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
         extent.stable_high = at.stable;
       }
     };
-    for (const ResponseBranch& branch : diagram->branches)
-      if (branch.connected) std::ranges::for_each(branch.points, take);
-    for (const SpecialPoint& special : diagram->special)
-      if (diagram->branches[static_cast<std::size_t>(special.branch)].connected) take(special.at);
-    for (const ResponseBranch& branch : diagram->branches)
-      if (branch.connected) take_crests(mechanism, share, branch.points, cancel, extent);
+    const CountedValues values = counted_values(mechanism, *diagram, point, extent.name, extent.value);
+    for (std::size_t b = 0; b < values.branches.size(); ++b)
+      for (std::size_t i = 0; i < values.branches[b].size(); ++i)
+        take(values.branches[b][i], diagram->branches[b].points[i]);
+    for (std::size_t s = 0; s < values.special.size(); ++s)
+      take(values.special[s], diagram->special[s].at);
+    for (std::size_t b = 0; b < values.branches.size(); ++b)
+      if (!values.branches[b].empty())
+        take_crests(mechanism, share, diagram->branches[b].points, values.branches[b], cancel, extent);
     const double width = extent.high - extent.low;
-    bool unbounded = false;
-    for (const ResponsePoint* end : open) {
-      const double value = told_value(*end, extent.name);
-      if (value == extent.low && width > 0) extent.low = -std::numeric_limits<double>::infinity();
-      if (value == extent.high && width > 0) extent.high = std::numeric_limits<double>::infinity();
+    bool unbounded = values.goes_round;
+    if (values.goes_round) {
+      extent.low = -infinity;
+      extent.high = infinity;
+    }
+    for (const End& end : open) {
+      const double value = values.branches[end.branch][end.point];
+      if (value == extent.low && width > 0) extent.low = -infinity;
+      if (value == extent.high && width > 0) extent.high = infinity;
       unbounded = unbounded || !std::isfinite(extent.low) || !std::isfinite(extent.high);
     }
-    if (unbounded)
-      (extent.unit == "rad" && width > 2 * std::numbers::pi ? round : farther).push_back(extent.name);
+    const bool turns = extent.unit == "rad" && (values.goes_round || width > 2 * std::numbers::pi);
+    if (unbounded) (turns ? round : farther).push_back(extent.name);
   }
   if (!round.empty()) band.message = "Friction holds it at any angle: " + word_list(round) + " can go round.";
   if (!farther.empty())
@@ -305,14 +317,6 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
 }
 
 } // namespace
-
-double told_value(const ResponsePoint& point, const std::string& name) {
-  for (const CoordinateSolution& c : point.coordinates)
-    if (const auto number = found_number(c); number && number->name == name) return number->value;
-  for (const MeasureSolution& m : point.measures)
-    if (m.name == name) return m.value.value_or(std::nan(""));
-  return std::nan("");
-}
 
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options) {
   FrictionBand band;
