@@ -2,6 +2,7 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/unit.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
@@ -59,6 +60,13 @@ void set_absent_loads(Mechanism& inside, std::span<const NumberRange> ranges) {
   }
 }
 
+// A damper by a law whose numbers may change is one that may drive.
+void let_drive(std::vector<Formula>& formulas) {
+  for (Formula& formula : formulas)
+    if (formula.key.starts_with("damping_force") && !ForceLaw(formula.text, damper_variable).names().empty())
+      formula.text = "-" + std::string(damper_variable);
+}
+
 } // namespace
 
 std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<const NumberRange> ranges) {
@@ -80,6 +88,10 @@ std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<con
     return std::nullopt;
   }
   set_absent_loads(*inside, ranges);
+  for (Joint& joint : inside->joints)
+    let_drive(joint.formulas);
+  for (Force& force : inside->forces)
+    let_drive(force.formulas);
   return inside;
 }
 
