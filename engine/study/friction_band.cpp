@@ -23,10 +23,10 @@ using Eigen::VectorXd;
 
 constexpr std::size_t few_points = 5;
 constexpr double least_step = 1e-5; // as BranchOptions::largest_step
-constexpr int parts = 4;            // of a way to a corner, looked at on the way
+constexpr int way_parts = 4;        // of a way to a corner, looked at on the way
 constexpr int most_sweeps = 40;     // of all shares, one after the other
 constexpr double no_gain = 1e-16;   // of an output's size, in a sweep
-constexpr int most_iterations = 60;
+constexpr int most_crest_steps = 60;
 constexpr std::size_t most_outputs = 128;
 
 std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
@@ -92,8 +92,9 @@ class Box {
     SteadyMap::State state = from.state;
     Place last = from;
     bool there = true;
-    for (int part = 1; part <= parts && there; ++part) {
-      const VectorXd to = part == parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / parts);
+    for (int part = 1; part <= way_parts && there; ++part) {
+      const VectorXd to =
+          part == way_parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / way_parts);
       there = map_.walk_to(state, to);
       if (!map_.find_rates(state)) continue;
       add(state);
@@ -179,7 +180,7 @@ class Box {
     const double flat = 1e-12 * std::max(std::abs(at_low), std::abs(at_high));
     RootBracket bracket(low.state.p[j], at_low, high.state.p[j], at_high);
     Place middle = low;
-    for (int i = 0; i < most_iterations && bracket.width() > 1e-8; ++i) {
+    for (int i = 0; i < most_crest_steps && bracket.width() > 1e-8; ++i) {
       interruption_point();
       VectorXd p = middle.state.p;
       p[j] = bracket.next();
