@@ -51,15 +51,24 @@ bool passes_singular_loops(const Problem& problem, const Unknowns& z, Workspace&
   const Eigen::MatrixXd free = loops->right.rightCols(loops->right.cols() - rank);
   const Eigen::VectorXd push = free * (free.transpose() * force);
   if (!(push.norm() > balanced * size)) return false;
-  for (const double side : {aside, -aside}) {
-    Eigen::VectorXd q = z.q;
-    const Eigen::VectorXd step = side / push.norm() * push.cwiseProduct(column);
-    retract<double>(problem.system, step, q);
-    if (!assemble(problem, q, 0, beside)) continue;
-    const Eigen::VectorXd moved = scaled_difference(problem, z.q, q);
-    if (moved.norm() > left * aside && std::abs(force.dot(moved)) > balanced * size * moved.norm())
-      return true;
-  }
+  // Where loops are closed beside it is not known: near the push, or between it and another free direction.
+  const auto leads_on = [&](const Eigen::VectorXd& direction) {
+    if (!(direction.norm() > 0)) return false;
+    for (const double side : {aside, -aside}) {
+      Eigen::VectorXd q = z.q;
+      const Eigen::VectorXd step = side / direction.norm() * direction.cwiseProduct(column);
+      retract<double>(problem.system, step, q);
+      if (!assemble(problem, q, 0, beside)) continue;
+      const Eigen::VectorXd moved = scaled_difference(problem, z.q, q);
+      if (moved.norm() > left * aside && std::abs(force.dot(moved)) > balanced * size * moved.norm())
+        return true;
+    }
+    return false;
+  };
+  if (leads_on(push)) return true;
+  for (Eigen::Index i = 0; i < free.cols(); ++i)
+    for (const double side : {push.norm(), -push.norm()})
+      if (leads_on(push + side * free.col(i))) return true;
   return false;
 }
 

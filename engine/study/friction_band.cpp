@@ -310,7 +310,8 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     const bool turns = extent.unit == "rad" && (values.goes_round || width > 2 * std::numbers::pi);
     if (unbounded) (turns ? round : farther).push_back(extent.name);
   }
-  if (!round.empty()) band.message = "Friction holds it at any angle: " + word_list(round) + " can go round.";
+  if (!round.empty())
+    band.message = "Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
   if (!farther.empty())
     band.message += (band.message.empty() ? "" : " ") + ("Friction holds " + word_list(farther)) +
                     " farther than the band was followed, so that no bound is told: " + why + ".";
