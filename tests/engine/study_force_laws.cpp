@@ -4,6 +4,7 @@
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/value_table.hpp"
 #include "engine/report/analysis.hpp"

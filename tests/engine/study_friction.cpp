@@ -67,7 +67,7 @@ TEST_CASE("the band of an angle goes on beyond half a turn, as that which it han
   // The second rod hangs straight down, whatever friction does to the first.
   const auto two_rods = [](double limit, double stiffness) {
     Mechanism m = rubbing_pendulum(limit);
-    m.bodies.push_back({.name = "second", .mass = 0.2, .position = {0, -0.8, 0}});
+    m.bodies.push_back(body("second", 0.2, {0, -0.8, 0}));
     Joint& hinge = m.joints[0];
     if (stiffness > 0) hinge.coordinates[0].spring = CoordinateSpring{stiffness, 0, "", 0};
     m.joints.push_back(revolute("knee", "bob", "second", {0, -0.5, 0}, {0, 0, 1}));

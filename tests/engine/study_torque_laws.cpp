@@ -16,6 +16,7 @@
 
 using namespace flyball;
 using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 TEST_CASE("a shaft with several steady speeds: all are found, with their eigenvalues", "[torque]") {
