@@ -2,7 +2,6 @@
 
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
-#include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/unit.hpp"
 #include "engine/mechanism/varied_numbers.hpp"
@@ -60,13 +59,6 @@ void set_absent_loads(Mechanism& inside, std::span<const NumberRange> ranges) {
   }
 }
 
-// A damper by a law whose numbers may change is one that may drive.
-void let_drive(std::vector<Formula>& formulas) {
-  for (Formula& formula : formulas)
-    if (formula.key.starts_with("damping_force") && !ForceLaw(formula.text, damper_variable).names().empty())
-      formula.text = "-" + std::string(damper_variable);
-}
-
 } // namespace
 
 std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<const NumberRange> ranges) {
@@ -88,10 +80,6 @@ std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<con
     return std::nullopt;
   }
   set_absent_loads(*inside, ranges);
-  for (Joint& joint : inside->joints)
-    let_drive(joint.formulas);
-  for (Force& force : inside->forces)
-    let_drive(force.formulas);
   return inside;
 }
 

@@ -17,8 +17,7 @@ struct NumberRange {
 // The mechanism with all these numbers inside their ranges and none of them zero, so that a damper that is
 // none at an end, or as the mechanism stands, is among the system's elements; so are dampers, forces and
 // masses that expressions make zero inside, as max(0, n - 6) does, but not everywhere (of some hundred places
-// of the ranges): these are as they are at such a place. Dampers by laws with numbers in them are such that
-// drive, which those may be somewhere. To compile and for nothing else. Nothing where
+// of the ranges): these are as they are at such a place. To compile and for nothing else. Nothing where
 // expressions make no mechanism of such numbers. Throws SceneError for an address that names no number.
 std::optional<Mechanism> inside_ranges(const Mechanism& mechanism, std::span<const NumberRange> ranges);
 

@@ -9,7 +9,7 @@ namespace {
 
 // Whether damping may be negative, so that a minimum of the potential need not be stable.
 bool some_damper_may_drive(const Mechanism& m) {
-  const auto drives = [&](const Formula* law) { return law && !resists_at_rest(m, *law); };
+  const auto drives = [&](const Formula* law) { return law && !resists_at_rest(*law); };
   return std::ranges::any_of(m.joints,
                              [&](const Joint& x) {
                                for (int i = 0; i < static_cast<int>(x.coordinates.size()); ++i)
