@@ -3,6 +3,7 @@
 #include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/search/find_equilibrium.hpp"
+#include "engine/solve/singular_loops.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -201,7 +202,7 @@ class Searcher {
 
   // The equilibrium that a run arrived at, evaluated last, if it is one that is looked for: known or new.
   bool keep(Unknowns z, NewtonOutcome outcome) {
-    if (!same_assembly_mode(p_, w_.kinematics)) return false;
+    if (!same_assembly_mode(p_, w_.kinematics) || passes_singular_loops(p_, z, w_)) return false;
     reach_kept_speeds(z.q);
     const Placement placement = bring_within(p_, report_.ranges, z.q);
     if (placement == Placement::outside) return false;

@@ -1,6 +1,7 @@
 #include "engine/search/steady_state.hpp"
 
 #include "engine/linear/largest.hpp"
+#include "engine/solve/singular_loops.hpp"
 #include "engine/solve/slow_motion.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
@@ -165,6 +166,8 @@ void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from,
   if (found.status == Status::converged) {
     keep_where_started(problem);
     refine_found(problem);
+    if (error.singular_loops && passes_singular_loops(problem, found.z, balance_))
+      found.status = Status::not_converged;
     if (found.unbounded && !is_known(problem, found.z.q, drawn, error.solution)) {
       found.status = Status::not_converged;
       found.remark = Remark::unbounded;

@@ -1,6 +1,7 @@
 #include "engine/solve/refine.hpp"
 
 #include "engine/solve/singular_loops.hpp"
+#include "engine/system/law_sizes.hpp"
 
 #include <bit>
 
@@ -23,16 +24,20 @@ double noise_sign(unsigned pattern, Eigen::Index i) {
   return ((turned ^ static_cast<unsigned>(std::popcount(eight))) & 1U) == 0 ? 1 : -1;
 }
 
-// What the rounding of the residual and of the solution for the step, and equations of redundant loops that
-// disagree, do to each coordinate: the step that noise of this size with arbitrary signs asks for, four times
-// over. `left` (scaled) is the largest force that the step had to balance: a stiff spring's, by its rounded
-// length. Loops mix it with the softest.
-void add_noise(const Problem& problem, double left, double opening, Workspace& w, Eigen::VectorXd& error) {
+// What the rounding of the residual, to double precision of laws, and of the solution for the step, and
+// equations of redundant loops that disagree, do to each coordinate: the step that noise of this size with
+// arbitrary signs asks for, four times over. `left` (scaled) is the largest force that the step had to
+// balance: a stiff spring's, by its rounded length. Loops mix it with the softest.
+void add_noise(const Problem& problem, const Unknowns& z, double left, double opening, Workspace& w,
+               Eigen::VectorXd& error) {
   const double mixed = problem.system.rows > 0 ? std::numeric_limits<double>::epsilon() * left : 0;
+  Eigen::VectorXd& noise = w.projected;
+  noise.setZero(problem.system.nv);
+  add_law_sizes(problem.system, problem.parameters, z.q, w.kinematics, noise);
+  noise = std::numeric_limits<double>::epsilon() * noise + 2 * extended_rounding * w.magnitudes.force;
   for (unsigned pattern = 0; pattern < 4; ++pattern) {
     for (Eigen::Index i = 0; i < w.residual.f.size(); ++i)
-      w.residual.f[i] = noise_sign(pattern, i) *
-                        (2 * extended_rounding * w.magnitudes.force[i] + mixed / problem.scaling.column[i]);
+      w.residual.f[i] = noise_sign(pattern, i) * (noise[i] + mixed / problem.scaling.column[i]);
     for (Eigen::Index i = 0; i < w.residual.phi.size(); ++i)
       w.residual.phi[i] = noise_sign(pattern, i) *
                           (2 * extended_rounding * w.magnitudes.phi[i] + opening / problem.scaling.row[i]);
@@ -354,7 +359,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   if (outcome.linear) // to a root of order n the steps shrink by (n - 1) / n: n - 1 of the last are left
     error = error.cwiseMax(4 * outcome.last_step * problem.scaling.column);
   const bool stepped = w.scaled_step.allFinite();
-  add_noise(problem, left, opening, w, error);
+  add_noise(problem, z, left, opening, w, error);
   if (dense && stepped) add_last_digits(problem, z, *dense, w, error);
   if (dense && dense->constraints().rank() < system.rows && error.allFinite())
     add_shared_loads(problem, z, *dense, w, error);

@@ -12,8 +12,8 @@ std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechan
 }
 
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
-                                           const VariedNumbers& numbers) {
-  if (at.kkt().singular()) return {};
+                                           const VariedNumbers& numbers, bool across) {
+  if (at.kkt().singular() && !across) return {};
   const Problem& problem = at.problem;
   NumberRates rates;
   BalanceRate balance;

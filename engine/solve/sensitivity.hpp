@@ -16,8 +16,9 @@ namespace flyball {
 // for an address that does not exist.
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
                                            std::span<const std::string> addresses);
-// The same of all these numbers of the mechanism, which are found already.
+// The same of all these numbers of the mechanism, which are found already. `across`: also of a state along
+// whose null directions nothing resists; those then stay still.
 std::vector<Eigen::VectorXd> sensitivities(const FactoredState& at, const Mechanism& mechanism,
-                                           const VariedNumbers& numbers);
+                                           const VariedNumbers& numbers, bool across = false);
 
 } // namespace flyball

@@ -1,6 +1,8 @@
 #include "engine/solve/singular_loops.hpp"
 
+#include "engine/kkt/configuration_difference.hpp"
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/largest.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/system/constraint_row.hpp"
@@ -28,6 +30,46 @@ bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) 
   factor_constraints(problem, beside);
   const ConstraintSpace& there = beside.dense.constraints();
   return there.rank() > rank || (there.rank() == rank && least < near && there.least_pivot() > grows * least);
+}
+
+bool passes_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w) {
+  constexpr double grown = 1e4;               // multipliers, beside the forces they are to balance
+  constexpr double lost = 1e-6;               // beside the largest singular value
+  constexpr double aside = 1e-3, left = 0.25; // of the step aside, once loops are closed again
+  constexpr double balanced = 1e-3;           // of all that acts
+  if (!w.matrices(problem) || problem.system.rows == 0 || problem.system.nv == 0) return false;
+  const Eigen::VectorXd& column = problem.scaling.column;
+  Workspace& beside = w.elsewhere();
+  evaluate(problem, {z.q, Eigen::VectorXd::Zero(problem.system.rows)}, 0, beside);
+  const Eigen::VectorXd force = beside.residual.f.cwiseProduct(column); // without multipliers
+  const double size = force.norm();
+  if (!(largest_size(z.lambda.cwiseQuotient(problem.scaling.row)) > grown * size)) return false;
+  factor_constraints(problem, beside);
+  const auto loops = singular_vectors(beside.dense.jacobian());
+  if (!loops || loops->values.size() == 0) return false;
+  const Eigen::Index rank = (loops->values.array() > lost * loops->values[0]).count();
+  const Eigen::MatrixXd free = loops->right.rightCols(loops->right.cols() - rank);
+  const Eigen::VectorXd push = free * (free.transpose() * force);
+  if (!(push.norm() > balanced * size)) return false;
+  // Where loops are closed beside it is not known: near the push, or between it and another free direction.
+  const auto leads_on = [&](const Eigen::VectorXd& direction) {
+    if (!(direction.norm() > 0)) return false;
+    for (const double side : {aside, -aside}) {
+      Eigen::VectorXd q = z.q;
+      const Eigen::VectorXd step = side / direction.norm() * direction.cwiseProduct(column);
+      retract<double>(problem.system, step, q);
+      if (!assemble(problem, q, 0, beside)) continue;
+      const Eigen::VectorXd moved = scaled_difference(problem, z.q, q);
+      if (moved.norm() > left * aside && std::abs(force.dot(moved)) > balanced * size * moved.norm())
+        return true;
+    }
+    return false;
+  };
+  if (leads_on(push)) return true;
+  for (Eigen::Index i = 0; i < free.cols(); ++i)
+    for (const double side : {push.norm(), -push.norm()})
+      if (leads_on(push + side * free.col(i))) return true;
+  return false;
 }
 
 namespace {

@@ -14,6 +14,13 @@ namespace flyball {
 // and factored in the workspace; of large loops, which are factored as sparse ones, it is not known: false.
 bool at_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w);
 
+// Whether a mechanism goes through such a pose, or is so near to it that rounding decides, without being in
+// balance there, as a parallelogram that is flat: what acts is balanced by multipliers alone that grow
+// without bounds, of equations that the loops lose. False where they hold it all the same, as two rods that
+// are straight between fixed points. Of a state that Newton-Raphson arrived at; uses the workspace beside its
+// own.
+bool passes_singular_loops(const Problem& problem, const Unknowns& z, Workspace& w);
+
 // The first of these cut joints (in System::cuts) whose loop is drawn in such a pose, a change point, or so
 // near to it that rounding decides: there it does not tell at which rates it turns with what drives it. Of a
 // mechanism as compile_for_drives() compiles it; of a loop of many coordinates it is not known, and it

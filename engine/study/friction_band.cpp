@@ -6,6 +6,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
+#include "engine/study/counted_values.hpp"
 #include "engine/study/steady_map.hpp"
 
 #include <algorithm>
@@ -22,10 +23,10 @@ using Eigen::VectorXd;
 
 constexpr std::size_t few_points = 5;
 constexpr double least_step = 1e-5; // as BranchOptions::largest_step
-constexpr int parts = 4;            // of a way to a corner, looked at on the way
+constexpr int way_parts = 4;        // of a way to a corner, looked at on the way
 constexpr int most_sweeps = 40;     // of all shares, one after the other
 constexpr double no_gain = 1e-16;   // of an output's size, in a sweep
-constexpr int most_iterations = 60;
+constexpr int most_crest_steps = 60;
 constexpr std::size_t most_outputs = 128;
 
 std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
@@ -91,8 +92,9 @@ class Box {
     SteadyMap::State state = from.state;
     Place last = from;
     bool there = true;
-    for (int part = 1; part <= parts && there; ++part) {
-      const VectorXd to = part == parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / parts);
+    for (int part = 1; part <= way_parts && there; ++part) {
+      const VectorXd to =
+          part == way_parts ? p : VectorXd(from.state.p + part * (p - from.state.p) / way_parts);
       there = map_.walk_to(state, to);
       if (!map_.find_rates(state)) continue;
       add(state);
@@ -178,7 +180,7 @@ class Box {
     const double flat = 1e-12 * std::max(std::abs(at_low), std::abs(at_high));
     RootBracket bracket(low.state.p[j], at_low, high.state.p[j], at_high);
     Place middle = low;
-    for (int i = 0; i < most_iterations && bracket.width() > 1e-8; ++i) {
+    for (int i = 0; i < most_crest_steps && bracket.width() > 1e-8; ++i) {
       interruption_point();
       VectorXd p = middle.state.p;
       p[j] = bracket.next();
@@ -213,22 +215,22 @@ std::optional<double> crest_beside(const Mechanism& mechanism, const FreeNumber&
   return box.climb(0, sense, left).state.values[0];
 }
 
-// Takes into an extent what a branch reaches between its points.
+// Takes into an extent what a branch reaches between its points, whose values are given.
 void take_crests(const Mechanism& mechanism, const FreeNumber& share,
-                 const std::vector<ResponsePoint>& points, const std::atomic<bool>* cancel,
-                 BandExtent& extent) {
+                 const std::vector<ResponsePoint>& points, const std::vector<double>& values,
+                 const std::atomic<bool>* cancel, BandExtent& extent) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i)
     for (const double sense : {1., -1.}) {
       double& end = sense > 0 ? extent.high : extent.low;
-      const double value = told_value(points[i], extent.name),
-                   before = sense * (value - told_value(points[i - 1], extent.name)),
-                   after = sense * (value - told_value(points[i + 1], extent.name));
+      const double before = sense * (values[i] - values[i - 1]), after = sense * (values[i] - values[i + 1]);
       const double beyond = std::max(before, after); // less than this between them
-      if (!(before > 0) || !(after > 0) || !(sense * (value - end) + beyond > 0)) continue;
-      // A jump is an angle's that is told between -pi and pi.
+      if (!(before > 0) || !(after > 0) || !(sense * (values[i] - end) + beyond > 0)) continue;
+      // A jump is a measured angle's, told between -pi and pi.
       if (extent.unit == "rad" && beyond > std::numbers::pi) continue;
       const auto crest = crest_beside(mechanism, share, points, i, extent.name, sense, cancel);
-      if (crest && sense * (*crest - end) > 0) end = *crest;
+      if (!crest) continue;
+      const double top = *crest + values[i] - told_value(points[i], extent.name); // turns counted likewise
+      if (sense * (top - end) > 0) end = top;
     }
 }
 
@@ -250,18 +252,23 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   } while (diagram->branches.front().points.size() < few_points && options.largest_step > least_step);
   if (!diagram) return false;
   // An end that is none of the share's: it goes on, as a pendulum does that friction holds at any angle.
-  std::vector<const ResponsePoint*> open;
+  struct End {
+    std::size_t branch, point;
+  };
+  std::vector<End> open;
   std::string why;
-  for (const ResponseBranch& branch : diagram->branches)
+  for (std::size_t b = 0; b < diagram->branches.size(); ++b)
     for (const bool last : {false, true}) {
+      const ResponseBranch& branch = diagram->branches[b];
       const ResponsePoint& end = last ? branch.points.back() : branch.points.front();
       // One that was followed off a crossing begins on what is known.
       const std::string& reason = last ? branch.end : branch.begin;
       if (!branch.connected || reason.empty() || reason == closed_branch) continue;
       if (end.parameter == share.from || end.parameter == share.to) continue;
-      open.push_back(&end);
+      open.push_back({b, last ? branch.points.size() - 1 : 0});
       why = reason;
     }
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> round, farther;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
@@ -269,8 +276,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     extent.error.reset();
     extent.shares_low.clear();
     extent.shares_high.clear();
-    const auto take = [&](const ResponsePoint& at) {
-      const double value = told_value(at, extent.name);
+    const auto take = [&](double value, const ResponsePoint& at) {
       if (value < extent.low) {
         extent.low = value;
         extent.stable_low = at.stable;
@@ -280,24 +286,32 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
         extent.stable_high = at.stable;
       }
     };
-    for (const ResponseBranch& branch : diagram->branches)
-      if (branch.connected) std::ranges::for_each(branch.points, take);
-    for (const SpecialPoint& special : diagram->special)
-      if (diagram->branches[static_cast<std::size_t>(special.branch)].connected) take(special.at);
-    for (const ResponseBranch& branch : diagram->branches)
-      if (branch.connected) take_crests(mechanism, share, branch.points, cancel, extent);
+    const CountedValues values = counted_values(mechanism, *diagram, point, extent.name, extent.value);
+    for (std::size_t b = 0; b < values.branches.size(); ++b)
+      for (std::size_t i = 0; i < values.branches[b].size(); ++i)
+        take(values.branches[b][i], diagram->branches[b].points[i]);
+    for (std::size_t s = 0; s < values.special.size(); ++s)
+      take(values.special[s], diagram->special[s].at);
+    for (std::size_t b = 0; b < values.branches.size(); ++b)
+      if (!values.branches[b].empty())
+        take_crests(mechanism, share, diagram->branches[b].points, values.branches[b], cancel, extent);
     const double width = extent.high - extent.low;
-    bool unbounded = false;
-    for (const ResponsePoint* end : open) {
-      const double value = told_value(*end, extent.name);
-      if (value == extent.low && width > 0) extent.low = -std::numeric_limits<double>::infinity();
-      if (value == extent.high && width > 0) extent.high = std::numeric_limits<double>::infinity();
+    bool unbounded = values.goes_round;
+    if (values.goes_round) {
+      extent.low = -infinity;
+      extent.high = infinity;
+    }
+    for (const End& end : open) {
+      const double value = values.branches[end.branch][end.point];
+      if (value == extent.low && width > 0) extent.low = -infinity;
+      if (value == extent.high && width > 0) extent.high = infinity;
       unbounded = unbounded || !std::isfinite(extent.low) || !std::isfinite(extent.high);
     }
-    if (unbounded)
-      (extent.unit == "rad" && width > 2 * std::numbers::pi ? round : farther).push_back(extent.name);
+    const bool turns = extent.unit == "rad" && (values.goes_round || width > 2 * std::numbers::pi);
+    if (unbounded) (turns ? round : farther).push_back(extent.name);
   }
-  if (!round.empty()) band.message = "Friction holds it at any angle: " + word_list(round) + " can go round.";
+  if (!round.empty())
+    band.message = "Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
   if (!farther.empty())
     band.message += (band.message.empty() ? "" : " ") + ("Friction holds " + word_list(farther)) +
                     " farther than the band was followed, so that no bound is told: " + why + ".";
@@ -305,14 +319,6 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
 }
 
 } // namespace
-
-double told_value(const ResponsePoint& point, const std::string& name) {
-  for (const CoordinateSolution& c : point.coordinates)
-    if (const auto number = found_number(c); number && number->name == name) return number->value;
-  for (const MeasureSolution& m : point.measures)
-    if (m.name == name) return m.value.value_or(std::nan(""));
-  return std::nan("");
-}
 
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options) {
   FrictionBand band;

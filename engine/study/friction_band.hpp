@@ -48,7 +48,4 @@ struct FrictionBandOptions {
 // extremum: rates tell of no other beyond. Throws SceneError as SteadyMap does.
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options = {});
 
-// A number that is found, or a measure, at a point of a branch; no number where it has none of this name.
-double told_value(const ResponsePoint& point, const std::string& name);
-
 } // namespace flyball

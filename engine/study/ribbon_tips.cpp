@@ -5,6 +5,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/solve/solution_difference.hpp"
+#include "engine/study/counted_values.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -62,7 +62,9 @@ SpreadSampler::SpreadSampler(const Mechanism& mechanism, std::span<const Toleran
       nominal_numbers_(nominal_numbers(mechanism, tolerances)),
       map_(mechanism, free_numbers(mechanism, tolerances), names_of(outputs), options.cancel),
       nominal_(map_.begin(options.start, first_)) {
-  if (!nominal_ || !map_.find_rates(*nominal_)) return;
+  if (!nominal_ ||
+      !(map_.find_rates(*nominal_) || (map_.follow_across(*nominal_) && map_.find_rates(*nominal_))))
+    return;
   regular_ = true;
   rates_ = map_.rates();
 }
@@ -102,6 +104,7 @@ SampleFate SpreadSampler::solve(const std::vector<double>& numbers, std::span<do
   if (solution.status == Status::infeasible) return SampleFate::no_mechanism;
   if (solution.status != Status::converged) return SampleFate::none;
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
+    if (map_.is_open(k)) continue;
     for (const CoordinateSolution& c : solution.coordinates)
       if (const auto found = found_number(c); found && found->name == outputs_[k].name)
         values[k] = found->value;

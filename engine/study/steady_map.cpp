@@ -17,8 +17,10 @@
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
 #include "engine/solve/sensitivity.hpp"
+#include "engine/stability/neutral_directions.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace flyball {
 
@@ -103,8 +105,37 @@ void SteadyMap::find_values(State& state) {
   state.values.resize(static_cast<Eigen::Index>(wanted_.size()));
   for (std::size_t i = 0; i < wanted_.size(); ++i)
     state.values[static_cast<Eigen::Index>(i)] =
-        wanted_[i].coordinate ? found_value(system_, parameters_, state.z.q, *wanted_[i].coordinate)
-                              : (*measured)[static_cast<Eigen::Index>(wanted_[i].measure)];
+        is_open(i)              ? std::numeric_limits<double>::quiet_NaN()
+        : wanted_[i].coordinate ? found_value(system_, parameters_, state.z.q, *wanted_[i].coordinate)
+                                : (*measured)[static_cast<Eigen::Index>(wanted_[i].measure)];
+}
+
+bool SteadyMap::follow_across(State& state) {
+  constexpr double some = 0.3, alike = 1e-8; // scaled: a step along the family; of a value
+  if (state.turned || !w_.matrices(problem())) return false;
+  set(state);
+  const FactoredState at = factor_at(problem(), state.z, w_);
+  const Eigen::MatrixXd null_space = w_.dense.constraints().basis() * w_.dense.hessian().null_basis();
+  const NeutralDirections neutral = neutral_directions(at, null_space);
+  if (neutral.count == 0 || neutral.count < null_space.cols()) return false;
+  std::vector<bool> open(wanted_.size());
+  for (Eigen::Index c = 0; c < neutral.count; ++c)
+    for (const double side : {some, -some}) {
+      State beside{state.p, state.z, {}, {}};
+      const Eigen::VectorXd step = side * neutral.directions.col(c).cwiseProduct(scaling_.column);
+      retract<double>(system_, step, beside.z.q);
+      if (!assemble(problem(), beside.z.q, 0, w_) || !correct(beside.z)) return false;
+      find_values(beside);
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const double size = std::max(std::abs(state.values[k]), scale(i).value_or(0));
+        open[i] = open[i] || !(std::abs(beside.values[k] - state.values[k]) <= alike * size);
+      }
+    }
+  across_ = true;
+  open_ = std::move(open);
+  find_values(state);
+  return true;
 }
 
 std::optional<SteadyMap::State> SteadyMap::begin(const std::vector<std::pair<std::string, double>>& start,
@@ -199,7 +230,7 @@ bool SteadyMap::find_rates(const State& state) try {
   const Problem p = problem();
   const FactoredState factored = factor_at(p, state.z, w_);
   negative_ = factored.kkt().negative_count();
-  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, *numbers_);
+  const std::vector<Eigen::VectorXd> found = sensitivities(factored, varied_, *numbers_, across_);
   if (found.empty() ||
       !std::ranges::all_of(found, [&](const Eigen::VectorXd& rate) { return rate.size() == system_.nv; }))
     return false;
@@ -216,6 +247,7 @@ bool SteadyMap::find_rates(const State& state) try {
           found_gradient(system_, parameters_, state.z.q, *wanted_[i].coordinate).transpose() * state_rates_;
     else
       rates_.row(row) = measured.row(static_cast<Eigen::Index>(wanted_[i].measure));
+    if (is_open(i)) rates_.row(row).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   rated_p_ = state.p;
   rated_q_ = state.z.q;

@@ -47,6 +47,13 @@ class SteadyMap {
   // or where that is empty what a solve answers. Nothing where there is none: `first` says why.
   std::optional<State> begin(const std::vector<std::pair<std::string, double>>& start, Solution& first);
 
+  // Where nothing resists some directions along which states go on, as the turning of a bob on a ball joint
+  // about its own rod: states are followed across them from here on, and what differs along them has no
+  // value. False where the state is not one of such a family, and of more than some hundred coordinates.
+  bool follow_across(State& state);
+  // Whether what is asked for differs along them.
+  bool is_open(std::size_t wanted) const { return wanted < open_.size() && open_[wanted]; }
+
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
   // where the state is singular, or at an end of what mechanisms can be made of. By the balance's exact rates
@@ -104,6 +111,8 @@ class SteadyMap {
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
   std::optional<Analysis> analysis_;  // of states that are told
+  bool across_ = false;               // see follow_across()
+  std::vector<bool> open_;            // what of `wanted_` has no value then
   int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,
   Eigen::VectorXd rated_p_, rated_q_; // which is this one, and the scale of its coordinates
   Eigen::VectorXd rated_scale_;

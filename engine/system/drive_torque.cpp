@@ -228,6 +228,17 @@ void add_drive_torque_sizes(const System& system, const Parameters& p, const Eig
   }
 }
 
+void add_drive_law_sizes(const System& system, const Parameters& p, const Eigen::VectorXd& q,
+                         const Kinematics<double>& k, Eigen::VectorXd& force) {
+  const LawState<double> state{system, p, q, k};
+  for (std::size_t i = 0; i < system.torques.size(); ++i) {
+    const DriveTorqueElement& drive = system.torques[i];
+    double& out = force[system.links[static_cast<std::size_t>(drive.link)].v];
+    if (drive.torque.expression) out += state.size(drive.torque, p.torques[i].torque);
+    if (drive.load.expression) out += state.size(drive.load, p.torques[i].load);
+  }
+}
+
 double drive_torque(const System& system, const Parameters& p, std::size_t drive, const Eigen::VectorXd& q,
                     const Kinematics<double>& k) {
   return LawState<double>{system, p, q, k}.value(drive).value;

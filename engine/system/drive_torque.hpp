@@ -26,6 +26,10 @@ void add_drive_torques(const System& system, const ParametersOf<S>& parameters, 
 void add_drive_torque_sizes(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
                             const Kinematics<double>& kinematics, Eigen::VectorXd& force);
 
+// The same of torques and loads that are laws alone.
+void add_drive_law_sizes(const System& system, const Parameters& parameters, const Eigen::VectorXd& q,
+                         const Kinematics<double>& kinematics, Eigen::VectorXd& force);
+
 // What a drive gives, by System::torques: torque less load (N m or N).
 double drive_torque(const System& system, const Parameters& parameters, std::size_t drive,
                     const Eigen::VectorXd& q, const Kinematics<double>& kinematics);

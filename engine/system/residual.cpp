@@ -7,6 +7,7 @@
 #include "engine/system/drive_torque.hpp"
 #include "engine/system/extended.hpp"
 #include "engine/system/kept_momentum.hpp"
+#include "engine/system/law_sizes.hpp"
 #include "engine/system/link_forces.hpp"
 
 #include <algorithm>
@@ -247,12 +248,6 @@ void evaluate_residual(const System& system, const ParametersOf<S>& p, const Con
 }
 
 namespace {
-
-// Of a law's force: what it is, and what rounding of the numbers that it is given by makes of it.
-double law_size(const BoundLaw& law, double deflection, double position) {
-  const Dual force = law(Dual(deflection, 1));
-  return std::abs(force.value) + std::abs(force.rate) * (std::abs(deflection) + std::abs(position));
-}
 
 // The same for the sizes of the terms.
 struct MagnitudesPass {

@@ -5,6 +5,7 @@
 #include "engine/continuation/branches.hpp"
 #include "engine/mechanism/address.hpp"
 
+#include <complex>
 #include <cstring>
 
 using namespace flyball;
@@ -282,4 +283,77 @@ TEST_CASE("bounds reach as far as the answer does", "[all]") {
   CHECK(std::ranges::any_of(all.equilibria, [&](const Solution& s) {
     return std::abs(value(s, "swing") - value(answer, "swing")) < 1e-9;
   }));
+}
+
+namespace {
+
+// Cranks of 0.2 m on ground pivots 0.4 m apart, and a coupler as long: it can be flat, and there fold over.
+Mechanism parallelogram() {
+  Mechanism m;
+  m.gravity = {0, -10, 0};
+  m.bodies = {body("crank", 1, {0.06, 0.08, 0}, {0.001, 0.001, 0.002}),
+              body("coupler", 0.5, {0.3, 0.18, 0}, {0.001, 0.001, 0.004}),
+              body("rocker", 0.8, {0.45, 0.08, 0}, {0.001, 0.001, 0.002})};
+  m.joints = {revolute("a", "ground", "crank", {0, 0, 0}, {0, 0, 1}),
+              revolute("b", "crank", "coupler", {0.12, 0.16, 0}, {0, 0, 1}),
+              revolute("c", "coupler", "rocker", {0.52, 0.16, 0}, {0, 0, 1}),
+              revolute("d", "rocker", "ground", {0.4, 0, 0}, {0, 0, 1})};
+  return m;
+}
+
+// The potential (J) with the crank turned by `a`, open or folded over: the coupler's other end is where the
+// parallelogram has it, or mirrored at the diagonal.
+double potential(double a, bool folded) {
+  using Point = std::complex<double>;
+  const Point ground = 0.4, drawn(0.12, 0.16), crank = drawn * std::polar(1., a);
+  Point rocker = crank + ground;
+  if (folded) {
+    const Point diagonal = (ground - crank) / std::abs(ground - crank);
+    rocker = crank + diagonal * diagonal * std::conj(ground);
+  }
+  const auto height = [](Point mark, Point from, Point to, Point now_from, Point now_to) {
+    return (now_from + (mark - from) * (now_to - now_from) / (to - from)).imag();
+  };
+  return 10 * height({0.06, 0.08}, 0, drawn, 0, crank) +
+         5 * height({0.3, 0.18}, drawn, drawn + ground, crank, rocker) +
+         8 * height({0.45, 0.08}, ground, drawn + ground, ground, rocker);
+}
+
+} // namespace
+
+TEST_CASE("a parallelogram is in balance where its potential is level, and not where it is flat", "[all]") {
+  std::vector<double> level; // a, in the order of both forms
+  for (const bool folded : {false, true}) {
+    constexpr int parts = 2000;
+    const auto slope = [&](double a) { return potential(a + 1e-5, folded) - potential(a - 1e-5, folded); };
+    const double flat = -std::atan2(0.16, 0.12); // and half a turn further on
+    for (int i = 1; i < parts - 1; ++i) {
+      const double from = flat + 2 * pi * i / parts, to = flat + 2 * pi * (i + 1) / parts;
+      if (2 * i == parts || 2 * (i + 1) == parts) continue;
+      if (slope(from) * slope(to) < 0) level.push_back(std::remainder((from + to) / 2, 2 * pi));
+    }
+  }
+  REQUIRE(level.size() == 6);
+  const AllSolutions all = Analysis(parallelogram()).solve_all();
+  CHECK(all.equilibria.size() == level.size());
+  for (const Solution& s : all.equilibria) {
+    CAPTURE(value(s, "a"));
+    CHECK(std::ranges::any_of(level, [&](double a) {
+      return std::abs(std::remainder(value(s, "a") - a, 2 * pi)) < 2 * pi / 2000;
+    }));
+  }
+}
+
+TEST_CASE("rods that are straight between fixed points stay where they are", "[all]") {
+  Mechanism m;
+  m.gravity = {0, -10, 0};
+  m.bodies = {body("left", 1, {0.5, 0, 0}, {0.01, 0.01, 0.01}),
+              body("right", 1, {1.5, 0, 0}, {0.01, 0.01, 0.01})};
+  m.joints = {revolute("a", "ground", "left", {0, 0, 0}, {0, 0, 1}),
+              revolute("b", "left", "right", {1, 0, 0}, {0, 0, 1}),
+              revolute("c", "right", "ground", {2, 0, 0}, {0, 0, 1})};
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 1);
+  CHECK(std::abs(value(all.equilibria[0], "a")) < 1e-5);
+  CHECK(solve(m).status == Status::converged);
 }

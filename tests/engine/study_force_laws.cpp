@@ -4,6 +4,7 @@
 #include "engine/dynamics/settled.hpp"
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/mechanism/value_table.hpp"
 #include "engine/report/analysis.hpp"
@@ -546,4 +547,26 @@ TEST_CASE("random mechanisms with laws: damped motions settle where the direct s
   }
   CHECK(compared >= static_cast<int>(seeds / 3));
   CHECK(with_loops >= static_cast<int>(seeds / 8));
+}
+
+TEST_CASE("the error of an answer by a law has the law's rounding", "[laws]") {
+  // What is left of a preload turns the soft spring beside it: 1e-16 of the one is much of the other.
+  int beyond_last_digits = 0;
+  for (const double preload : {30., 470., 9100., 150000.})
+    for (const double soft : {0.006, 0.11, 2.3})
+      for (const double asked : {-0.83, -0.26, 0.31, 0.77}) {
+        CAPTURE(preload, soft, asked);
+        const double mass = (preload + soft * std::sinh(asked)) / standard_gravity;
+        const Solution s = Analysis(hanging(mass, number_text(preload) + " N + " + number_text(soft) +
+                                                      " N*sinh(deflection/(1 m))"))
+                               .solve();
+        INFO(s.message);
+        REQUIRE(s.status == Status::converged);
+        const long double exact = std::asinh(
+            (static_cast<long double>(mass) * standard_gravity - static_cast<long double>(preload)) / soft);
+        const CoordinateSolution& slide = coordinate(s, "slide");
+        CHECK(std::abs(static_cast<double>(slide.value - exact)) <= slide.error);
+        beyond_last_digits += std::abs(static_cast<double>(slide.value - exact)) > 1e-15;
+      }
+  CHECK(beyond_last_digits > 20);
 }

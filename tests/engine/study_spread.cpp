@@ -310,3 +310,36 @@ TEST_CASE("near a fold a band tells how many samples leave the branch") {
   CHECK(none.points[0].samples() == 0);
   CHECK(none.points[0].outputs.empty());
 }
+
+TEST_CASE("what hangs on a ball joint scatters as on a hinge, but for its turning", "[families]") {
+  // A bob at 0.7 m below a point 0.1 m beside the shaft's axis: nothing resists its turning about its rod.
+  const auto pendulum = [](JointType type) {
+    Mechanism m;
+    m.gravity = {0, -standard_gravity, 0};
+    m.bodies = {body("hub", 1, Vec3::Zero()), body("bob", 1, {0.1, -0.7, 0}, {1e-3, 1e-3, 1e-3})};
+    m.joints = {joint(JointType::revolute, "spin", "ground", "hub", Vec3::Zero(), Vec3::UnitY()),
+                joint(type, "swing", "hub", "bob", {0.1, 0, 0})};
+    m.joints[0].coordinates[0].drive = Drive{3};
+    m.measures = {{"height", "", "y(bob)", "m"}};
+    return m;
+  };
+  const std::vector<Tolerance> tolerances{{speed, Distribution::normal, 0.05},
+                                          {"bodies.bob.mass", Distribution::uniform, 0.2}};
+  const SpreadAnswer hinge = spread_by(pendulum(JointType::revolute), tolerances, 500),
+                     ball = spread_by(pendulum(JointType::spherical), tolerances, 500);
+  INFO(ball.message);
+  REQUIRE(ball.status == Status::converged);
+  CHECK(count(ball, SampleFate::followed) == 500);
+  const SpreadOutput &expected = hinge.outputs.back(), &height = ball.outputs.back();
+  REQUIRE(height.name == "height");
+  CHECK(height.nominal == Approx(expected.nominal).epsilon(1e-12));
+  CHECK(height.linear_deviation == Approx(expected.linear_deviation).epsilon(1e-9));
+  CHECK(height.followed.count == 500);
+  CHECK(height.followed.deviation == Approx(expected.followed.deviation).epsilon(1e-9));
+  CHECK(height.followed.most == Approx(expected.followed.most).epsilon(1e-12));
+  for (const SpreadOutput& turn : std::span(ball.outputs).first(3)) {
+    CAPTURE(turn.name);
+    CHECK(turn.followed.count == 0);
+    CHECK(turn.linear_shares.empty());
+  }
+}

@@ -16,6 +16,7 @@
 
 using namespace flyball;
 using namespace flyball::test;
+using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
 TEST_CASE("a shaft with several steady speeds: all are found, with their eigenvalues", "[torque]") {
@@ -351,4 +352,28 @@ TEST_CASE("a kink at which a law asks twice for the same has both its sides' slo
   CHECK_THAT(speed(s, "p"), WithinRel(10, 1e-12));
   CHECK(s.stable == false);
   CHECK_THAT(s.message, ContainsSubstring("kink"));
+}
+
+TEST_CASE("the error of a speed has the rounding of torque and load by laws", "[torque]") {
+  const auto shaft = [](const std::string& torque, double load) {
+    Mechanism m;
+    m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+    m.joints = {torque_driven(revolute("p", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), 5, torque)};
+    m.joints[0].coordinates[0].drive->load = load;
+    validate(m);
+    return Analysis(m).solve();
+  };
+  // 67724.3 - 0.03919 w of all that is given, in units of the last place.
+  for (const double speed_asked : {2.7, 6.06730543, 9.3}) {
+    const double load = 67724.3 - 0.03919 * speed_asked;
+    const Solution s = shaft("67724.3 N m - 0.03919 N m s*rate(p)", load);
+    INFO(s.message);
+    REQUIRE(s.status == Status::converged);
+    const auto exact = static_cast<double>((67724.3L - static_cast<long double>(load)) / 0.03919L);
+    CHECK_THAT(speed(s, "p"), WithinAbs(exact, coordinate(s, "p").speed_error));
+  }
+  // The load is all of the torque: it would stand still, but no digit of that is known.
+  const Solution lost = shaft("5 N m - 1e-18 N m s*rate(p)", 5);
+  REQUIRE(lost.status == Status::converged);
+  CHECK(coordinate(lost, "p").speed_error > 100);
 }
