@@ -42,7 +42,8 @@ bool passes_singular_loops(const Problem& problem, const Unknowns& z, Workspace&
   Workspace& beside = w.elsewhere();
   evaluate(problem, {z.q, Eigen::VectorXd::Zero(problem.system.rows)}, 0, beside);
   const Eigen::VectorXd force = beside.residual.f.cwiseProduct(column); // without multipliers
-  const double size = force.norm();
+  // Of what acts: in sum that may vanish, as along links that hang straight.
+  const double size = beside.magnitudes.force.cwiseProduct(column).norm();
   if (!(largest_size(z.lambda.cwiseQuotient(problem.scaling.row)) > grown * size)) return false;
   factor_constraints(problem, beside);
   const auto loops = singular_vectors(beside.dense.jacobian());

@@ -344,6 +344,29 @@ TEST_CASE("a parallelogram is in balance where its potential is level, and not w
   }
 }
 
+TEST_CASE("a linkage that hangs straight stands in a singular pose, and is in balance there", "[all]") {
+  // Of links of 0.2, 0.3 and 0.4 m between points 0.5 m above each other: each hangs as low as it can.
+  const Vec3 knee(0.12432199365413288, 0.1566653819254967, 0),
+      wrist(0.33903586862335932, 0.3661837630392495, 0), above(0.5, 0, 0);
+  REQUIRE((wrist - knee).norm() == Approx(0.3).epsilon(1e-9));
+  REQUIRE((wrist - above).norm() == Approx(0.4).epsilon(1e-9));
+  Mechanism m;
+  m.gravity = {-standard_gravity, 0, 0};
+  m.bodies = {body("crank", 1, knee / 2, {0.001, 0.001, 0.003}),
+              body("coupler", 0.5, (knee + wrist) / 2, {0.001, 0.001, 0.003}),
+              body("rocker", 0.8, (wrist + above) / 2, {0.001, 0.001, 0.003})};
+  m.joints = {dampened(revolute("a", "ground", "crank", {0, 0, 0}, {0, 0, 1}), 0.1),
+              revolute("b", "crank", "coupler", knee, {0, 0, 1}),
+              revolute("c", "coupler", "rocker", wrist, {0, 0, 1}),
+              revolute("d", "ground", "rocker", above, {0, 0, 1})};
+  const Solution s = solve(m);
+  CHECK(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK(std::abs(std::remainder(value(s, "a") - (pi - 0.9), 2 * pi)) < 1e-4);
+  const AllSolutions all = Analysis(m).solve_all();
+  CHECK(std::ranges::count(all.equilibria, true, [](const Solution& e) { return e.stable == true; }) == 1);
+}
+
 TEST_CASE("rods that are straight between fixed points stay where they are", "[all]") {
   Mechanism m;
   m.gravity = {0, -10, 0};
