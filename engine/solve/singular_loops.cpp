@@ -37,13 +37,15 @@ bool passes_singular_loops(const Problem& problem, const Unknowns& z, Workspace&
   constexpr double lost = 1e-6;               // beside the largest singular value
   constexpr double aside = 1e-3, left = 0.25; // of the step aside, once loops are closed again
   constexpr double balanced = 1e-3;           // of all that acts
+  constexpr double level = 1e-5;              // of the terms
   if (!w.matrices(problem) || problem.system.rows == 0 || problem.system.nv == 0) return false;
   const Eigen::VectorXd& column = problem.scaling.column;
   Workspace& beside = w.elsewhere();
   evaluate(problem, {z.q, Eigen::VectorXd::Zero(problem.system.rows)}, 0, beside);
   const Eigen::VectorXd force = beside.residual.f.cwiseProduct(column); // without multipliers
-  // Of what acts: in sum that may vanish, as along links that hang straight.
-  const double size = beside.magnitudes.force.cwiseProduct(column).norm();
+  const double size = force.norm();
+  // Nothing is left to hold, as of links that hang straight.
+  if (!(size > level * beside.magnitudes.force.cwiseProduct(column).norm())) return false;
   if (!(largest_size(z.lambda.cwiseQuotient(problem.scaling.row)) > grown * size)) return false;
   factor_constraints(problem, beside);
   const auto loops = singular_vectors(beside.dense.jacobian());
