@@ -41,8 +41,8 @@ template <typename Function>
 VectorR slope(const Mechanism& m, const Tree& tree, const ReferenceState& s, Eigen::Index coordinate,
               const Function& f, Real h = 2e-3L) {
   const VectorR unit = VectorR::Unit(static_cast<Eigen::Index>(tree.coordinates.size()), coordinate);
-  const auto central = [&](Real h) -> VectorR {
-    return (f(advance(m, tree, s, h * unit)) - f(advance(m, tree, s, -h * unit))) / (2 * h);
+  const auto central = [&](Real step) -> VectorR {
+    return (f(advance(m, tree, s, step * unit)) - f(advance(m, tree, s, -step * unit))) / (2 * step);
   };
   const VectorR d1 = central(h), d2 = central(h / 2), d4 = central(h / 4);
   return (16 * (4 * d4 - d2) / 3 - (4 * d2 - d1) / 3) / 15;
