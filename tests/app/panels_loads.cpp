@@ -500,10 +500,7 @@ TEST_CASE("a motion in the place of a steady state that there is not has the arr
   Robot robot({1280, 1400});
   App& app = robot.app;
   Mechanism m = Document::empty_mechanism();
-  add_driven_slider_crank(m, 20);
-  m.joints.front().coordinates.front().drive->torque = 0;
-  set_expression(m, "joints." + m.joints.front().name + ".drive.torque",
-                 "60 N m - 3 N m s*rate(" + m.joints.front().name + ")");
+  add_slider_crank_by_torque(m);
   open_document(app.session, Document(m));
   set_mode(app.session, Mode::explore);
   robot.frames(3);

@@ -3,7 +3,6 @@
 #include "robot.hpp"
 #include "slider_crank.hpp"
 
-#include "app/document/formula_edits.hpp"
 #include "app/plot/csv.hpp"
 #include "app/session/resonance.hpp"
 #include "app/ui/commands.hpp"
@@ -291,10 +290,7 @@ TEST_CASE("the motion of a crank that a torque drives is found when it is asked 
   Robot robot({1280, 1400});
   App& app = robot.app;
   Mechanism m = Document::empty_mechanism();
-  add_driven_slider_crank(m, 20);
-  m.joints.front().coordinates.front().drive->torque = 0;
-  set_expression(m, "joints." + m.joints.front().name + ".drive.torque",
-                 "60 N m - 3 N m s*rate(" + m.joints.front().name + ")");
+  add_slider_crank_by_torque(m);
   open_document(app.session, Document(m));
   set_mode(app.session, Mode::explore);
   robot.frames(3);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "app/document/create.hpp"
+#include "app/document/formula_edits.hpp"
 
 namespace flyball::test {
 
@@ -30,6 +31,15 @@ inline void add_driven_slider_crank(Mechanism& mechanism, double speed) {
   add_slider_crank(mechanism);
   mechanism.joints.front().coordinates.front().drive.emplace().speed = speed;
   add_joint(mechanism, JointType::prismatic, {"ground", "block1"}, slider_crank_pin, Vec3::UnitX());
+}
+
+// The same by a torque that falls as it turns faster.
+inline void add_slider_crank_by_torque(Mechanism& mechanism) {
+  add_driven_slider_crank(mechanism, 20);
+  const Joint& crank = mechanism.joints.front();
+  mechanism.joints.front().coordinates.front().drive->torque = 0;
+  set_expression(mechanism, "joints." + crank.name + ".drive.torque",
+                 "60 N m - 3 N m s*rate(" + crank.name + ")");
 }
 
 } // namespace flyball::test
