@@ -236,10 +236,8 @@ bool is_finite(const Solution& s) {
 }
 
 std::optional<std::string> unknown_coordinate(const Solution& s) {
-  // At a fold itself an estimate by the linearised balance comes to some scales, with half the digits right.
-  constexpr double beyond_folds = 1e6;
   const auto lost = [](double value, double error, double scale) {
-    return error > beyond_folds * std::max(std::abs(value), scale);
+    return error > std::max(std::abs(value), scale);
   };
   for (const CoordinateSolution& c : s.coordinates)
     if ((!c.driven && lost(c.value, c.error, c.scale)) ||
