@@ -1,20 +1,18 @@
 #include "engine/study/linear_model.hpp"
 
-#include "engine/dynamics/start.hpp"
 #include "engine/kkt/coordinate_gradient.hpp"
-#include "engine/kkt/tied_angles.hpp"
-#include "engine/linear/pencil.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/messages.hpp"
-#include "engine/solve/drive_cuts.hpp"
-#include "engine/stability/phase_stiffness.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/input_effect.hpp"
+#include "engine/study/linear_forms.hpp"
 #include "engine/study/linear_friction.hpp"
+#include "engine/study/linear_matrices.hpp"
+#include "engine/study/linear_place.hpp"
 #include "engine/study/model_coordinates.hpp"
 #include "engine/study/motion_outputs.hpp"
 #include "engine/system/balance_rate.hpp"
@@ -29,9 +27,7 @@ namespace {
 
 constexpr double nothing = 1e-9;    // of what a signal feels, beside the most that it feels
 constexpr double rounding = 1e-11;  // the same: what differences leave of nothing
-constexpr double same_phase = 1e-7; // the same, of two phases
 constexpr double no_effect = 1e-14; // of an input, beside what holds the mechanism
-constexpr double most_lost = 1e-8;  // by the inverse of M, else E stands alone
 
 // Nothing acts along what is left to itself: as it moves it is what a torque of nothing drives.
 Mechanism with_momenta_free(Mechanism mechanism) {
@@ -66,46 +62,23 @@ class Builder {
     const auto begin = std::chrono::steady_clock::now();
     const Interruptible scope(options_.cancel);
     check(out.steady);
-    const Mechanism damped = with_dampers_beside(mechanism_, addresses_);
-    model_ = make_motion_model(damped, true);
-    model_.mechanism = mechanism_;
-    bind_motion(model_.system, mechanism_, model_.parameters);
-    steady_system_ = compile_for_drives(damped);
-    bind(steady_system_, mechanism_, steady_parameters_);
-    place(out.steady);
+    place_.emplace(mechanism_, with_dampers_beside(mechanism_, addresses_), out.steady);
     hold(out);
-    const MotionAt drawn(model_, at_phase(0), held_);
-    angles_ = angles_matter();
-    chosen_ = choose_coordinates(steady_system_, drawn.basis(), angles_ && !options_.phases);
-    find_phases(drawn);
-    Matrices here = matrices(drawn, 0);
+    const MotionAt drawn(place_->model, place_->at(0), place_->held);
+    place_->choose(drawn, options_.phases);
+    const LinearMatrices here = matrices(drawn, 0);
     for (std::size_t i = 0; i < signals_.outputs.size(); ++i)
       signals_.outputs[i].value = here.values[static_cast<Eigen::Index>(i)];
-    const std::vector<DriveRate> rates = drive_rates(steady_system_, steady_parameters_, balance_q_);
+    const std::vector<DriveRate> rates = drive_rates(place_->steady, place_->parameters, place_->balance_q);
+    const bool values_turn = place_->phases && !place_->steady.torques.empty();
     for (const double t : phase_times(rates))
-      compare(here, matrices(MotionAt(model_, at_phase(t), held_), t), 4 * angle_rounding(rates, t));
-    fill(drawn, here, out);
+      expect_same(here, matrices(MotionAt(place_->model, place_->at(t), place_->held), t), signals_,
+                  values_turn, 4 * angle_rounding(rates, t));
+    add_forms(*place_, here, drawn.without_mass > 0, signals_, options_.cancel, out);
     out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
  private:
-  // In the units of the model.
-  struct Matrices {
-    Eigen::MatrixXd mass, velocity, stiffness; // (k, k)
-    Eigen::MatrixXd b0, shift;                 // (k, m): b0 - (C + G) M^-1 b1, and M^-1 b1
-    Eigen::MatrixXd explicit_velocity, explicit_stiffness, explicit_b; // the same times M^-1
-    Eigen::MatrixXd c_position, c_rate, d;                             // (p, k), (p, m)
-    Eigen::VectorXd values, error, most; // (p), see LinearModel::output_error; the most an output feels
-    Eigen::MatrixXd normalised;          // (p, 2k + m), of what directions are measured by
-    Eigen::VectorXd sizes;               // (2k + m), of these, in the units of the model
-    // Of radians and parts of the reach: what inputs do, M^-1 not taken of it, which makes much of rounding.
-    Eigen::MatrixXd force, momentum;                              // (k, m): b0 and b1
-    double stiffness_size = 0, momentum_size = 0, speed_size = 0; // momentum: of M at that speed
-    Eigen::VectorXd held, inertia; // (k): what a radian or part of the reach takes of each
-    Eigen::VectorXd made_of;       // (k): see MotionAt::inertia
-    double lost = 0;               // by M^-1 of what K and C + G are, in parts of what each coordinate feels
-  };
-
   // What slips is driven by its friction from here on.
   void find_steady(LinearModel& out) {
     SolveOptions solve;
@@ -127,9 +100,9 @@ class Builder {
     for (const FrictionForce& force : out.steady.frictions)
       if (force.slips) out.slipping.push_back(coordinate_label(force));
     if (options_.slipping) return;
-    for (HeldCoordinate& held : held_by_friction(mechanism_, model_, out.steady)) {
+    for (HeldCoordinate& held : held_by_friction(mechanism_, place_->model, out.steady)) {
       out.held.push_back(std::move(held.name));
-      held_.push_back(held.v);
+      place_->held.push_back(held.v);
     }
   }
 
@@ -149,111 +122,6 @@ class Builder {
         steady.coordinates, [](const CoordinateSolution& c) { return is_found(c) && !c.dependent; }));
   }
 
-  // The steady state in the motion's coordinates.
-  void place(const Solution& steady) {
-    SimulationOptions start;
-    start.start = Start::state;
-    for (const CoordinateSolution& c : steady.coordinates) // with a damper more other joints may close loops
-      start.state.coordinates.push_back({c.joint, c.index, c.value, c.speed.value_or(0)});
-    find_start(start, model_, q_, u_);
-    // What the balance takes: speeds in the place of angles.
-    balance_q_ = q_;
-    for (const DriveTorqueElement& torque : steady_system_.torques) {
-      const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
-      balance_q_[link.q] = u_[link.v];
-      LinkParameters& numbers = steady_parameters_.links[static_cast<std::size_t>(torque.link)];
-      numbers.start = q_[link.q] - numbers.drawn; // at the angle where it stands
-    }
-  }
-
-  // Whether the angle of something that turns at a speed that is found is a state like others.
-  bool angles_matter() const {
-    if (steady_system_.torques.empty() || steady_parameters_.phase_free) return false;
-    Scaling scaling;
-    set_scaling(steady_system_, steady_parameters_, scaling);
-    const Problem problem{steady_system_, steady_parameters_, scaling};
-    Workspace w;
-    Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
-    if (steady_system_.rows > 0) {
-      evaluate(problem, z, 0, w);
-      factor_constraints(problem, w);
-      best_multipliers(problem, w, z.lambda);
-      if (loops_tie_angles(problem, w.kinematics)) return true;
-    }
-    return !phase_stiffness(problem, z, w).entries.empty();
-  }
-
-  // Which of the chosen coordinates are phases: with the others as they are nothing changes along them.
-  void find_phases(const MotionAt& drawn) {
-    const std::vector<bool> driven = turning_entries(steady_system_);
-    const Eigen::MatrixXd from = from_chosen(drawn);
-    Scaling scaling;
-    set_scaling(steady_system_, steady_parameters_, scaling);
-    const Problem problem{steady_system_, steady_parameters_, scaling};
-    Workspace w;
-    const Unknowns z{balance_q_, Eigen::VectorXd::Zero(steady_system_.rows)};
-    const Eigen::MatrixXd free = drawn.column().head(steady_system_.nv).asDiagonal() * drawn.basis();
-    for (std::size_t i = 0; i < chosen_.entries.size() && !options_.phases; ++i) {
-      if (!driven[static_cast<std::size_t>(chosen_.entries[i])]) continue;
-      Eigen::VectorXd turned =
-          (drawn.basis() * from.col(static_cast<Eigen::Index>(i))).cwiseProduct(drawn.column());
-      turned /= turned.lpNorm<Eigen::Infinity>();
-      chosen_.phase[i] = !angles_ || (stands_alike(turned) &&
-                                      balanced_along(problem, z, turned, w, held_.empty() ? nullptr : &free));
-    }
-    for (std::size_t i = 0; i < chosen_.entries.size(); ++i)
-      if (driven[static_cast<std::size_t>(chosen_.entries[i])] && !chosen_.phase[i]) phases_ = true;
-  }
-
-  // Whether nothing moves along it but what turns at speeds that are found.
-  bool stands_alike(const Eigen::VectorXd& turned) const {
-    const std::vector<bool> driven = turning_entries(steady_system_);
-    for (Eigen::Index v = 0; v < turned.size(); ++v)
-      if (!driven[static_cast<std::size_t>(v)] && std::abs(turned[v]) > nothing) return false;
-    return true;
-  }
-
-  // Coordinates on the basis from those of the model.
-  Eigen::MatrixXd from_chosen(const MotionAt& motion) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
-    if (motion.basis().cols() != k)
-      throw Refusal{
-          "The loops hold other directions at another phase of the drives: no constant matrices tell of it."};
-    const Eigen::MatrixXd to = to_chosen(motion);
-    Lu lu;
-    Eigen::MatrixXd from = Eigen::MatrixXd::Identity(k, k);
-    if (k > 0 && !lu.compute(to)) throw Refusal{"The loops' equations overflow."};
-    for (Eigen::Index i = 0; i < k; ++i)
-      from.col(i) = lu.solve(Eigen::VectorXd::Unit(k, i));
-    return from;
-  }
-  Eigen::MatrixXd to_chosen(const MotionAt& motion) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
-    Eigen::MatrixXd to(k, k);
-    for (Eigen::Index i = 0; i < k; ++i) {
-      const int v = chosen_.entries[static_cast<std::size_t>(i)];
-      to.row(i) = motion.column()[v] * motion.basis().row(v);
-    }
-    return to;
-  }
-
-  // All at time t (s) after the drawn phase.
-  MotionOfAll at_phase(double t) const {
-    const System& released = model_.released;
-    MotionOfAll out;
-    out.q.setZero(released.nq);
-    out.u.setZero(released.nv);
-    out.a.setZero(released.nv);
-    out.q.head(model_.system.nq) = q_;
-    out.u.head(model_.system.nv) = u_;
-    set_drives(model_.system, model_.parameters, t, out.q, out.u);
-    for (const DriveTorqueElement& torque : steady_system_.torques) {
-      const Link& link = model_.system.links[static_cast<std::size_t>(torque.link)];
-      out.q[link.q] += u_[link.v] * t;
-    }
-    return out;
-  }
-
   // Whether a number that changes is the speed with which something left to itself begins.
   bool begins_with(const NumberRates& rates) const {
     for (std::size_t j = 0; j < mechanism_.joints.size(); ++j)
@@ -268,11 +136,12 @@ class Builder {
 
   InputEffect effect(const MotionAt& motion, std::size_t i, double t) {
     const LinearInput& input = signals_.inputs[i];
-    Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.system.rows),
-                    still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_.system.drives.size()));
+    Eigen::VectorXd none = Eigen::VectorXd::Zero(place_->model.system.rows),
+                    still =
+                        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(place_->model.system.drives.size()));
     try {
       if (input.address.empty()) return motion.effect(-torque_direction(input, motion), none, still);
-      if (std::ranges::any_of(steady_system_.torques, &DriveTorqueElement::implied))
+      if (std::ranges::any_of(place_->steady.torques, &DriveTorqueElement::implied))
         throw Refusal{
             "where loops and gears make something turn at a rate of its own, inputs are torques and "
             "forces, as torque(joint) and force_x(body)"};
@@ -283,16 +152,18 @@ class Builder {
         throw Refusal{"it is the speed with which something left to itself begins, and acts on nothing "
                       "later; a torque(joint) does"};
       BalanceRate balance;
-      balance.evaluate(steady_system_, mechanism_, rates, steady_parameters_, balance_q_, motion.at.lambda,
-                       t);
+      balance.evaluate(place_->steady, mechanism_, rates, place_->parameters, place_->balance_q,
+                       motion.at.lambda, t);
       if (t == 0 && places_parts(balance.parameters()))
         throw Refusal{
             "it places parts, and as it changes its rates move mass, which a number alone does not tell. "
             "Inputs are torques, forces, speeds, stiffnesses, dampings, masses, free lengths, lengths of "
             "distance joints, offsets of gears, gravity, and parameters of these"};
-      for (std::size_t d = 0; d < model_.system.drives.size(); ++d)
+      for (std::size_t d = 0; d < place_->model.system.drives.size(); ++d)
         still[static_cast<Eigen::Index>(d)] =
-            balance.parameters().links[static_cast<std::size_t>(model_.system.drives[d].link)].speed.rate;
+            balance.parameters()
+                .links[static_cast<std::size_t>(place_->model.system.drives[d].link)]
+                .speed.rate;
       return motion.effect(balance.force(), balance.phi(), still);
     } catch (const Refusal& refusal) {
       throw Refusal{"The input " + input.name + " has no place in a linear model: " + refusal.why + "."};
@@ -301,7 +172,7 @@ class Builder {
 
   // The generalised force of a unit torque or force along the input's coordinate (N m or N).
   Eigen::VectorXd torque_direction(const LinearInput& input, const MotionAt& motion) const {
-    const System& system = model_.system;
+    const System& system = place_->model.system;
     for (const CoordinateInfo& c : system.coordinates) {
       if (system.tree_joints[static_cast<std::size_t>(c.tree_joint)].joint != input.joint ||
           c.index != input.coordinate)
@@ -309,7 +180,7 @@ class Builder {
       const Link& link = system.links[static_cast<std::size_t>(c.link)];
       if (link.v < 0) throw Refusal{"the speed there is prescribed, whatever torque acts"};
       if (link.drive >= 0) return Eigen::VectorXd::Unit(system.nv, link.v);
-      return coordinate_gradient(system, model_.parameters, motion.at.q.head(system.nq), c);
+      return coordinate_gradient(system, place_->model.parameters, motion.at.q.head(system.nq), c);
     }
     throw Refusal{
         "its joint closes a loop; \"cut\" at another joint of the loop makes it a coordinate of the tree"};
@@ -333,13 +204,13 @@ class Builder {
     return rate > 0 ? rate : 1;
   }
 
-  Matrices matrices(const MotionAt& motion, double t) {
+  LinearMatrices matrices(const MotionAt& motion, double t) {
     interruption_point();
     const Eigen::MatrixXd& basis = motion.basis();
-    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
+    const auto k = static_cast<Eigen::Index>(place_->chosen.entries.size());
     const auto inputs = static_cast<Eigen::Index>(signals_.inputs.size());
-    const Eigen::MatrixXd from = from_chosen(motion), to = to_chosen(motion);
-    Matrices out;
+    const Eigen::MatrixXd from = place_->from_chosen(motion), to = place_->to_chosen(motion);
+    LinearMatrices out;
     out.mass = from.transpose() * motion.mass * from;
     out.velocity = from.transpose() * motion.velocity * from;
     out.stiffness = from.transpose() * motion.stiffness * from;
@@ -360,7 +231,7 @@ class Builder {
     }
     Eigen::VectorXd column(k);
     for (Eigen::Index i = 0; i < k; ++i)
-      column[i] = motion.column()[chosen_.entries[static_cast<std::size_t>(i)]];
+      column[i] = motion.column()[place_->chosen.entries[static_cast<std::size_t>(i)]];
     out.force = column.asDiagonal() * out.force;
     out.momentum = column.asDiagonal() * out.momentum;
     out.stiffness_size = motion.stiffness.norm();
@@ -410,12 +281,12 @@ class Builder {
 
   // What outputs feel of positions, rates and inputs.
   void add_outputs(const MotionAt& motion, const std::vector<InputEffect>& effects,
-                   const Directions& directions, Matrices& out) {
+                   const Directions& directions, LinearMatrices& out) {
     const Eigen::Index k = directions.positions.cols(), inputs = directions.by_input.cols(),
                        outputs = static_cast<Eigen::Index>(signals_.outputs.size());
-    const int n = model_.system.nv;
-    const auto all = static_cast<Eigen::Index>(model_.released.nv);
-    MotionOutputs h(model_, addresses_, static_cast<std::size_t>(outputs), motion.without_mass == 0);
+    const int n = place_->model.system.nv;
+    const auto all = static_cast<Eigen::Index>(place_->model.released.nv);
+    MotionOutputs h(place_->model, addresses_, static_cast<std::size_t>(outputs), motion.without_mass == 0);
     out.values = h.values(motion.at);
     for (Eigen::Index i = 0; i < outputs; ++i)
       if (!std::isfinite(out.values[i]))
@@ -498,7 +369,7 @@ class Builder {
 
   // Whether nothing is left of what an input does but rounding: for all of a number, or one newton at the
   // longest arm.
-  bool is_rounding(const Matrices& m, Eigen::Index j, double arm) const {
+  bool is_rounding(const LinearMatrices& m, Eigen::Index j, double arm) const {
     const Eigen::ArrayXd force = m.force.col(j).cwiseAbs(), momentum = m.momentum.col(j).cwiseAbs();
     if (numbers_[static_cast<std::size_t>(j)] < 0)
       return momentum.isZero(0) && force.maxCoeff() <= no_effect * arm;
@@ -512,8 +383,8 @@ class Builder {
   // What an output may not feel: the rates of inputs, and angles that speeds add up to.
   void refuse_rates(const MotionAt& motion, const std::vector<InputEffect>& effects, MotionOutputs& h,
                     double rate, const Eigen::VectorXd& most) {
-    const int n = model_.system.nv;
-    const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(model_.released.nv)); };
+    const int n = place_->model.system.nv;
+    const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(place_->model.released.nv)); };
     const auto refuse = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& a,
                             const auto& why) {
       MotionDirection d = motion.direction(q, u, a, nullptr);
@@ -549,20 +420,21 @@ class Builder {
                " adds up to.";
       });
     }
-    for (std::size_t i = 0; i < chosen_.entries.size(); ++i) {
-      if (!chosen_.phase[i]) continue;
+    for (std::size_t i = 0; i < place_->chosen.entries.size(); ++i) {
+      if (!place_->chosen.phase[i]) continue;
       Eigen::VectorXd q = zero();
-      q[chosen_.entries[i]] = 1;
+      q[place_->chosen.entries[i]] = 1;
       refuse(q, zero(), zero(), [&](const std::string& name) {
         return "The output " + name + " depends on the angle of " +
-               name_state(model_, chosen_.entries[i], false).name + ", which turns: it grows without end.";
+               name_state(place_->model, place_->chosen.entries[i], false).name +
+               ", which turns: it grows without end.";
       });
     }
   }
 
   // What an output feels of how joints that friction holds share what loops let each of them bear.
   void refuse_open_shares(const MotionAt& motion, MotionOutputs& h) {
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(model_.released.nv);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(place_->model.released.nv);
     for (const Eigen::VectorXd& share : motion.open_shares) {
       if (share.size() == 0) continue;
       MotionDirection d = motion.direction(none, none, none, nullptr);
@@ -577,132 +449,12 @@ class Builder {
     }
   }
 
-  // That inputs and outputs are the same at another phase. What is nothing beside the stiffness, or the
-  // momenta, is rounding.
-  void compare(const Matrices& a, const Matrices& b, double rounding_of_angles) const {
-    const double alike = same_phase + rounding_of_angles;
-    for (Eigen::Index j = 0; j < a.b0.cols() && a.b0.rows() > 0; ++j) {
-      const auto differs = [&](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y, double size) {
-        const double value = std::abs(signals_.inputs[static_cast<std::size_t>(j)].value);
-        const double floor = value > 0 ? rounding * size / value : 0;
-        return (x.col(j) - y.col(j)).lpNorm<Eigen::Infinity>() >
-               std::max(alike * x.col(j).lpNorm<Eigen::Infinity>(), floor);
-      };
-      if (differs(a.force, b.force, a.stiffness_size) || differs(a.momentum, b.momentum, a.momentum_size))
-        throw Refusal{"The input " + signals_.inputs[static_cast<std::size_t>(j)].name +
-                      " acts otherwise at every phase of the drives: no constant matrices tell of it."};
-    }
-    const bool turn = phases_ && !steady_system_.torques.empty(); // the angles themselves are states
-    for (Eigen::Index i = 0; i < a.values.size(); ++i) {
-      const double size = alike * a.most[i];
-      bool same =
-          turn || std::abs(a.values[i] - b.values[i]) <= std::max(size, alike * std::abs(a.values[i]));
-      for (Eigen::Index s = 0; s < a.normalised.cols(); ++s) {
-        const double measured = a.sizes[s] > 0 ? b.sizes[s] / a.sizes[s] : 1;
-        same = same && std::abs(a.normalised(i, s) - measured * b.normalised(i, s)) <= size;
-      }
-      if (!same)
-        throw Refusal{"The output " + output(i) +
-                      " is another at every phase of the drives: no constant matrices tell of it."};
-    }
-  }
-
-  // Nothing where the sign of a pole is rounding, or what has no mass may run away at once.
-  static std::optional<bool> stable_by(const LinearModel& model) {
-    double size = 0, most = -std::numeric_limits<double>::infinity();
-    for (const std::complex<double> pole : model.poles) {
-      size = std::max(size, std::abs(pole));
-      most = std::max(most, pole.real());
-    }
-    if (most > nothing * size) return false;
-    if (most < -nothing * size && model.explicit_form) return true;
-    return {};
-  }
-
-  void fill(const MotionAt& motion, const Matrices& m, LinearModel& out) const {
-    const auto k = static_cast<Eigen::Index>(chosen_.entries.size());
-    std::vector<Eigen::Index> positions;
-    for (Eigen::Index i = 0; i < k; ++i)
-      if (!chosen_.phase[static_cast<std::size_t>(i)]) positions.push_back(i);
-    const auto np = static_cast<Eigen::Index>(positions.size());
-    const Eigen::Index inputs = m.d.cols(), outputs = m.d.rows(), n = np + k;
-    StateSpace& x = out.descriptor;
-    x.e.setIdentity(n, n);
-    x.e.bottomRightCorner(k, k) = m.mass;
-    x.a.setZero(n, n);
-    x.a.bottomRightCorner(k, k) = -m.velocity;
-    x.b.setZero(n, inputs);
-    x.b.bottomRows(k) = m.b0;
-    x.c.setZero(outputs, n);
-    x.c.rightCols(k) = m.c_rate;
-    x.d = m.d;
-    StateSpace direct{{}, x.a, x.b, x.c, x.d};
-    direct.a.bottomRightCorner(k, k) = m.explicit_velocity;
-    direct.b.bottomRows(k) = m.explicit_b;
-    const std::vector<bool> turned = turning_entries(steady_system_);
-    for (Eigen::Index i = 0; i < np; ++i) {
-      const Eigen::Index p = positions[static_cast<std::size_t>(i)];
-      const auto v = static_cast<std::size_t>(chosen_.entries[static_cast<std::size_t>(p)]);
-      x.a(i, np + p) = direct.a(i, np + p) = 1;
-      if (!turned[v] || angles_) { // else nothing depends on the angle of a shaft, but rounding
-        x.a.col(i).tail(k) = -m.stiffness.col(p);
-        direct.a.col(i).tail(k) = m.explicit_stiffness.col(p);
-      }
-      x.b.row(i) = m.shift.row(p);
-      direct.b.row(i) = m.shift.row(p);
-      x.c.col(i) = m.c_position.col(p);
-    }
-    direct.c = x.c;
-    if (motion.without_mass == 0 && !(m.lost > most_lost)) out.explicit_form = std::move(direct);
-    for (const bool rate : {false, true})
-      for (Eigen::Index i = 0; i < k; ++i) {
-        const int v = chosen_.entries[static_cast<std::size_t>(i)];
-        if (!rate && chosen_.phase[static_cast<std::size_t>(i)]) continue;
-        LinearModel::State state = name_state(model_, v, rate);
-        // Of a ball small turns count, from where it is.
-        const Link* ball = nullptr;
-        for (const Link& link : model_.system.links)
-          if (link.type == LinkType::spherical && link.v >= 0 && v >= link.v && v < link.v + 3) ball = &link;
-        if (rate)
-          state.value = u_[v];
-        else if (!ball)
-          for (const Link& link : model_.system.links)
-            if (link.v == v) state.value = q_[link.q];
-        state.less_input = rate && inputs > 0 && !m.shift.row(i).isZero(0);
-        out.states.push_back(std::move(state));
-      }
-    out.inputs.assign(signals_.inputs.begin(), signals_.inputs.end());
-    out.outputs = signals_.outputs;
-    out.output_error = m.error;
-    for (const StateSpace& form : {out.descriptor, best_form(out)})
-      for (const Eigen::MatrixXd* matrix : {&form.e, &form.a, &form.b, &form.c, &form.d})
-        if (!matrix->allFinite()) throw Refusal{"The numbers are too far apart for a linear model."};
-    auto found = motion.without_mass == 0
-                     ? poles(best_form(out))
-                     : pencil_eigenvalues(m.mass, m.velocity, m.stiffness, options_.cancel, m.made_of);
-    if (motion.without_mass > 0) // angles that are no states: as many of those nearest to zero
-      for (Eigen::Index phase = np; found && phase < k; ++phase)
-        if (!found->empty())
-          found->erase(std::ranges::min_element(*found, {}, [](auto pole) { return std::abs(pole); }));
-    if (!found) throw Refusal{"The poles are not found: the numbers are too far apart."};
-    out.poles = *found;
-    out.stable = out.held.empty() ? out.steady.stable : stable_by(out);
-    out.gain = static_gain(best_form(out));
-  }
-
   LinearSignals signals_;
   const LinearModelOptions& options_;
   Mechanism mechanism_; // whose numbers have rates
   std::vector<std::string> addresses_;
   std::vector<int> numbers_; // by input, in addresses_; -1: none
-  MotionModel model_;
-  System steady_system_; // what turns at speeds that are found does so steadily
-  Parameters steady_parameters_;
-  Eigen::VectorXd q_, u_, balance_q_;
-  std::vector<int> held_; // entries of q_R, by dry friction
-  ModelCoordinates chosen_;
-  bool angles_ = false; // some of what turns at found speeds matter
-  bool phases_ = false; // these angles are states
+  std::optional<LinearPlace> place_;
 };
 
 } // namespace
@@ -719,10 +471,6 @@ LinearModel linearize(const Mechanism& mechanism, std::span<const std::string> i
     out.refusal = "The computation was cancelled.";
   }
   return out;
-}
-
-const StateSpace& best_form(const LinearModel& model) {
-  return model.explicit_form ? *model.explicit_form : model.descriptor;
 }
 
 } // namespace flyball
