@@ -360,7 +360,7 @@ Ending run_without_display(const std::filesystem::path& scene, const EditorOptio
   write_png(file, picture.image);
   print_text(file.string() + "\n");
   return end_with(picture.answer.solution.status == Status::converged, scene,
-                  picture.answer.error.value_or(picture.answer.solution.message));
+                  picture.answer.error ? picture.answer.error->what() : picture.answer.solution.message);
 }
 
 } // namespace

@@ -57,7 +57,7 @@ Ending run_render(const RenderOptions& options) {
     print_text(fmt::format("{}: {} x {} pixels, drawn by {}\n", options.out.string(), wanted.width,
                            wanted.height, picture.drawn_by));
   if (wanted.drawn_pose) return {};
-  if (picture.answer.error) throw SceneError("", *picture.answer.error);
+  if (picture.answer.error) throw *picture.answer.error;
   return end_with(picture.answer.solution.status == Status::converged, options.scene,
                   picture.answer.solution.message + " (the picture shows the drawn pose)");
 }

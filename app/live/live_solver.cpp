@@ -123,8 +123,12 @@ LiveAnswer LiveSolver::Solver::solve(std::uint64_t ticket, const LiveRequest& re
   } catch (const Interrupted&) { // nobody waits for it; what comes after solving leaves the state as it is
     out.solution = {};
     if (!solved) forget();
-  } catch (const std::exception& error) { // SceneError, or no memory
-    out.error = error.what();
+  } catch (const SceneError& error) {
+    out.error = error;
+    out.solution = {};
+    forget();
+  } catch (const std::exception& error) { // no memory
+    out.error = SceneError("", error.what());
     out.solution = {};
     forget();
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "app/live/background.hpp"
+#include "engine/mechanism/error.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/grip.hpp"
@@ -42,7 +43,7 @@ struct LiveAnswer {
   std::vector<Pose> poses;            // at the time asked for; empty where there is no solution
   std::vector<AngularMotion> turning; // of the bodies, at the drawn drive phase; empty likewise
   double time = 0;                    // s
-  std::optional<std::string> error;   // why the mechanism cannot be compiled; then there is no solution
+  std::optional<SceneError> error;    // why the mechanism cannot be compiled; then there is no solution
   bool left_branch = false;           // asked for the nearest, but nothing was near
   std::optional<Grip> grip;           // where it was asked for and there is a steady state
 };

@@ -121,6 +121,11 @@ bool has_transfer(const Session& session) {
   return found.found && found.problem.empty();
 }
 
+std::string transfer_problem(const Session& session) {
+  const auto& found = session.study.transfer.found;
+  return with_phrase(found.problem, found.asked ? found.asked->choice.input : std::string());
+}
+
 std::string signal_phrase(const Session& session, const std::string& signal) {
   return has_number(session.mechanism(), signal) ? parameter_phrase(signal) : signal;
 }

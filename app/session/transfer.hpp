@@ -47,6 +47,9 @@ void close_transfer(Session& session);
 // Whether there is a model of what is shown.
 bool has_transfer(const Session& session);
 
+// Why there is no model of it, with the input in words; empty where nothing is wrong.
+std::string transfer_problem(const Session& session);
+
 // An input or output in words: "speed of spin" of a number's address; others as they are written.
 std::string signal_phrase(const Session& session, const std::string& signal);
 

@@ -46,12 +46,13 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   return true;
 }
 
-// How far the tools reach into the view from its left edge, where something would lie behind them (pixels);
-// zero otherwise.
-double hidden_by_tools(const ViewContext& context, const ViewCamera& camera, ViewSize size) {
+// How far the tools reach into the view, where something would lie behind them: from its left edge, or from
+// the upper one where there is more room below them than beside (pixels); zero otherwise.
+Vec2 hidden_by_tools(const ViewContext& context, const ViewCamera& camera, ViewSize size) {
   const WidgetMap& widgets = context.ui.widgets;
   const auto strip = widgets.find("tool strip"), whole = widgets.find("view");
-  if (context.session.mode != Mode::build || strip == widgets.end() || whole == widgets.end()) return 0;
+  if (context.session.mode != Mode::build || strip == widgets.end() || whole == widgets.end())
+    return Vec2::Zero();
   const ImVec2 origin = whole->second.from;
   const Vec2 end(static_cast<double>(strip->second.to.x - origin.x),
                  static_cast<double>(strip->second.to.y - origin.y));
@@ -68,7 +69,12 @@ double hidden_by_tools(const ViewContext& context, const ViewCamera& camera, Vie
   const ViewScene& scene = *shown_scene(context);
   const bool any = std::ranges::any_of(scene.solid.instances, hidden) ||
                    std::ranges::any_of(scene.ghost, hidden) || std::ranges::any_of(scene.drawn, hidden);
-  return any && 2 * end.x() < size.width ? end.x() : 0;
+  if (!any) return Vec2::Zero();
+  const double beside = size.width - end.x(), below = size.height - end.y();
+  const bool left = std::min(beside, size.height) >= std::min(below, size.width);
+  constexpr double least = 0.25; // of the view, below which it is better seen behind them
+  if (left) return beside > least * size.width ? Vec2(end.x(), 0) : Vec2(0, 0);
+  return below > least * size.height ? Vec2(0, end.y()) : Vec2(0, 0);
 }
 
 void fit_whole(const ViewContext& context, ViewSize size) {
@@ -88,9 +94,10 @@ void fit_whole(const ViewContext& context, ViewSize size) {
   };
   fit(size);
   const bool chosen = !context.view.keep_direction && mechanism.view.camera; // as the scene has it
-  if (const double tools = hidden_by_tools(context, camera, size); tools > 0 && !chosen) {
-    fit({size.width - tools, size.height});
-    camera.pan(tools / 2, 0, size);
+  if (const Vec2 tools = hidden_by_tools(context, camera, size); tools.any() && !chosen) {
+    fit({size.width - tools.x(), size.height - tools.y()});
+    camera.zoom(1 - tools.y() / size.height, {size.width / 2, size.height / 2}, size);
+    camera.pan(tools.x() / 2, tools.y() / 2, size);
   }
   // Until the first answer is there nobody knows what will have to be in view.
   if (!solving(context.session)) context.view.fit = false;

@@ -333,16 +333,20 @@ RingPlace ring_in_sight(const Assembly& assembly, std::size_t index, const Vec3&
       if (b < 0) continue;
       const Body& body = assembly.mechanism.bodies[static_cast<std::size_t>(b)];
       for (const Shape& shape : body.shapes) {
-        if (!hides(shape, body, ring)) continue;
         const auto [low, high] = reach_of(shape, body, joint.at, axis);
-        beyond = std::max(beyond, high + 0.9 * u);
         const bool disc = shape.type == ShapeType::cylinder && high - low < 2 * shape.radius &&
                           axis.cross(shape.from - joint.at).norm() < 0.3 * u &&
                           axis.cross(shape.to - joint.at).norm() < 0.3 * u;
+        // Close before a larger disc's face the ring is seen from one side only.
+        const double near = 1.6 * u;
+        const bool before_face = disc && round && shape.radius > ring.radius && ring.along > low - near &&
+                                 ring.along < high + near;
+        if (!before_face && !hides(shape, body, ring)) continue;
+        beyond = std::max(beyond, high + 0.9 * u);
         if (disc && (!rim || shape.radius > rim->radius)) rim = RingPlace{0.5 * (low + high), shape.radius};
       }
     }
-    if (beyond == ring.along) break;
+    if (beyond == ring.along && !(rim && round)) break;
     ring =
         rim && round ? RingPlace{rim->along, 1.1 * rim->radius + 0.4 * u} : RingPlace{beyond, beside.radius};
     if (rim) round = false;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 
 namespace flyball {
 namespace {
@@ -50,6 +51,14 @@ class DrivenCoordinates {
     for (std::size_t i = 0; i < count; ++i)
       if (!(*this)(joint, i).is || (*this)(joint, i).found) return false;
     return true;
+  }
+
+  // Whether a coordinate of the joint has a drive or is at a given speed, so that no loop is cut there.
+  bool is_kept(std::size_t joint) const {
+    const std::vector<Coordinate>& coordinates = mechanism_.joints[joint].coordinates;
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      if (const Driven& d = (*this)(joint, i); coordinates[i].drive || (d.is && !d.found)) return true;
+    return false;
   }
 
  private:
@@ -188,34 +197,73 @@ std::vector<std::size_t> path_between(const Mechanism& mechanism, const BodyNumb
   return path;
 }
 
-// A loop in which every joint is driven at a given speed or fixed moves as the drives say, or not at all.
-void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driven, Mistakes& mistakes) {
-  const BodyNumbers numbers(mechanism);
+// Calls `closes` with every joint that closes a loop of `joints`, in their order, and the others of that
+// loop.
+void find_loops(const Mechanism& mechanism, const BodyNumbers& numbers,
+                const std::vector<std::size_t>& joints,
+                const std::function<void(std::size_t, const std::vector<std::size_t>&)>& closes) {
   BodyGroups groups(numbers);
   std::vector<std::size_t> joined;
-  const auto join = [&](bool fixed) {
-    for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
-      const Joint& joint = mechanism.joints[j];
-      const bool has_bodies = joint.type != JointType::gear && joint.type != JointType::distance;
-      if (!has_bodies || fixed != (joint.type == JointType::fixed) || !driven.every_one_at_given_speed(j))
-        continue;
-      if (groups.join(joint.bodies)) {
-        joined.push_back(j);
-      } else if (!fixed) { // a loop of fixed joints alone is only redundant
-        std::vector<std::string> names{joint.name};
-        for (const std::size_t k :
-             path_between(mechanism, numbers, joined, numbers[joint.bodies[0]], numbers[joint.bodies[1]]))
-          names.push_back(mechanism.joints[k].name);
-        const std::vector<std::string_view> views(names.begin(), names.end());
-        mistakes.add(joint_path(mechanism, j) + ".drive",
-                     "expected a joint that is neither driven nor fixed in the "
-                     "loop of " +
-                         word_list(views, "and") + ": these drives contradict each other");
-      }
-    }
+  for (const std::size_t j : joints) {
+    const auto& bodies = mechanism.joints[j].bodies;
+    if (groups.join(bodies))
+      joined.push_back(j);
+    else
+      closes(j, path_between(mechanism, numbers, joined, numbers[bodies[0]], numbers[bodies[1]]));
+  }
+}
+
+// "shaft", or "disc on shaft" where neither is the ground.
+std::string what_it_moves(const Joint& joint) {
+  const auto& [parent, child] = joint.bodies;
+  if (parent == ground_name) return child;
+  return child == ground_name ? parent : child + " on " + parent;
+}
+
+void add_loop(const Mechanism& mechanism, std::size_t j, const std::vector<std::size_t>& others,
+              const char* contradiction, Mistakes& mistakes) {
+  const Joint& joint = mechanism.joints[j];
+  const std::string where = joint_path(mechanism, j) + ".drive";
+  const Joint& other = mechanism.joints[others.front()];
+  if (others.size() == 1)
+    return mistakes.add(where, joint.name + " drives " + what_it_moves(joint) + ", which " + other.name +
+                                   (other.type == JointType::fixed
+                                        ? " holds: expected no drive"
+                                        : " drives already: expected one drive for both"));
+  std::vector<std::string_view> names{joint.name};
+  for (const std::size_t k : others)
+    names.push_back(mechanism.joints[k].name);
+  mistakes.add(where, "expected a joint that is neither driven nor fixed in the loop of " +
+                          word_list(names, "and") + ": " + contradiction);
+}
+
+// A loop in which every joint is driven at a given speed or fixed moves as the drives say, or not at all. One
+// in which every joint has a drive, of whatever kind, leaves none to be cut.
+void find_driven_loops(const Mechanism& mechanism, const DrivenCoordinates& driven, Mistakes& mistakes) {
+  const BodyNumbers numbers(mechanism);
+  std::vector<std::size_t> fixed, given, finding;
+  for (std::size_t j = 0; j < mechanism.joints.size(); ++j) {
+    const Joint& joint = mechanism.joints[j];
+    if (joint.type == JointType::gear || joint.type == JointType::distance) continue;
+    if (joint.type == JointType::fixed)
+      fixed.push_back(j);
+    else if (driven.every_one_at_given_speed(j))
+      given.push_back(j);
+    else if (driven.is_kept(j))
+      finding.push_back(j);
+  }
+  const auto followed_by = [](std::vector<std::size_t> first, const std::vector<std::size_t>& then) {
+    first.insert(first.end(), then.begin(), then.end());
+    return first;
   };
-  join(true);
-  join(false);
+  find_loops(mechanism, numbers, followed_by(fixed, given), [&](std::size_t j, const auto& others) {
+    if (mechanism.joints[j].type != JointType::fixed) // a loop of fixed joints alone is only redundant
+      add_loop(mechanism, j, others, "these drives contradict each other", mistakes);
+  });
+  find_loops(mechanism, numbers, followed_by(given, finding), [&](std::size_t j, const auto& others) {
+    if (!driven.every_one_at_given_speed(j)) // else it is told already
+      add_loop(mechanism, j, others, "a joint that is driven cannot be cut to close it", mistakes);
+  });
 }
 
 } // namespace

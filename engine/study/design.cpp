@@ -355,6 +355,16 @@ class Designer {
   DesignAnswer out_;
 };
 
+// Both ends of a range, with as many digits as tell them apart, or the same text where only rounding does.
+std::array<std::string, 2> told_apart(double lowest, double highest) {
+  constexpr int enough = 6, most = 12;
+  std::array<std::string, 2> texts;
+  for (int digits = enough; digits <= most && texts[0] == texts[1]; ++digits)
+    texts = {rounded_text(lowest, digits), rounded_text(highest, digits)};
+  return texts[0] != texts[1] ? texts
+                              : std::array{rounded_text(lowest, enough), rounded_text(lowest, enough)};
+}
+
 } // namespace
 
 std::string design_message(const DesignAnswer& answer, double from, double to, bool all,
@@ -379,14 +389,20 @@ std::string design_message(const DesignAnswer& answer, double from, double to, b
   if (const std::size_t n = answer.solutions.size(); n > 0)
     return std::to_string(n) + (n == 1 ? " solution" : " solutions") + " with " + limits + "." + open;
   std::string covered;
+  bool stays = false;
   for (std::size_t i = 0; i < answer.covered.size(); ++i) {
-    const auto& [lowest, highest] = answer.covered[i];
+    const auto [from_text, to_text] = told_apart(shown(answer.covered[i][0]), shown(answer.covered[i][1]));
     if (i > 0) covered += i + 1 == answer.covered.size() ? " and " : ", ";
-    covered += with(rounded_text(shown(lowest), 6), words.wanted_unit);
-    if (highest > lowest) covered += " to " + with(rounded_text(shown(highest), 6), words.wanted_unit);
+    covered += with(from_text, words.wanted_unit);
+    stays = from_text == to_text;
+    if (!stays) covered += " to " + with(to_text, words.wanted_unit);
   }
+  stays = stays && answer.covered.size() == 1;
   return words.wanted + " never is " + value + " with " + limits +
-         (covered.empty() ? ": it has no value there." : ": it covers " + covered + ".") + open;
+         (covered.empty() ? ": it has no value there."
+          : stays         ? ": it stays at " + covered + "."
+                          : ": it covers " + covered + ".") +
+         open;
 }
 
 DesignAnswer design(const Mechanism& mechanism, const std::string& address, double from, double to,

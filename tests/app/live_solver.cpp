@@ -132,7 +132,7 @@ TEST_CASE("another mechanism forgets the old one, and one that cannot be compile
   const auto answer = live.take_answer();
   REQUIRE(answer);
   REQUIRE(answer->error);
-  CHECK_THAT(*answer->error, ContainsSubstring("nobody"));
+  CHECK_THAT(answer->error->what(), ContainsSubstring("nobody"));
   CHECK(answer->poses.empty());
   live.ask_poses(1);
   CHECK_FALSE(live.take_poses());

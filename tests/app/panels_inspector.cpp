@@ -437,3 +437,23 @@ TEST_CASE("powers in fields are written as in results, and typed either way") {
   for (const char* unit : {"m/s^2", "kg m^2", "kg/m^3", "N s^2/m^2"})
     CHECK(parse_quantity("2.5 " + written_unit(unit), unit, written_unit(unit)).value == 2.5);
 }
+
+TEST_CASE("a name with characters beyond 16 bits is edited without losing them") {
+  Hand hand;
+  imgui_compat::map_key(ImGuiKey_End, 269);
+  edit(hand.app.session, "Rename",
+       [](Mechanism& next, Selection&) { next.name = "a \U0001F642 b \U0001F680"; });
+  select(hand.app.session, {});
+  hand.frames(2);
+  const auto end_with = [&](const char* more) {
+    hand.click("inspector/name");
+    hand.key(269);
+    hand.type(more);
+    hand.key(key_enter);
+    hand.frames(2);
+  };
+  end_with("2");
+  CHECK(hand.mechanism().name == "a \U0001F642 b \U0001F6802");
+  end_with("\u00e9");
+  CHECK(hand.mechanism().name == "a \U0001F642 b \U0001F6802\u00e9");
+}

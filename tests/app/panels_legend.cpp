@@ -253,6 +253,24 @@ TEST_CASE("in a narrow view the legend is folded where it would lie over the too
   CHECK(legend.from.x >= tools.to.x);
 }
 
+TEST_CASE("an open legend leaves the caption in sight where the view is narrow") {
+  Robot robot({1280, 800});
+  App& app = robot.app;
+  edit(app.session, "Rename",
+       [](Mechanism& next, Selection&) { next.name = "A governor with a name as long as half of the view"; });
+  robot.key('M');
+  robot.frames(3);
+  robot.click("motion/beside");
+  app.commands.run("view.loads");
+  robot.frames(3);
+  robot.click("legend");
+  robot.frames(3);
+  const WidgetRect name = robot.widget("view/name"), legend = robot.widget("legend frame");
+  REQUIRE(app.ui.widgets.contains("legend/0"));
+  REQUIRE(name.to.x > legend.from.x);
+  CHECK(legend.from.y > name.to.y);
+}
+
 TEST_CASE("the tools keep clear of the cube however high the window is") {
   const int height = GENERATE(768, 743, 735, 700, 600);
   Robot robot({1366, height});

@@ -171,6 +171,22 @@ TEST_CASE("what is fitted into the view while building does not lie behind the t
     CHECK(off == Approx((tools.to.x - view.from.x) / 2).margin(4));
 }
 
+TEST_CASE("where the tools take all of the view's width what is fitted stands below them") {
+  Robot robot({400, 400});
+  App& app = robot.app;
+  set_mode(app.session, Mode::build);
+  robot.frames(3);
+  robot.point(robot.widget("view").center());
+  robot.key('F');
+  robot.frames(80);
+  const WidgetRect tools = robot.widget("tool strip"), view = robot.widget("view");
+  REQUIRE(tools.to.x - view.from.x > 0.75f * (view.to.x - view.from.x));
+  for (const Body& body : app.session.mechanism().bodies) {
+    CHECK(robot.pixel(body.position).y > tools.to.y);
+    CHECK(robot.pixel(body.position).y < view.to.y);
+  }
+}
+
 TEST_CASE("a scene that is opened has its drawn pose in view, too") {
   Robot robot({1280, 800});
   App& app = robot.app;

@@ -206,6 +206,14 @@ TEST_CASE("another input and another output are chosen, and what has no model sa
   CHECK(robot.found().model.refusal.empty());
 }
 
+TEST_CASE("a number that has no place in a model is told by its words") {
+  TransferRobot robot("differential");
+  robot.state().choice.input = "joints.case.drive.load";
+  robot.frames(3);
+  REQUIRE(robot.state().found.problem.find("joints.case.drive.load") != std::string::npos);
+  CHECK(transfer_problem(robot.app.session).starts_with("The input load on case has no place"));
+}
+
 TEST_CASE("the model follows a number that a hand moves") {
   TransferRobot robot;
   const auto before = robot.found().model.poles.front();

@@ -254,7 +254,7 @@ TEST_CASE("Drives that contradict each other through gears") {
     lock.type = JointType::fixed;
     lock.bodies = {"ground", "b"};
     m.joints.push_back(lock);
-    CHECK_THAT(mistakes_of(m), ContainsSubstring("in the loop of b and lock"));
+    CHECK_THAT(mistakes_of(m), ContainsSubstring("b drives b, which lock holds: expected no drive"));
   }
 }
 
@@ -270,6 +270,24 @@ TEST_CASE("Drives that close a loop") {
   CHECK_THAT(mistakes_of(m),
              ContainsSubstring("joints.back.drive: expected a joint that is neither driven nor fixed "
                                "in the loop of back, c, b and a"));
+}
+
+TEST_CASE("Two drives of one shaft") {
+  Mechanism m = three_wheels();
+  m.joints.push_back(revolute("spin", "ground", "b", {0, 0, 0}));
+  m.joints.back().coordinates[0].drive = Drive{1};
+  m.joints[1].coordinates[0].drive = Drive{1};
+  CHECK(mistakes_of(m) ==
+        "joints.spin.drive: spin drives b, which b drives already: expected one drive for both\n");
+  SECTION("by torque, too") {
+    for (const std::size_t j : {std::size_t{1}, m.joints.size() - 1})
+      m.joints[j].coordinates[0].drive->torque = 2;
+    CHECK_THAT(mistakes_of(m), ContainsSubstring("spin drives b, which b drives already"));
+  }
+  SECTION("one of them by torque") {
+    m.joints[1].coordinates[0].drive->torque = 2;
+    CHECK_THAT(mistakes_of(m), ContainsSubstring("joints.b.drive: b drives b, which spin drives already"));
+  }
 }
 
 TEST_CASE("What holds a body") {

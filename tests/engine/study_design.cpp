@@ -95,6 +95,27 @@ TEST_CASE("a value that is never reached is told with what is covered", "[design
   CHECK(answer.message.find("covers") != std::string::npos);
 }
 
+TEST_CASE("both ends of what is covered are told apart, or it stays where it is", "[design]") {
+  DesignAnswer answer;
+  answer.end = DesignEnd::never;
+  answer.value = 0.5;
+  const auto told = [&](double lowest, double highest) {
+    answer.covered = {{lowest, highest}};
+    return design_message(answer, 0, 1, true,
+                          {.wanted = "s",
+                           .wanted_unit = "m",
+                           .varied = "n",
+                           .varied_unit = "rad/s",
+                           .shown = {},
+                           .shown_varied = {}});
+  };
+  CHECK(told(-0.0292200014, -0.0292199986).find(": it covers -0.02922 m to -0.02922 m") == std::string::npos);
+  CHECK(told(-0.0292200014, -0.0292199986).find(": it covers -0.029220001 m to -0.029219999 m.") !=
+        std::string::npos);
+  CHECK(told(-0.02922, -0.02922).find(": it stays at -0.02922 m.") != std::string::npos);
+  CHECK(told(0.1, 0.2).find(": it covers 0.1 m to 0.2 m.") != std::string::npos);
+}
+
 TEST_CASE("beside each peak of a measure both places where it has a value are found", "[design]") {
   // sin(20 a) of the lean a, cos(a) = g / (w^2 L): between points of the branch it bends much, and its peaks
   // stand hardly above what is wanted.

@@ -25,7 +25,7 @@ void ModelDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
   const TransferState& state = session.study.transfer;
   const auto& found = state.found.found;
   if (!state.found.problem.empty())
-    paragraph(state.found.problem, colors_of(ui).warn);
+    paragraph(transfer_problem(session), colors_of(ui).warn);
   else if (!has_transfer(session))
     paragraph("The model is being made.", colors_of(ui).dim);
   else

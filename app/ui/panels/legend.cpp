@@ -175,7 +175,11 @@ float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size
     bottom = explored->second.from.y - 14 * s;
   else if (status != ui.widgets.end())
     bottom = std::min(bottom, status->second.from.y - 8 * s);
-  const float upper = view.y + 10 * s, lower = bottom - size.y;
+  float upper = view.y + 10 * s;
+  const float lower = bottom - size.y;
+  for (const char* words : {"view/name", "view/time"}) // of the caption, at the left
+    if (const auto at = ui.widgets.find(words); at != ui.widgets.end() && at->second.to.x > left - 6 * s)
+      upper = std::max(upper, at->second.to.y + 6 * s);
   if (lower <= upper) return upper;
   if (ImGui::GetIO().MouseWheel != 0) zoomed_ = {state.camera, rows};
   const bool zooms = zoomed_ && *zoomed_ == std::pair(state.camera, rows);

@@ -159,7 +159,7 @@ void result_contents(Session& session, Ui& ui, ResultSections& open, InBearings&
     refusal(session, ui);
   } else if (session.answer.error) {
     ImGui::TextColored(colors_of(ui).bad, "%s  Cannot be solved", icon::warning);
-    paragraph(*session.answer.error, colors_of(ui).text);
+    paragraph(words_for(*session.answer.error), colors_of(ui).text);
   } else if (session.answer.ticket) {
     verdict(session, ui);
     remedies(session, ui, in_bearings);

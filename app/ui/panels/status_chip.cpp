@@ -38,7 +38,7 @@ StatusLine status_line(const Session& session, const Ui& ui) {
   }
   if (solving(session) && (session.waited > patience || !session.answer.ticket))
     return {"Solving…", colors.dim, icon::refresh};
-  if (session.answer.error) return {*session.answer.error, colors.bad, icon::warning};
+  if (session.answer.error) return {words_for(*session.answer.error), colors.bad, icon::warning};
   if (!session.answer.ticket) return {};
   const Solution& solution = session.answer.solution;
   switch (solution.status) {

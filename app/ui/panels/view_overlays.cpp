@@ -86,7 +86,10 @@ void caption(const Session& session, Ui& ui, const PanelRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect({rect.x, rect.y}, {rect.x + rect.width - 8 * s, rect.y + rect.height}, true);
   const float big = ui.fonts.strong->FontSize;
-  draw_words(ui, ui.fonts.strong, {x, y}, colors.text, session.mechanism().name);
+  const std::string& name = session.mechanism().name;
+  draw_words(ui, ui.fonts.strong, {x, y}, colors.text, name);
+  const float wide = ui.fonts.strong->CalcTextSizeA(big, 1e9f, 0, name.c_str()).x;
+  ui.widgets["view/name"] = {{x, y}, {x + wide, y + big}};
   y += big + 4 * s;
   const bool solved = converged(session);
   std::string state; // which pose it is, the legend says

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/document/part.hpp"
+#include "app/ui/widgets/wide_characters.hpp"
 
 #include <imgui.h>
 
@@ -60,7 +61,8 @@ struct FieldState {
   std::vector<std::function<void()>> later;
   std::optional<double> plain; // what was typed in a field outside the document
   ChoiceSearch choice_search;
-  std::string picking; // address of the vector for which the view is asked to pick a named point
+  std::string picking;   // address of the vector for which the view is asked to pick a named point
+  WideCharacters wide{}; // that texts in fields have had
 };
 
 } // namespace flyball

@@ -178,8 +178,10 @@ bool text_field(Session& session, Ui& ui, const TextField& field, float width) {
   // has just closed.
   if (was_typing && std::exchange(typing.wants_focus, false))
     imgui_compat::press_item(ImGui::GetID("##typed"), true);
-  const bool entered = ImGui::InputTextWithHint("##typed", field.hint, was_typing ? &typing.text : &resting,
-                                                flags, call_back, &own);
+  std::string& text = was_typing ? typing.text : resting;
+  put_stand_ins(text, ui.fields.wide);
+  const bool entered = ImGui::InputTextWithHint("##typed", field.hint, &text, flags, call_back, &own);
+  take_stand_ins(text, ui.fields.wide);
   ImGui::PopID();
   ImGui::PopStyleColor();
   note_widget(ui.widgets, field.name, KeyUse::type);

@@ -335,7 +335,8 @@ void draw_histogram(Session& session, Ui& ui, SpreadView& drawn) {
 void spread_panel(Session& session, Ui& ui, SpreadView& drawn) {
   const float s = ui.scale;
   const auto column = [&](const char* name, float width, auto contents) {
-    ImGui::BeginChild(name, {width, 0});
+    const float room = std::max(ImGui::GetContentRegionAvail().x, 40 * s); // in a narrow window
+    ImGui::BeginChild(name, {std::min(width, room), 0});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * s, 3 * s});
     contents(session, ui);
     ImGui::PopStyleVar();

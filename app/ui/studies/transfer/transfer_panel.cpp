@@ -90,7 +90,7 @@ void transfer_words(Session& session, Ui& ui, TransferView& drawn, const Command
              std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
   }
   if (!state.found.problem.empty()) {
-    paragraph(state.found.problem, colors.warn);
+    paragraph(transfer_problem(session), colors.warn);
     note_widget(ui.widgets, "transfer/problem");
   } else if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
