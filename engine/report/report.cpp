@@ -236,12 +236,15 @@ bool is_finite(const Solution& s) {
 }
 
 std::optional<std::string> unknown_coordinate(const Solution& s) {
-  const auto lost = [](double value, double error, double scale) {
-    return error > std::max(std::abs(value), scale);
+  // What is soft may be anywhere, which its error tells, and the rest be known all the same. A speed has a
+  // part in all that turns with it.
+  constexpr double anywhere = 1e6;
+  const auto lost = [](double value, double error, double scale, double times) {
+    return error > times * std::max(std::abs(value), scale);
   };
   for (const CoordinateSolution& c : s.coordinates)
-    if ((!c.driven && lost(c.value, c.error, c.scale)) ||
-        (c.speed && lost(*c.speed, c.speed_error, c.speed_scale)))
+    if ((!c.driven && lost(c.value, c.error, c.scale, anywhere)) ||
+        (c.speed && lost(*c.speed, c.speed_error, c.speed_scale, 1)))
       return coordinate_label(c);
   return {};
 }
