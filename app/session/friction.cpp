@@ -11,7 +11,7 @@ namespace flyball {
 namespace {
 
 FrictionReport find_friction(const FrictionRequest& request, const TaskContext<FrictionReport>& context) {
-  return report_friction(*request.mechanism, request.steady, &context.cancel);
+  return report_friction(*request.mechanism, request.state, request.parts, &context.cancel);
 }
 
 FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRibbon>& context) {
@@ -36,9 +36,8 @@ FoundRibbon find_ribbon(const RibbonRequest& request, const TaskContext<FoundRib
 std::optional<FrictionRequest> request_of(const Session& session) {
   const LiveAnswer& answer = session.answer;
   if (!answer.mechanism || answer.error || !has_friction(*answer.mechanism)) return std::nullopt;
-  FrictionRequest request{{answer.mechanism}, {}};
-  if (answer.solution.status == Status::converged && answer.solution.frictions.empty())
-    request.steady = start_values(answer.solution.coordinates);
+  FrictionRequest request{{answer.mechanism}, {}, parts_of(*answer.mechanism, answer.solution.frictions)};
+  if (answer.solution.status == Status::converged) request.state = start_values(answer.solution.coordinates);
   return request;
 }
 

@@ -13,7 +13,8 @@ namespace flyball {
 
 struct FrictionRequest {
   SharedMechanism mechanism;
-  std::optional<std::vector<std::pair<std::string, double>>> steady; // the state that is shown, if any
+  std::optional<std::vector<std::pair<std::string, double>>> state; // that is shown, if any
+  FrictionParts parts;                                              // of friction in it
   bool operator==(const FrictionRequest&) const = default;
 };
 

@@ -461,4 +461,9 @@ Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<Coordina
   return Attempt(mechanism, frictions, parts, nullptr, std::move(implied)).driven().mechanism;
 }
 
+Standstill stand_still_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
+                                const FrictionParts& parts, std::span<const CoordinateReference> at_rest) {
+  return Attempt(mechanism, frictions, parts).driven(at_rest);
+}
+
 } // namespace flyball

@@ -5,6 +5,7 @@
 
 #include "engine/report/friction_state.hpp"
 #include "engine/report/holding.hpp"
+#include "engine/report/standstill.hpp"
 
 namespace flyball {
 
@@ -29,5 +30,8 @@ std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
 // The mechanism that is solved then. Throws SceneError.
 Mechanism driven_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
                           const FrictionParts& parts, std::vector<bool> implied = {});
+// The same with drives by torque that have come to rest, and what stands still in it.
+Standstill stand_still_by_parts(const Mechanism& mechanism, const std::vector<CoordinateReference>& frictions,
+                                const FrictionParts& parts, std::span<const CoordinateReference> at_rest);
 
 } // namespace flyball

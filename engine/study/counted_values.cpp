@@ -1,5 +1,6 @@
 #include "engine/study/counted_values.hpp"
 
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>
@@ -10,8 +11,10 @@
 namespace flyball {
 namespace {
 
-// Measures are told as they are, and rotation vectors do not count turns.
+// Rotation vectors do not count turns.
 bool counts_turns(const Mechanism& mechanism, const ResponsePoint& state, const std::string& name) {
+  if (const int measure = measure_index(mechanism, name); measure >= 0)
+    return mechanism.measures[static_cast<std::size_t>(measure)].unit == "rad";
   return std::ranges::any_of(state.coordinates, [&](const CoordinateSolution& c) {
     const auto number = found_number(c);
     if (!number || number->name != name || number->unit != "rad") return false;

@@ -1,5 +1,5 @@
-// What is told along the branches of a diagram that hang together. A hinge's angle that is told between -pi
-// and pi goes on beyond: whole turns are counted from a state on the first branch.
+// What is told along the branches of a diagram that hang together. A hinge's angle, or a measure in rad, that
+// is told between -pi and pi goes on beyond: whole turns are counted from a state on the first branch.
 #pragma once
 
 #include "engine/continuation/branches.hpp"

@@ -51,7 +51,9 @@ class Box {
  public:
   Box(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> names,
       const std::atomic<bool>* cancel)
-      : map_(mechanism, free, std::move(names), cancel) {}
+      : map_(mechanism, free, std::move(names), cancel) {
+    map_.count_turns();
+  }
 
   struct Place {
     SteadyMap::State state;
@@ -225,11 +227,10 @@ void take_crests(const Mechanism& mechanism, const FreeNumber& share,
       const double before = sense * (values[i] - values[i - 1]), after = sense * (values[i] - values[i + 1]);
       const double beyond = std::max(before, after); // less than this between them
       if (!(before > 0) || !(after > 0) || !(sense * (values[i] - end) + beyond > 0)) continue;
-      // A jump is a measured angle's, told between -pi and pi.
-      if (extent.unit == "rad" && beyond > std::numbers::pi) continue;
       const auto crest = crest_beside(mechanism, share, points, i, extent.name, sense, cancel);
       if (!crest) continue;
-      const double top = *crest + values[i] - told_value(points[i], extent.name); // turns counted likewise
+      // Turns are counted from where its way begins.
+      const double top = *crest + values[i - 1] - told_value(points[i - 1], extent.name);
       if (sense * (top - end) > 0) end = top;
     }
 }
@@ -392,6 +393,9 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     } else {
       band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
                      "push may make it jump.";
+      if (free.size() > 1)
+        band.message +=
+            " Friction may hold it beyond: with several joints that have some that is not followed.";
     }
   } catch (const Interrupted&) {
     band = {};

@@ -3,6 +3,8 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/report/friction_attempt.hpp"
+#include "engine/study/brake_band.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -41,16 +43,22 @@ FrictionBand band_by_friction_alone(const Mechanism& mechanism, const std::atomi
 } // namespace
 
 FrictionReport report_friction(const Mechanism& mechanism,
-                               const std::optional<std::vector<std::pair<std::string, double>>>& steady,
-                               const std::atomic<bool>* cancel) {
+                               const std::optional<std::vector<std::pair<std::string, double>>>& state,
+                               const FrictionParts& parts, const std::atomic<bool>* cancel) {
   const auto begin = std::chrono::steady_clock::now();
   FrictionReport out;
   out.drawn = find_holding(mechanism, {}, cancel);
-  if (steady) {
-    out.band = find_friction_band(mechanism, {.start = *steady, .cancel = cancel});
-    out.speeds = find_held_speeds(mechanism, *steady, cancel);
+  const bool rests_on_friction =
+      std::ranges::any_of(parts, [](FrictionPart part) { return part != FrictionPart::none; });
+  if (state && !rests_on_friction) {
+    out.band = find_friction_band(mechanism, {.start = *state, .cancel = cancel});
+    out.speeds = find_held_speeds(mechanism, *state, cancel);
   } else {
-    out.band = band_by_friction_alone(mechanism, cancel);
+    std::optional<FrictionBand> beside;
+    if (state) beside = find_band_beside_brakes(mechanism, parts, *state, cancel);
+    out.band = beside ? std::move(*beside) : band_by_friction_alone(mechanism, cancel);
+    if (rests_on_friction && std::ranges::none_of(parts, is_slipping))
+      out.speeds = find_held_speeds(mechanism, {}, cancel);
   }
   out.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return out;
@@ -58,13 +66,9 @@ FrictionReport report_friction(const Mechanism& mechanism,
 
 FrictionReport report_friction(const Mechanism& mechanism, const Solution& solution,
                                const std::atomic<bool>* cancel) {
-  std::optional<std::vector<std::pair<std::string, double>>> steady;
-  if (solution.status == Status::converged && solution.frictions.empty())
-    steady = start_values(solution.coordinates);
-  FrictionReport out = report_friction(mechanism, steady, cancel);
-  if (!solution.frictions.empty() && std::ranges::none_of(solution.frictions, &FrictionForce::slips))
-    out.speeds = find_held_speeds(mechanism, {}, cancel);
-  return out;
+  std::optional<std::vector<std::pair<std::string, double>>> state;
+  if (solution.status == Status::converged) state = start_values(solution.coordinates);
+  return report_friction(mechanism, state, parts_of(mechanism, solution.frictions), cancel);
 }
 
 } // namespace flyball

@@ -17,8 +17,10 @@
 #include "engine/solve/existence.hpp"
 #include "engine/solve/sensitivity.hpp"
 #include "engine/stability/neutral_directions.hpp"
+#include "engine/study/counted_values.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace flyball {
@@ -109,6 +111,17 @@ void SteadyMap::find_values(State& state) {
                                 : (*measured)[static_cast<Eigen::Index>(wanted_[i].measure)];
 }
 
+void SteadyMap::find_values(State& state, const State& from) {
+  find_values(state);
+  if (!counts_turns_) return;
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double predicted = from.values[k] + rates_.row(k).dot(state.p - from.p);
+    if (!wanted_[i].coordinate && unit(i) == "rad" && std::isfinite(predicted))
+      state.values[k] = counted_on(state.values[k], predicted);
+  }
+}
+
 bool SteadyMap::follow_across(State& state) {
   constexpr double some = 0.3, alike = 1e-8; // scaled: a step along the family; of a value
   if (state.turned || !w_.matrices(problem())) return false;
@@ -179,7 +192,7 @@ std::optional<SteadyMap::State> SteadyMap::step_to_turned(const State& from, con
   set(to);
   if (!check_existence(dense(), to.z.q, sample_phases(system_, parameters_, to.z.q), w_).holds)
     return std::nullopt;
-  find_values(to);
+  find_values(to, from);
   return to;
 }
 
@@ -274,7 +287,7 @@ std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eige
   // Past a fold, or where branches cross, the steady states are others.
   if (problem().symmetric() && factor_at(problem(), to.z, w_).kkt().negative_count() != negative_)
     return std::nullopt;
-  find_values(to);
+  find_values(to, from);
   return to;
 }
 

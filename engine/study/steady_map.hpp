@@ -54,6 +54,10 @@ class SteadyMap {
   // Whether what is asked for differs along them.
   bool is_open(std::size_t wanted) const { return wanted < open_.size() && open_[wanted]; }
 
+  // From here on measures of angles, in rad, that jump from pi to -pi go on beyond pi along the states, as
+  // coordinates do.
+  void count_turns() { counts_turns_ = true; }
+
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
   // where the state is singular, or at an end of what mechanisms can be made of. By the balance's exact rates
@@ -97,6 +101,8 @@ class SteadyMap {
   std::optional<State> step_to_turned(const State& from, const Eigen::VectorXd& p);
   bool find_turned_rates(const State& state);
   void find_values(State& state);
+  // The same of a state to which a step leads from the one whose rates were found last.
+  void find_values(State& state, const State& from);
   bool correct(Unknowns& z);
 
   Mechanism varied_;
@@ -111,6 +117,7 @@ class SteadyMap {
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
   std::optional<Analysis> analysis_;  // of states that are told
+  bool counts_turns_ = false;         // see count_turns()
   bool across_ = false;               // see follow_across()
   std::vector<bool> open_;            // what of `wanted_` has no value then
   int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,

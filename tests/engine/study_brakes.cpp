@@ -501,3 +501,83 @@ TEST_CASE("friction where momentum is kept is refused with the reason") {
             bearing_at("pa", "a", 0, R"("drive": {"keeps": "momentum", "speed": 5}, )" + friction(1))),
       ContainsSubstring("where friction acts no momentum is kept"));
 }
+
+namespace {
+
+// A shaft of 2 N m - 0.4 N m s w, a bob of 1 kg on an arm of 0.5 m at 0.1 m from its axis, in a hinge with
+// friction (N m).
+Mechanism braked_governor(const std::string& brake, double hinge, const std::string& more = "") {
+  return scene(body_at("a", 0) + R"(, {"name": "bob", "mass": 1, "position": [0.1, -0.5, 0]})" +
+                   (more.empty() ? "" : ", " + body_at("c", 0.3)),
+               bearing_at("spin", "a", 0,
+                          torque("2 N m - 0.4 N m s*rate(spin)") + (brake.empty() ? "" : ", " + brake)) +
+                   R"(, {"name": "swing", "type": "revolute", "bodies": ["a", "bob"], "at": [0.1, 0, 0],
+                     "axis": [0, 0, 1], )" +
+                   friction(hinge) + "}" + more,
+               R"("gravity": [0, -10, 0], )");
+}
+
+// Of the moments about the hinge, N m.
+double swing_moment(double speed, double angle) {
+  return 5 * std::sin(angle) - speed * speed * (0.1 + 0.5 * std::sin(angle)) * 0.5 * std::cos(angle);
+}
+
+BandExtent extent_of(const FrictionReport& report, std::string_view name) {
+  INFO(report.band.message);
+  REQUIRE(report.band.found);
+  const auto found = std::ranges::find(report.band.extents, name, &BandExtent::name);
+  REQUIRE(found != report.band.extents.end());
+  return *found;
+}
+
+} // namespace
+
+TEST_CASE("beside a brake that slips the other friction makes its band") {
+  // On the shaft 0.5 N m leave 3.75 rad/s, on a countershaft at -2 they leave 2.5 rad/s.
+  const bool geared = GENERATE(false, true);
+  const Mechanism m = geared ? braked_governor("", 0.3,
+                                               ", " + bearing_at("pc", "c", 0.3, friction(0.5)) + ", " +
+                                                   meshing("g", "spin", "pc", -2))
+                             : braked_governor(friction(0.5), 0.3);
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  const double speed = geared ? 2.5 : 3.75;
+  const BandExtent swing = extent_of(report, "swing"), spin = extent_of(report, "spin.speed");
+  CHECK_THAT(spin.low, WithinRel(speed, 1e-12));
+  CHECK_THAT(spin.high, WithinRel(speed, 1e-12));
+  CHECK_THAT(swing_moment(speed, swing.low), WithinRel(-0.3, 1e-9));
+  CHECK_THAT(swing_moment(speed, swing.high), WithinRel(0.3, 1e-9));
+  CHECK(report.band.extents.size() == (geared ? 3 : 2)); // the speed of the countershaft, too
+  CHECK_THAT(report.band.message, ContainsSubstring(geared ? "while pc slips" : "while spin slips"));
+}
+
+TEST_CASE("beside a brake that stands the other friction makes its band") {
+  const Mechanism m = braked_governor(friction(2.5), 0.3);
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  const BandExtent swing = extent_of(report, "swing");
+  CHECK_THAT(swing.low, WithinAbs(-std::asin(0.3 / 5), 1e-12));
+  CHECK_THAT(swing.high, WithinAbs(std::asin(0.3 / 5), 1e-12));
+  CHECK(report.band.message == "It is the band while spin stands.");
+}
+
+TEST_CASE("no band is told in which a brake that stands would have to hold more than its limit") {
+  // An arm of 2 kg hangs from a level shaft that stands against 2 N m by a torque: what its hinge, on the
+  // same axis, holds the shaft has to hold, too.
+  const double limit = GENERATE(2.5, 3.5);
+  const Mechanism m =
+      scene(body_at("a", 0) + R"(, {"name": "bob", "mass": 2, "position": [0, -0.5, 0]})",
+            R"({"name": "spin", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0],
+                "axis": [0, 0, 1], )" +
+                torque("2 N m - 0.4 N m s*rate(spin)") + ", " + friction(limit) +
+                R"(}, {"name": "hinge", "type": "revolute", "bodies": ["a", "bob"], "at": [0, 0, 0],
+                   "axis": [0, 0, 1], )" +
+                friction(1) + "}",
+            R"("gravity": [0, -10, 0], )");
+  const FrictionReport report = report_friction(m, Analysis(m).solve());
+  INFO(report.band.message);
+  CHECK(report.band.found == (limit > 3));
+  if (report.band.found) {
+    CHECK_THAT(extent_of(report, "hinge").high, WithinRel(std::asin(0.1), 1e-12));
+  } else {
+    CHECK_THAT(report.band.message, ContainsSubstring("may have to hold more than its limit"));
+  }
+}

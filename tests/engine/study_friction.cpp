@@ -89,6 +89,42 @@ TEST_CASE("the band of an angle goes on beyond half a turn, as that which it han
   CHECK_THAT(knee.high, WithinAbs(0.4 - hinge.low, 1e-6));
 }
 
+TEST_CASE("the band of a measured angle goes on beyond half a turn") {
+  // The bob hangs where the angle jumps from pi to -pi.
+  const double limit = GENERATE(5., 9.9, 12.);
+  CAPTURE(limit);
+  Mechanism m = rubbing_pendulum(limit);
+  m.measures.push_back(
+      {.name = "upwards", .description = {}, .text = "atan2(-x(bob), y(bob))", .unit = "rad"});
+  const FrictionBand band = find_friction_band(m);
+  const BandExtent& angle = extent(band, "upwards");
+  CHECK(std::abs(angle.value) > 3.14);
+  const double most = limit < 10 ? std::asin(limit / 10) : std::numeric_limits<double>::infinity();
+  CHECK_THAT(angle.low, WithinRel(angle.value - most, 1e-9));
+  CHECK_THAT(angle.high, WithinRel(angle.value + most, 1e-9));
+  if (limit > 10) CHECK(band.message == "Friction holds it at any angle: hinge and upwards can go round.");
+}
+
+TEST_CASE("through folds a measured angle goes on beyond half a turn, and tells its crests") {
+  // 10.5 N m against 10 N m sin q within 1.5 N m, from 0.9 to 1 at the top and down to 0.9 again.
+  Mechanism m = rubbing_pendulum(1.5);
+  Force push;
+  push.name = "push";
+  push.type = ForceType::torque;
+  push.body = "bob";
+  push.vector = {0, 0, 10.5};
+  m.forces = {push};
+  m.measures.push_back({.name = "turned",
+                        .description = {},
+                        .text = "atan2(-y(bob), -x(bob)) + 0.1 rad*sin(coordinate(hinge))",
+                        .unit = "rad"});
+  const BandExtent turned = extent(report_friction(m, Analysis(m).solve()).band, "turned");
+  // The angle from -x is pi/2 + q, which jumps at q = pi/2.
+  const double low = std::asin(0.9), high = std::numbers::pi - low, half = std::numbers::pi / 2;
+  CHECK_THAT(turned.high - turned.low, WithinRel(high - low, 1e-6));
+  CHECK_THAT(std::remainder(turned.low - (half + low + 0.09), 2 * std::numbers::pi), WithinAbs(0, 1e-9));
+}
+
 TEST_CASE("friction in the guide of a slider-crank holds it at any angle of the crank: d from -0.2 to 0") {
   // 22.55 N are needed at most, so that the ways round leave the dead centre near the limit or far below it.
   for (const double limit : {22.6, 23., 30., 100.}) {
