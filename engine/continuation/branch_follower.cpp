@@ -5,6 +5,7 @@
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/infinite_rate.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/kink_message.hpp"
 #include "engine/report/report_forces.hpp"
@@ -148,8 +149,9 @@ ResponsePoint response_point(const Mechanism& mechanism, const Problem& problem,
 
 BranchFollower::BranchFollower(const Mechanism& mechanism, const std::string& address, double from, double to,
                                const BranchOptions& options)
-    : options_(options), system_(compile_over(mechanism, std::array{NumberRange{address, from, to}},
-                                              begun(mechanism, address, from, to))),
+    : options_(options),
+      system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{address, from, to}})
+                                     .value_or(begun(mechanism, address, from, to)))),
       family_(system_, begun(mechanism, address, from, to), address, std::abs(to - from),
               system_.nv > options.dense_up_to && system_.conservative && system_.single_drives
                   ? system_.kkt_form

@@ -61,10 +61,8 @@ void check_damper_law(const Mechanism& mechanism, const Formula& law, bool angle
 void check_lift_law(const Mechanism& mechanism, const Formula& law, const std::string& where);
 void check_drag_law(const Mechanism& mechanism, const Formula& law, const std::string& where);
 
-// Whether numbers are in a law, so that they decide what it does.
-bool has_numbers(const Formula& damper_law);
-// Whether a damper by this law takes up energy where it hardly moves, with the numbers that the mechanism
-// has: its slope at rest is not below zero.
-bool resists_at_rest(const Mechanism& mechanism, const Formula& damper_law);
+// Whether a damper by this law takes up energy where it hardly moves, whatever the numbers of the mechanism:
+// its slope at rest is not below zero, and no parameter decides that.
+bool resists_at_rest(const Formula& damper_law);
 
 } // namespace flyball

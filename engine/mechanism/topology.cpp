@@ -34,10 +34,6 @@ bool same_law(const Formula* a, const Formula* b) {
   return (a == nullptr) == (b == nullptr) && (!a || a->text == b->text);
 }
 
-bool drives(const Mechanism& m, const Formula* damper_law) {
-  return damper_law && !resists_at_rest(m, *damper_law);
-}
-
 bool same_laws(const Joint& a, const Joint& b, int i) {
   const Coordinate &x = a.coordinates[static_cast<std::size_t>(i)],
                    &y = b.coordinates[static_cast<std::size_t>(i)];
@@ -71,33 +67,27 @@ bool same_topology(const Mechanism& a, const Mechanism& b) {
       const Coordinate &c = x.coordinates[k], &d = y.coordinates[k];
       if (c.spring.has_value() != d.spring.has_value() || c.stop.has_value() != d.stop.has_value() ||
           c.friction.has_value() != d.friction.has_value() || !same_kind(a, x, b, y, static_cast<int>(k)) ||
-          !same_laws(x, y, static_cast<int>(k)))
+          (c.damping != 0) != (d.damping != 0) || !same_laws(x, y, static_cast<int>(k)))
         return false;
     }
   }
   for (std::size_t i = 0; i < a.forces.size(); ++i) {
     const Force &x = a.forces[i], &y = b.forces[i];
     if (x.name != y.name || x.type != y.type || x.bodies != y.bodies || x.body != y.body ||
-        x.frame != y.frame || !same_laws(x, y) || bearing_size(x) != bearing_size(y))
+        x.frame != y.frame || (x.damping != 0) != (y.damping != 0) || !same_laws(x, y) ||
+        bearing_size(x) != bearing_size(y))
       return false;
   }
-  std::vector<bool> of_a, of_b;
-  find_dampers(a, of_a);
-  find_dampers(b, of_b);
-  return of_a == of_b;
+  return true;
 }
 
 void find_dampers(const Mechanism& m, std::vector<bool>& dampers) {
   dampers.clear();
   for (const Joint& joint : m.joints)
-    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      dampers.push_back(joint.coordinates[i].damping != 0);
-      dampers.push_back(drives(m, damper_law(joint, static_cast<int>(i))));
-    }
-  for (const Force& force : m.forces) {
+    for (const Coordinate& coordinate : joint.coordinates)
+      dampers.push_back(coordinate.damping != 0);
+  for (const Force& force : m.forces)
     dampers.push_back(force.damping != 0);
-    dampers.push_back(drives(m, damper_law(force)));
-  }
 }
 
 } // namespace flyball

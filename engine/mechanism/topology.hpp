@@ -10,9 +10,8 @@ namespace flyball {
 // Parts and connections, as opposed to numbers.
 bool same_topology(const Mechanism& a, const Mechanism& b);
 
-// By joints' coordinates and forces: whether there is a damper, and whether one by a law drives at rest,
-// which compiling looks at. Of the other numbers it asks only whether a label is zero, for which of two trees
-// that serve alike.
+// By joints' coordinates and forces: whether there is a damper, which compiling looks at. Of the other
+// numbers it asks only whether a label is zero, for which of two trees that serve alike.
 void find_dampers(const Mechanism& mechanism, std::vector<bool>& dampers);
 
 } // namespace flyball

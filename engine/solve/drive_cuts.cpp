@@ -181,6 +181,20 @@ CutChoice choice_of(const System& system) {
   return choice;
 }
 
+// With the same cuts, and more that turns at rates of its own. Nothing where nothing more does, or the drives
+// pull open what they did not before.
+std::optional<System> with_turning(const System& system, const Mechanism& mechanism,
+                                   const std::vector<CoordinateReference>& more) {
+  if (more.empty()) return {};
+  CutChoice choice = choice_of(system);
+  choice.turning.insert(choice.turning.end(), more.begin(), more.end());
+  try {
+    return compile(mechanism, choice);
+  } catch (const SceneError&) {
+    return {};
+  }
+}
+
 // What a drive keeps is the momentum of what hangs from it alone. A loop through it that the drives pull
 // open, or that turns others as it turns, passes that momentum on.
 void expect_no_loop_on_momenta(const System& system, const Mechanism& mechanism,
@@ -223,11 +237,8 @@ void expect_no_loop_on_momenta(const System& system, const Mechanism& mechanism,
 
 } // namespace
 
-System compile_for_drives(const Mechanism& mechanism, Numbers numbers) {
-  const auto compiled = [&](const CutChoice& choice) {
-    return compile(mechanism, choice, TorqueDriven::turns_steadily, numbers);
-  };
-  System best = compiled({});
+System compile_for_drives(const Mechanism& mechanism) {
+  System best = compile(mechanism);
   const System first = best;
   DrivenCuts fate = drive_cuts(best, mechanism);
   std::deque<CutChoice> queue;
@@ -246,7 +257,7 @@ System compile_for_drives(const Mechanism& mechanism, Numbers numbers) {
     queue.pop_front();
     System other;
     try {
-      other = compiled(choice);
+      other = compile(mechanism, choice);
     } catch (const SceneError&) {
       continue; // not admissible: a drive would be cut
     }
@@ -256,21 +267,13 @@ System compile_for_drives(const Mechanism& mechanism, Numbers numbers) {
     }
     enqueue(other);
   }
-  // With the same cuts, and more that turns at rates of its own: unless nothing more does, or the drives pull
-  // open what they did not before.
   const auto let_turn = [&](const System& from, const std::vector<CoordinateReference>& more,
                             Begin begin = Begin::as_drawn) {
-    if (more.empty()) return;
-    CutChoice choice = choice_of(from);
-    choice.turning.insert(choice.turning.end(), more.begin(), more.end());
-    try {
-      System turning = compiled(choice);
-      if (begin == Begin::apart && drive_cuts(turning, mechanism, begin).opened > 0) return;
-      DrivenCuts there = drive_cuts(turning, mechanism);
-      if (there.opened > 0) return;
+    std::optional<System> turning = with_turning(from, mechanism, more);
+    if (!turning || (begin == Begin::apart && drive_cuts(*turning, mechanism, begin).opened > 0)) return;
+    if (DrivenCuts there = drive_cuts(*turning, mechanism); there.opened == 0) {
       fate = std::move(there);
-      best = std::move(turning);
-    } catch (const SceneError&) { // not admissible
+      best = std::move(*turning);
     }
   };
   const System second = best;
@@ -289,7 +292,7 @@ System compile_for_drives(const Mechanism& mechanism, Numbers numbers) {
   if (fate.varies)
     for (const CutChoice& choice : neighbouring_cuts(mechanism, carried)) {
       try {
-        System other = compiled(choice);
+        System other = compile(mechanism, choice);
         DrivenCuts there = drive_cuts(other, mechanism);
         if (there.opened > 0 || there.varies) continue;
         fate = std::move(there);
@@ -310,12 +313,6 @@ System compile_for_drives(const Mechanism& mechanism, Numbers numbers) {
   for (std::size_t c = 0; c < best.cuts.size(); ++c)
     best.cuts[c].turns = fate.turned[c] && best.cuts[c].type != JointType::distance;
   return best;
-}
-
-System compile_over(const Mechanism& mechanism, std::span<const NumberRange> ranges,
-                    const Mechanism& otherwise) {
-  const std::optional<Mechanism> inside = inside_ranges(mechanism, ranges);
-  return compile_for_drives(inside ? *inside : otherwise, Numbers::over_ranges);
 }
 
 System compile_for_motion(const Mechanism& mechanism, const System& steady) {

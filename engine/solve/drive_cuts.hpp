@@ -1,7 +1,6 @@
 // Where to cut loops that the drives turn.
 #pragma once
 
-#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/system/system.hpp"
 
 namespace flyball {
@@ -10,11 +9,7 @@ namespace flyball {
 // must turn or slide at a constant rate in the steady state has to be cut. Such cuts say so
 // (CutJoint::turns). Where drives would carry weights round by one joint of a loop and not by another, the
 // one is cut.
-System compile_for_drives(const Mechanism& mechanism, Numbers numbers = Numbers::as_given);
-// The same for a mechanism whose numbers go over ranges (inside_ranges.hpp), as `otherwise` has it where
-// those make none.
-System compile_over(const Mechanism& mechanism, std::span<const NumberRange> ranges,
-                    const Mechanism& otherwise);
+System compile_for_drives(const Mechanism& mechanism);
 // The same tree and cuts as in the steady state (of compile_for_drives), so that the coordinates are the
 // same, with what turns at speeds that are found there being coordinates like others.
 System compile_for_motion(const Mechanism& mechanism, const System& steady);

@@ -6,6 +6,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/friction_state.hpp"
@@ -29,8 +30,9 @@ class Designer {
   Designer(const Mechanism& mechanism, const std::string& address, double from, double to,
            const std::string& coordinate, double value, const DesignOptions& options)
       : mechanism_(mechanism), address_(address), from_(from), to_(to), name_(coordinate), value_(value),
-        options_(options), system_(compile_over(mechanism, std::array{NumberRange{address, from, to}},
-                                                with_parameter(mechanism, address, from))),
+        options_(options),
+        system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{address, from, to}})
+                                       .value_or(with_parameter(mechanism, address, from)))),
         wanted_(find_wanted(mechanism, system_, coordinate)) {}
 
   DesignAnswer run() {

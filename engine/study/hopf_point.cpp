@@ -46,7 +46,7 @@ void expect_one_motion(LocalMotion& motion, const Eigen::VectorXcd& swing,
 
 // Whether the angle of something that turns at a speed that is found matters.
 bool angles_matter(const Mechanism& mechanism, const ResponsePoint& at) {
-  const System system = compile_for_drives(mechanism, Numbers::over_ranges);
+  const System system = compile_for_drives(mechanism);
   if (system.torques.empty()) return false;
   Parameters parameters;
   Scaling scaling;

@@ -4,6 +4,7 @@
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/report/friction_state.hpp"
 #include "engine/solve/drive_cuts.hpp"
@@ -32,9 +33,9 @@ std::string_view word(PlaneCurveType type) {
 PlaneSearch::PlaneSearch(const Mechanism& mechanism, const PlaneAxis& x, const PlaneAxis& y,
                          const PlaneOptions& options)
     : mechanism_(mechanism), x_(x), y_(y), options_(options), begin_(std::chrono::steady_clock::now()),
-      system_(compile_over(
-          mechanism, std::array{NumberRange{x.address, x.from, x.to}, NumberRange{y.address, y.from, y.to}},
-          at_corner())) {
+      system_(compile_for_drives(inside_ranges(mechanism, std::array{NumberRange{x.address, x.from, x.to},
+                                                                     NumberRange{y.address, y.from, y.to}})
+                                     .value_or(at_corner()))) {
   if (!options.at.empty()) {
     for (const double value : options.at)
       lines_.push_back({0, value});

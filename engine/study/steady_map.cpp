@@ -8,6 +8,7 @@
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
@@ -71,7 +72,7 @@ SteadyMap::SteadyMap(const Mechanism& mechanism, std::span<const FreeNumber> fre
   }
   range_ = upper_ - lower_;
   numbers_.emplace(varied_, addresses_);
-  system_ = compile_over(mechanism, ranges, mechanism);
+  system_ = compile_for_drives(inside_ranges(mechanism, ranges).value_or(mechanism));
   for (const std::string& name : wanted)
     wanted_.push_back(find_wanted(mechanism, system_, name));
 }

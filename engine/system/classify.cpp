@@ -8,10 +8,8 @@ namespace flyball {
 namespace {
 
 // Whether damping may be negative, so that a minimum of the potential need not be stable.
-bool some_damper_may_drive(const Mechanism& m, Numbers numbers) {
-  const auto drives = [&](const Formula* law) {
-    return law && ((numbers == Numbers::over_ranges && has_numbers(*law)) || !resists_at_rest(m, *law));
-  };
+bool some_damper_may_drive(const Mechanism& m) {
+  const auto drives = [&](const Formula* law) { return law && !resists_at_rest(*law); };
   return std::ranges::any_of(m.joints,
                              [&](const Joint& x) {
                                for (int i = 0; i < static_cast<int>(x.coordinates.size()); ++i)
@@ -38,7 +36,7 @@ bool is_constant(const System& s, int body_link, const Force& f) {
 
 } // namespace
 
-void find_potential(const Mechanism& m, Numbers numbers, System& s) {
+void find_potential(const Mechanism& m, System& s) {
   const auto move_against_each_other = [&](const PairEnds& ends) {
     return moving_frame(s, ends.a) != moving_frame(s, ends.b);
   };
@@ -64,7 +62,7 @@ void find_potential(const Mechanism& m, Numbers numbers, System& s) {
   // A bearing's matrices may be symmetric, but the next number may change that.
   s.conservative = s.conservative && s.bearings.empty();
   if (!s.coordinate_laws.empty() || !s.spring_laws.empty() || !s.cut_damper_laws.empty())
-    s.conservative = s.conservative && !some_damper_may_drive(m, numbers);
+    s.conservative = s.conservative && !some_damper_may_drive(m);
   s.conservative_at_speeds = s.conservative;
   s.conserves = s.conservative && std::ranges::all_of(s.torques, &DriveTorqueElement::keeps_momentum);
   s.conservative = s.conservative && s.torques.empty();

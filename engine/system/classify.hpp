@@ -13,7 +13,7 @@ inline int moving_frame(const System& system, int link) {
 
 // Sets whether the forces have a potential (System::conservative and its like), of a system with all its
 // elements.
-void find_potential(const Mechanism& mechanism, Numbers numbers, System& system);
+void find_potential(const Mechanism& mechanism, System& system);
 // After it.
 void choose_kkt_form(System& system);
 

@@ -17,8 +17,8 @@ constexpr int ground = -1;
 
 class Compiler {
  public:
-  Compiler(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven, Numbers numbers)
-      : m_(mechanism), torque_driven_(torque_driven), given_(numbers), numbers_(mechanism),
+  Compiler(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven)
+      : m_(mechanism), torque_driven_(torque_driven), numbers_(mechanism),
         tree_(choose_tree(mechanism, choice, numbers_)) {}
 
   System run() {
@@ -29,7 +29,7 @@ class Compiler {
     list_coordinates();
     add_drive_torques(m_, torque_links_, s_);
     add_force_laws(m_, s_);
-    find_potential(m_, given_, s_);
+    find_potential(m_, s_);
     choose_kkt_form(s_);
     s_.division = divide(s_);
     return std::move(s_);
@@ -411,7 +411,6 @@ class Compiler {
 
   const Mechanism& m_;
   const TorqueDriven torque_driven_;
-  const Numbers given_;
   const BodyNumbers numbers_;
   SpanningTree tree_;
   System s_;
@@ -434,9 +433,8 @@ class Compiler {
 
 } // namespace
 
-System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven,
-               Numbers numbers) {
-  return Compiler(mechanism, choice, torque_driven, numbers).run();
+System compile(const Mechanism& mechanism, const CutChoice& choice, TorqueDriven torque_driven) {
+  return Compiler(mechanism, choice, torque_driven).run();
 }
 
 } // namespace flyball

@@ -241,16 +241,9 @@ enum class TorqueDriven {
   moves_freely,   // a coordinate like others, which the torque acts on: for the motion
 };
 
-// Which numbers a system is compiled for.
-enum class Numbers {
-  as_given,
-  over_ranges, // a damper by a law with numbers in it may drive at some of them
-};
-
 // Compiles. Throws SceneError where a mechanism has no meaning (validate() finds the same and more).
 System compile(const Mechanism& mechanism, const CutChoice& choice = {},
-               TorqueDriven torque_driven = TorqueDriven::turns_steadily,
-               Numbers numbers = Numbers::as_given);
+               TorqueDriven torque_driven = TorqueDriven::turns_steadily);
 
 // Which coordinate a link's first is.
 inline CoordinateReference reference_to(const System& system, const Link& link) {
