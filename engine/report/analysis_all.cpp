@@ -1,6 +1,5 @@
 #include "engine/report/analysis_state.hpp"
 
-#include "engine/linear/interruption.hpp"
 #include "engine/linear/largest.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/report/found_speeds.hpp"
@@ -9,7 +8,6 @@
 #include "engine/report/messages.hpp"
 #include "engine/report/report.hpp"
 #include "engine/report/verdict.hpp"
-#include "engine/solve/sensitivity.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -125,7 +123,10 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     if (options.details) add_condition(problem, steady, entry.solution);
     s.conclude(problem, steady, std::move(stability), without_modes, options, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
-    if (!is_finite(entry.solution) || unknown_coordinate(entry.solution)) continue;
+    if (!is_finite(entry.solution) || unknown_coordinate(entry.solution)) {
+      ++out.lost;
+      continue;
+    }
     entries.push_back(std::move(entry));
   }
   std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.potential.value; });

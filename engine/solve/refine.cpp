@@ -268,25 +268,6 @@ void add_singular_directions(const Problem& problem, const Unknowns& z, Workspac
   }
 }
 
-// Beside a fold the balance bends before its stiffness there alone would answer the noise: no further from
-// the state than where the imbalance is seen is it uncertain.
-void bound_by_bend(const Problem& problem, const Unknowns& z, Workspace& w, Eigen::VectorXd& error) {
-  constexpr double far = 0.1; // scaled; see undetermined_distance
-  const Eigen::VectorXd& scale = problem.scaling.column;
-  Eigen::Index at = 0;
-  if (!(error.cwiseQuotient(scale).maxCoeff(&at) > far) || !error.allFinite()) return;
-  w.residual.f = w.magnitudes.force;
-  w.residual.phi.setZero();
-  newton_step(problem, w.residual.f, w.residual.phi, w, w.scaled_step, w.trial.lambda);
-  if (!w.scaled_step.allFinite() || !(std::abs(w.scaled_step[at]) > 0)) return;
-  const Eigen::VectorXd soft = w.scaled_step / w.scaled_step.lpNorm<Eigen::Infinity>();
-  const double distance = 4 * undetermined_distance(problem, z, soft, w);
-  const double told = error[at] / (scale[at] * std::abs(soft[at]));
-  if (!(distance < told)) return;
-  const Eigen::VectorXd moved = soft.cwiseProduct(scale).cwiseAbs();
-  error = (error - (told - distance) * moved).cwiseMax(distance * moved);
-}
-
 // The correction of z by the factors at hand, scaled, in the workspace; returns its size. Multipliers are
 // corrected like the rest, so that the forces they balance do not drown what they cannot.
 double find_correction(const Problem& problem, const Unknowns& z, Workspace& w) {
@@ -387,10 +368,7 @@ void refine(const Problem& problem, Unknowns& z, const NewtonOutcome& outcome, W
   estimate.singular_loops = at_singular_loops(problem, z, w);
   if (estimate.singular_loops && dense->constraints().rank() < std::min(system.rows, system.nv))
     error += 4 * std::sqrt(opening + extended_rounding) * problem.scaling.column;
-  if (dense && dense->singular())
-    add_singular_directions(problem, z, w, estimate);
-  else if (dense)
-    bound_by_bend(problem, z, w, error);
+  if (dense && dense->singular()) add_singular_directions(problem, z, w, estimate);
   for (const Link& link : system.links) {
     if (link.v < 0) continue;
     const int n = link.type == LinkType::spherical ? 3 : 1;
