@@ -185,15 +185,14 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.conclude(problem, steady, std::move(stability), without_modes, options, out);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, *s.mechanism, steady.start, steady.elsewhere(), out);
-  const std::optional<std::string> unknown = unknown_coordinate(out);
-  if (unknown || !is_finite(out)) {
+  std::string unknown = unknown_coordinate_message(out);
+  if (!unknown.empty() || !is_finite(out)) {
     s.settled = false;
     Solution refused;
     refused.run_time_s = out.run_time_s;
     refused.iterations = out.iterations;
-    refused.message = unknown ? "An equilibrium was found, but rounding leaves no digit of " + *unknown +
-                                    ": the scene's numbers differ too much in size."
-                              : "The forces are too large for the computer's numbers.";
+    refused.message =
+        unknown.empty() ? "The forces are too large for the computer's numbers." : std::move(unknown);
     return refused;
   }
   return out;

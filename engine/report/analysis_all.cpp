@@ -54,7 +54,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     std::string kinks;
   };
   std::vector<Entry> entries;
-  std::string undetermined; // that nothing determines the speed of a drive
+  std::string unknown; // why what was found is none that is told: nothing determines a speed, or not a digit
   SteadyState steady;
   for (std::size_t i = 0; i < list.states.size() && !problem.cancelled(); ++i) {
     report_progress(options.progress, "classifying what was found",
@@ -77,7 +77,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     Stability stability = find_stability(steady.factored(classified), !many);
     if (std::string why = undetermined_speed_message(*s.mechanism, s.system, stability.neutral);
         !why.empty()) {
-      undetermined = std::move(why);
+      unknown = std::move(why);
       continue;
     }
     const bool varies = stability.floquet || stability.floquet_failure;
@@ -123,8 +123,9 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     if (options.details) add_condition(problem, steady, entry.solution);
     s.conclude(problem, steady, std::move(stability), without_modes, options, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
-    if (!is_finite(entry.solution) || unknown_coordinate(entry.solution)) {
-      ++out.lost;
+    if (!is_finite(entry.solution)) continue;
+    if (std::string why = unknown_coordinate_message(entry.solution); !why.empty()) {
+      unknown = std::move(why);
       continue;
     }
     entries.push_back(std::move(entry));
@@ -146,7 +147,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     Solution solution = solve_through(turned);
     if (solution.status == Status::converged && s.turned) out.equilibria.push_back(std::move(solution));
   }
-  out.message = out.equilibria.empty() && !undetermined.empty() ? undetermined : message(out);
+  out.message = out.equilibria.empty() && !unknown.empty() ? unknown : message(out);
   for (std::size_t i = 0; i < entries.size(); ++i)
     if (!entries[i].kinks.empty()) out.message += " In " + std::to_string(i + 1) + ": " + entries[i].kinks;
   return out;

@@ -235,7 +235,7 @@ bool is_finite(const Solution& s) {
          numbers(s.poses, [](const Pose& p) { return p.position.sum() + p.rotation.coeffs().sum(); });
 }
 
-std::optional<std::string> unknown_coordinate(const Solution& s) {
+std::string unknown_coordinate_message(const Solution& s) {
   // What is soft may be anywhere, which its error tells, and the rest be known all the same. A speed has a
   // part in all that turns with it.
   constexpr double anywhere = 1e6;
@@ -245,7 +245,8 @@ std::optional<std::string> unknown_coordinate(const Solution& s) {
   for (const CoordinateSolution& c : s.coordinates)
     if ((!c.driven && lost(c.value, c.error, c.scale, anywhere)) ||
         (c.speed && lost(*c.speed, c.speed_error, c.speed_scale, 1)))
-      return coordinate_label(c);
+      return "An equilibrium was found, but rounding leaves no digit of " + coordinate_label(c) +
+             ": the scene's numbers differ too much in size.";
   return {};
 }
 

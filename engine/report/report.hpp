@@ -22,9 +22,9 @@ struct ReportInput {
 // Whether every number in it is one: forces can overflow where coordinates do not.
 bool is_finite(const Solution& solution);
 
-// A coordinate whose value, or speed that was found, is not known by a single digit: its error is far beyond
-// all turns or reaches of the mechanism, and beyond the value itself. Nothing where all are known.
-std::optional<std::string> unknown_coordinate(const Solution& solution);
+// Names a coordinate whose error is far beyond all turns or reaches of the mechanism, and beyond the value
+// itself, or a speed that was found of which not a digit is known. A sentence; empty where all are known.
+std::string unknown_coordinate_message(const Solution& solution);
 
 // Fills the parts of a converged solution; `error` by coordinate of q_R.
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,

@@ -9,9 +9,10 @@
 
 namespace flyball {
 
-// Whether the system is large enough for its equations of all bodies: all eigenvalues need the matrices, and
-// beyond a size the pivots have to do, but where torques drive.
+// Whether there are too many coordinates to find all eigenvalues, and the balance is solved without dense
+// matrices.
 bool is_large(const Problem& problem);
+// Whether the pivots of the factored balance then tell the stability; where torques drive they do not.
 bool pivots_decide(const Problem& problem);
 
 // Few coordinates by the matrices, whatever the form that solving takes.

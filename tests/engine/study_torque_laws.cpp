@@ -361,19 +361,25 @@ TEST_CASE("the error of a speed has the rounding of torque and load by laws", "[
     m.joints = {torque_driven(revolute("p", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), 5, torque)};
     m.joints[0].coordinates[0].drive->load = load;
     validate(m);
-    return Analysis(m).solve();
+    return Analysis(m);
   };
   // 67724.3 - 0.03919 w of all that is given, in units of the last place.
   for (const double speed_asked : {2.7, 6.06730543, 9.3}) {
     const double load = 67724.3 - 0.03919 * speed_asked;
-    const Solution s = shaft("67724.3 N m - 0.03919 N m s*rate(p)", load);
+    const Solution s = shaft("67724.3 N m - 0.03919 N m s*rate(p)", load).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
     const auto exact = static_cast<double>((67724.3L - static_cast<long double>(load)) / 0.03919L);
     CHECK_THAT(speed(s, "p"), WithinAbs(exact, coordinate(s, "p").speed_error));
   }
   // The load is all of the torque: it would stand still, but no digit of that is known.
-  const Solution lost = shaft("5 N m - 1e-18 N m s*rate(p)", 5);
+  Analysis unknown = shaft("5 N m - 1e-18 N m s*rate(p)", 5);
+  const Solution lost = unknown.solve();
   CHECK(lost.status == Status::not_converged);
   CHECK_THAT(lost.message, ContainsSubstring("rounding leaves no digit of p"));
+  SolveOptions few;
+  few.search_starts = 20;
+  const AllSolutions all = unknown.solve_all(few);
+  CHECK(all.equilibria.empty());
+  CHECK_THAT(all.message, ContainsSubstring("rounding leaves no digit of p"));
 }
