@@ -1,7 +1,7 @@
 #include "app/document/backlash.hpp"
 
 #include "app/document/create.hpp"
-#include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/references.hpp"
 #include "engine/mechanism/error.hpp"
 

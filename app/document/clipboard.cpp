@@ -1,9 +1,10 @@
 #include "app/document/clipboard.hpp"
 
-#include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/names.hpp"
 #include "app/document/references.hpp"
 #include "engine/mechanism/drive_law.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/scene.hpp"
 
 #include <algorithm>

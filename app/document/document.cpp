@@ -1,8 +1,9 @@
 #include "app/document/document.hpp"
 
 #include "app/document/finite.hpp"
-#include "app/document/formula_edits.hpp"
+#include "app/document/settle_formulas.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <algorithm>
 #include <cmath>

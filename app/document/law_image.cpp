@@ -1,6 +1,6 @@
 #include "app/document/law_image.hpp"
 
-#include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/text.hpp"
 

@@ -7,6 +7,7 @@
 #include "app/document/create.hpp"
 #include "app/document/formula_edits.hpp"
 #include "app/document/gear_kinds.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/remove.hpp"
 #include "app/document/transform.hpp"
 #include "app/session/session.hpp"

@@ -1,6 +1,6 @@
 // Numbers that are only tried stand beside the document's mechanism.
 #include "app/document/document.hpp"
-#include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/rename.hpp"
 
 #include "engine/mechanism/address.hpp"

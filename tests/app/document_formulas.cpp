@@ -4,6 +4,7 @@
 #include "app/document/document.hpp"
 #include "app/document/formula_edits.hpp"
 #include "app/document/image.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/rename.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/force_law.hpp"

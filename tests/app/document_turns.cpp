@@ -2,6 +2,7 @@
 #include "app/document/copies.hpp"
 #include "app/document/document.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/transform.hpp"
 #include "app/document/turns.hpp"
 #include "engine/mechanism/address.hpp"

@@ -3,6 +3,7 @@
 
 #include "app/document/create.hpp"
 #include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/document/turns.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/ui/panel_list.hpp"

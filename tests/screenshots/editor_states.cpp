@@ -3,6 +3,7 @@
 #include "stored_picture.hpp"
 
 #include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/session/motion.hpp"
 #include "app/ui/commands.hpp"
 #include "app/ui/file_commands.hpp"

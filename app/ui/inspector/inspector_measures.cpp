@@ -1,5 +1,4 @@
 // Measures of the scene, shown while nothing is selected: names, expressions, what they come to.
-#include "app/document/formula_edits.hpp"
 #include "app/document/measure_edits.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/units.hpp"

@@ -1,5 +1,5 @@
 // Named parameters and points of the scene, shown while nothing is selected.
-#include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/render/icons.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"

@@ -1,6 +1,6 @@
 // Moving and turning the selected parts by handles in the view. A drag is one step of the history, made of
 // the state it began with at every movement.
-#include "app/document/formula_edits.hpp"
+#include "app/document/settle_formulas.hpp"
 #include "app/session/quantity.hpp"
 #include "app/ui/panels/view_drawing.hpp"
 #include "app/ui/tools/aim.hpp"
@@ -10,6 +10,7 @@
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/view_context.hpp"
 #include "app/viewport/snapping.hpp"
+#include "engine/mechanism/formulas.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #include "app/ui/widgets/number_menu.hpp"
 
 #include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/widgets.hpp"

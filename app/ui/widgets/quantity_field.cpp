@@ -1,6 +1,7 @@
 #include "app/ui/widgets/quantity_field.hpp"
 
 #include "app/document/formula_edits.hpp"
+#include "app/document/named_edits.hpp"
 #include "app/render/icons.hpp"
 #include "app/session/parameter_list.hpp"
 #include "app/session/quantity.hpp"
