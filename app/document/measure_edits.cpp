@@ -3,6 +3,7 @@
 #include "app/document/named_edits.hpp"
 #include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/expression.hpp"
+#include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/mistakes.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/unit.hpp"

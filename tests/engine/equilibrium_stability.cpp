@@ -652,9 +652,9 @@ TEST_CASE("a light part on a stiff spring leaves the motions of the others what 
     CAPTURE(mass);
     Mechanism m;
     m.gravity = Vec3::Zero();
-    m.bodies = {body("shaft", 1, {}, {1, 1, 1}), body("block", 1, {0.1, 0, 0}), body("bead", 1, {0.2, 0, 0}),
-                body("tip", mass, {0.3, 0, 0})};
-    m.joints = {driven(revolute("spin", "ground", "shaft", {}, Vec3::UnitZ()), 2),
+    m.bodies = {body("shaft", 1, Vec3::Zero(), {1, 1, 1}), body("block", 1, {0.1, 0, 0}),
+                body("bead", 1, {0.2, 0, 0}), body("tip", mass, {0.3, 0, 0})};
+    m.joints = {driven(revolute("spin", "ground", "shaft", Vec3::Zero(), Vec3::UnitZ()), 2),
                 dampened(sprung(prismatic("x", "shaft", "block", {0.1, 0, 0}, Vec3::UnitX()), 100), 2),
                 sprung(prismatic("y", "block", "bead", {0.2, 0, 0}, Vec3::UnitX()), 100),
                 dampened(sprung(prismatic("z", "bead", "tip", {0.3, 0, 0}, Vec3::UnitX()), 1e3), 0.1)};
@@ -678,7 +678,7 @@ TEST_CASE("A tiny link that falls off a heavy one, slowly by its damper, is told
     CAPTURE(damping);
     Mechanism m;
     m.gravity = {0, -9.81, 0};
-    m.bodies = {body("hub", 1, {}, {}), body("big", 1e3, {0.02, -10, 0}, {1e3, 1e3, 1e3}),
+    m.bodies = {body("hub", 1, Vec3::Zero(), Vec3::Zero()), body("big", 1e3, {0.02, -10, 0}, {1e3, 1e3, 1e3}),
                 body("small", mass, {0.02, -15 + length, 0}, {inertia, inertia, inertia})};
     m.joints = {driven(revolute("spin", "ground", "hub", {0, 0, 0}, Vec3::UnitY()), 0.3),
                 dampened(revolute("a", "hub", "big", {0.02, 0, 0}), 500),

@@ -185,9 +185,12 @@ float Legend::top(const ViewContext& context, const PanelRect& view, ImVec2 size
   const bool zooms = zoomed_ && *zoomed_ == std::pair(state.camera, rows);
   if (!zooms && !ImGui::IsAnyMouseDown() && !in_motion(context.session, state) && state.legend) {
     const float clear = 6 * s; // about it
-    const auto hidden =
-        shown_within(state, view, {ImVec2(left - clear, upper - clear), ImVec2(left - clear, lower - clear)},
-                     {size.x + 2 * clear, size.y + 2 * clear});
+    // In steps, so that a font a little wider or narrower does not decide.
+    const float step = 16 * s, width = step * std::floor((size.x + 2 * clear) / step),
+                height = step * std::floor((size.y + 2 * clear) / step), from = left + size.x + clear - width;
+    const auto hidden = shown_within(
+        state, view, {ImVec2(from, upper - clear), ImVec2(from, lower + size.y + clear - height)},
+        {width, height});
     if (hidden[low_ ? 0 : 1] < hidden[low_ ? 1 : 0]) low_ = !low_;
   }
   return low_ ? lower : upper;
