@@ -1,6 +1,7 @@
 #include "app/cli/movie.hpp"
 
 #include "app/cli/progress.hpp"
+#include "app/cli/scene_argument.hpp"
 #include "app/platform/end_signals.hpp"
 #include "app/render/offscreen.hpp"
 #include "engine/mechanism/error.hpp"
