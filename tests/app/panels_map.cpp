@@ -197,6 +197,23 @@ TEST_CASE("a click in the map sets both numbers as one step, and the answer is t
   CHECK(get_parameter(app.session.mechanism(), choice.axes[0].address) != place[0]);
 }
 
+TEST_CASE("a map of other numbers than now says so in sight, and is computed again at a click") {
+  MapRobot robot;
+  robot.map().cells.found->run_time = 1; // s: not to be made anew at every move of a slider
+  change_parameter(robot.app.session, "gravity.1", -9);
+  robot.frames(3);
+  CHECK(robot.map().stale);
+  const auto& choices = robot.widget("study/map"); // its tab, below which the choices begin
+  for (const char* name : {"map/stale", "map/again"}) {
+    CHECK(robot.widget(name).from.y > choices.to.y);
+    CHECK(robot.widget(name).to.y < robot.widget("map/x").from.y); // whatever the panel's height
+  }
+  robot.click("map/again");
+  robot.frames(3);
+  CHECK_FALSE(robot.map().stale);
+  CHECK_FALSE(robot.app.ui.widgets.contains("map/again"));
+}
+
 TEST_CASE("what is chosen is computed; a value that a number cannot have is refused in words") {
   MapRobot robot;
   App& app = robot.app;

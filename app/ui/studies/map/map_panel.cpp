@@ -133,14 +133,7 @@ void curve_choices(Session& session, Ui& ui) {
 void map_words(Session& session, Ui& ui) {
   MapState& map = session.study.map;
   const UiColors& colors = colors_of(ui);
-  const std::string problem = map_problem(session);
-  if (!problem.empty()) paragraph(problem, colors.bad);
-  if (!session.mistakes.empty())
-    paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
-  if (map.stale) paragraph("Computed before the last changes.", colors.warn);
   if (computing_map(session)) return; // it has the bar above
-  if (map.stale || !problem.empty())
-    if (text_button(ui, "map/again", "Compute again", true)) compute_map(session);
   const auto& curves = map.curves.found;
   if (curves && map.choice.folds && curves->result.folds && curves->result.folds->curves.empty())
     paragraph(curves->result.folds->message, colors.dim);
@@ -161,14 +154,24 @@ void map_words(Session& session, Ui& ui) {
   note_widget(ui.widgets, "map/words");
 }
 
-// A bar on top, where it is in sight whatever the panel's height; nothing moves as it comes and goes.
+// How far it is, or that it is of another mechanism by now, on top, where it is in sight whatever the panel's
+// height; nothing moves as it comes and goes.
 void map_progress_line(Session& session, Ui& ui) {
   const float below = ImGui::GetCursorPosY() + ImGui::GetFrameHeightWithSpacing();
+  const bool again = session.study.map.stale || !map_problem(session).empty();
   if (computing_map(session)) {
     if (text_button(ui, "map/cancel", "Cancel")) cancel_map(session);
     ImGui::SameLine();
     task_bar(ui, "map/progress", map_progress(session), map_seconds(session),
              std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
+  } else if (again) {
+    if (text_button(ui, "map/again", "Compute again", true)) compute_map(session);
+    if (session.study.map.stale) {
+      ImGui::SameLine();
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextColored(colors_of(ui).warn, "Out of date");
+      note_widget(ui.widgets, "map/stale", KeyUse::none);
+    }
   } else if (const auto& cells = session.study.map.cells.found) {
     std::string text = std::to_string(cells->result.size()) + " solves";
     if (session.options.numbers.run_times)
@@ -182,13 +185,19 @@ void map_progress_line(Session& session, Ui& ui) {
 void map_choices(Session& session, Ui& ui, MapView& drawn) {
   ImGui::BeginChild("choices", {map_choices_width * ui.scale, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {8 * ui.scale, 3 * ui.scale});
+  const std::string problem = map_problem(session);
+  if (!session.mistakes.empty())
+    paragraph("There is nothing to solve until what is missing is mended.", colors_of(ui).warn);
   if (!session.study.map.choice.shown.empty() && session.mistakes.empty()) {
     map_progress_line(session, ui);
+    if (!problem.empty()) paragraph(problem, colors_of(ui).bad);
     axis_choice(session, ui, drawn, 0);
     axis_choice(session, ui, drawn, 1);
     point_counts(session, ui);
     quantity_choice(session, ui);
     curve_choices(session, ui);
+  } else if (!problem.empty()) {
+    paragraph(problem, colors_of(ui).bad);
   }
   map_words(session, ui);
   ImGui::PopStyleVar();
