@@ -128,6 +128,20 @@ TEST_CASE("another number gets a tolerance, another output is shown, and more sa
   CHECK(samples_in(robot.plot().bands[0]) == 500);
 }
 
+TEST_CASE("samples of other numbers than now are said to be so in sight, and made again at a click") {
+  SpreadRobot robot;
+  robot.state().samples.found->run_time = 1; // s: not to be made anew at every move of a slider
+  change_parameter(robot.app.session, "gravity.1", -9);
+  robot.frames(3);
+  CHECK(robot.state().stale);
+  for (const char* name : {"spread/stale", "spread/again"})
+    CHECK(robot.widget(name).to.y < robot.widget("spread/output").from.y); // whatever the panel's height
+  robot.click("spread/again");
+  robot.frames(3);
+  CHECK_FALSE(robot.state().stale);
+  CHECK_FALSE(robot.app.ui.widgets.contains("spread/again"));
+}
+
 TEST_CASE("a number that an undo takes away has no tolerance until it is back, while its row is shown") {
   SpreadRobot robot;
   App& app = robot.app;

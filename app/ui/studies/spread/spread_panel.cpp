@@ -136,17 +136,47 @@ void samples_field(Session& session, Ui& ui) {
                  width);
 }
 
-void spread_progress(Session& session, Ui& ui) {
+// What is done with the samples, or how far they are, or that they are of other numbers by now: on top, in
+// sight however many tolerances there are.
+void spread_samples_line(Session& session, Ui& ui) {
   SpreadState& state = session.study.spread;
-  const UiColors& colors = colors_of(ui);
+  const float below = ImGui::GetCursorPosY() + ImGui::GetFrameHeightWithSpacing();
   const bool long_wait = state.samples.running() && (state.samples.seconds() > 0.25 || !state.samples.found);
+  const bool stale = state.stale && !state.samples.quick() && !state.samples.running();
   if (long_wait) {
     if (text_button(ui, "spread/cancel", "Cancel")) state.samples.stop();
     ImGui::SameLine();
     task_bar(ui, "spread/progress", state.samples.progress(), state.samples.seconds(),
              std::max(ImGui::GetContentRegionAvail().x - margin_width(ui), 20 * ui.scale));
-    return;
+  } else if (stale || !state.samples.problem.empty()) {
+    if (text_button(ui, "spread/again", "Make again", true)) sample_spread(session);
+    if (stale && state.samples.found) {
+      ImGui::SameLine();
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextColored(colors_of(ui).warn, "Out of date");
+      note_widget(ui.widgets, "spread/stale", KeyUse::none);
+    }
+  } else if (state.samples.found) {
+    if (text_button(ui, "spread/copy", "Copy the samples")) {
+      const auto& found = *state.samples.found;
+      ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
+      session.notice = "The samples are on the clipboard, as CSV.";
+    }
+    ImGui::SameLine();
+    if (text_button(ui, "spread/band", "Band on the response"))
+      later(ui, [&session] {
+        session.study.band.wanted = true;
+        open_study(session, StudyKind::response);
+      });
+    help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
   }
+  ImGui::SetCursorPosY(below);
+}
+
+// Why there is nothing, or not what was asked for.
+void spread_problems(Session& session, Ui& ui) {
+  const SpreadState& state = session.study.spread;
+  const UiColors& colors = colors_of(ui);
   if (!state.samples.problem.empty()) paragraph(state.samples.problem, colors.bad);
   if (!session.mistakes.empty())
     paragraph("There is nothing to solve until what is missing is mended.", colors.warn);
@@ -154,13 +184,11 @@ void spread_progress(Session& session, Ui& ui) {
     paragraph("There is no steady state that could scatter.", colors.warn);
   else if (chosen_tolerances(session).empty())
     paragraph("No number has a tolerance.", colors.dim);
-  const bool stale = state.stale && !state.samples.quick() && !state.samples.running();
-  if (stale && state.samples.found) paragraph("Made before the last changes.", colors.warn);
-  if (stale || !state.samples.problem.empty())
-    if (text_button(ui, "spread/again", "Make again", true)) sample_spread(session);
 }
 
 void spread_choices(Session& session, Ui& ui) {
+  spread_samples_line(session, ui);
+  spread_problems(session, ui);
   output_choice(session, ui);
   samples_field(session, ui);
   heading(ui, "Tolerances");
@@ -169,20 +197,6 @@ void spread_choices(Session& session, Ui& ui) {
     if (has_number(session.mechanism(), session.study.spread.choice.tolerances[i].address))
       tolerance_row(session, ui, i);
   another_tolerance(session, ui);
-  spread_progress(session, ui);
-  if (!session.study.spread.samples.found) return;
-  if (text_button(ui, "spread/copy", "Copy the samples")) {
-    const auto& found = *session.study.spread.samples.found;
-    ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
-    session.notice = "The samples are on the clipboard, as CSV.";
-  }
-  ImGui::SameLine();
-  if (text_button(ui, "spread/band", "Band on the response"))
-    later(ui, [&session] {
-      session.study.band.wanted = true;
-      open_study(session, StudyKind::response);
-    });
-  help_on_hover("Shows the response curve with the band in which the middle 90 % of samples lie.");
 }
 
 // With as many digits as its standard error leaves, and with that where it is more than rounding.
