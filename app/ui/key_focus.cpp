@@ -54,10 +54,9 @@ bool edits_text(const KeyPress& key) {
   return key.key == keys::del || key.key == keys::backspace;
 }
 
-// Nothing is typed in the row of a list: what it stands for is chosen, and keys are commands for that.
-bool row_clicked(const KeyboardState& keyboard) {
+bool was_clicked(const KeyboardState& keyboard, KeyUse use) {
   const KeyStop* stop = stop_named(keyboard.stops, keyboard.at);
-  return stop && stop->use == KeyUse::row;
+  return stop && stop->use == use;
 }
 
 // A button is done with by the click, too; `keyboard.at` says nothing of it.
@@ -83,12 +82,13 @@ void notice_key_focus(Ui& ui) {
   const std::string_view window = window_under_pointer();
   if (button_clicked(ui.keyboard))
     focus = {};
+  else if (holds_plots(window) || was_clicked(ui.keyboard, KeyUse::slide)) // a number begins with a digit
+    focus = {.in_panel = true, .among_fields = true, .letters = true};
   else if (holds_fields(window))
     focus = {.in_panel = true, .among_fields = true};
-  else if (holds_plots(window))
-    focus = {.in_panel = true, .among_fields = true, .letters = true};
-  else
-    focus = {.in_panel = (window == "outline" || window == "History") && !row_clicked(ui.keyboard)};
+  else // nothing is typed in a row: what it stands for is chosen, and keys are commands for that
+    focus = {.in_panel =
+                 (window == "outline" || window == "History") && !was_clicked(ui.keyboard, KeyUse::row)};
 }
 
 bool may_command(Session& session, Ui& ui, const KeyPress& key) {

@@ -4,8 +4,8 @@
 // what can be typed into a field is no command, so that a click that missed a field does no harm; letters are
 // commands again as soon as the pointer works in the view, and stay so once one was a command there, whatever
 // that brings under the pointer; everything is once the view, a button or a row of the list of parts is
-// clicked, Escape is pressed or a field is left by Enter. Among plots and tables of results letters stay
-// commands, since only numbers are typed there.
+// clicked, Escape is pressed or a field is left by Enter. At a slider, and among plots and tables of results,
+// letters stay commands, since only numbers are typed there.
 #pragma once
 
 namespace flyball {

@@ -158,6 +158,24 @@ TEST_CASE("among plots letters are commands, but not those of a number's unit") 
   }
 }
 
+TEST_CASE("with the pointer still on a slider that it has moved letters are commands, a number is not") {
+  Robot robot;
+  robot.click(std::string("parameters/") + speed);
+  robot.frames(30);
+  REQUIRE(robot.app.session.document.position() == 1);
+  SECTION("a letter") {
+    robot.key('M');
+    CHECK(robot.app.session.study.open == StudyKind::motion);
+  }
+  SECTION("a number") {
+    for (const char key : {'1', '5', '0', ' ', 'R', 'P', 'M'})
+      robot.key(key);
+    CHECK(robot.app.session.study.open == StudyKind::none);
+    CHECK(robot.app.session.document.position() == 1);
+    CHECK_THAT(robot.app.session.notice, ContainsSubstring("the panel has the keys"));
+  }
+}
+
 TEST_CASE("right after the start keys are commands wherever the pointer is") {
   Hand hand;
   hand.point(hand.widget("inspector/name").center());
