@@ -7,6 +7,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/study/counted_values.hpp"
+#include "engine/study/placed_band.hpp"
 #include "engine/study/steady_map.hpp"
 
 #include <algorithm>
@@ -51,7 +52,7 @@ class Box {
  public:
   Box(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> names,
       const std::atomic<bool>* cancel)
-      : map_(mechanism, free, std::move(names), cancel) {
+      : outputs_(static_cast<Index>(names.size())), map_(mechanism, free, std::move(names), cancel) {
     map_.count_turns();
   }
 
@@ -73,6 +74,13 @@ class Box {
   const std::vector<Place>& places() const { return places_; }
   bool lost() const { return lost_; }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
+
+  // What lengths are measured by.
+  double reach() const {
+    for (Index i = 0; i < outputs_; ++i)
+      if (const auto scale = map_.scale(static_cast<std::size_t>(i)); scale && unit(i) == "m") return *scale;
+    return 1;
+  }
 
   // Of all outputs at a place: as a solve estimates it, not numbers where it does not.
   VectorXd errors(const Place& place) {
@@ -195,6 +203,7 @@ class Box {
     return middle;
   }
 
+  Index outputs_;
   SteadyMap map_;
   std::vector<Place> places_;
   bool lost_ = false;
@@ -348,7 +357,13 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       return band;
     }
     Box box(mechanism, free, names, options.cancel);
+    const auto by_places = [&] {
+      const std::vector<std::size_t> independent =
+          holding ? holding->independent : std::vector<std::size_t>{0};
+      return find_placed_band(mechanism, state, names, independent, box.reach(), options.cancel);
+    };
     if (!box.begin(start_values(state.coordinates))) {
+      if (FrictionBand placed = by_places(); placed.found) return placed;
       band.message = "The state is singular, so that nothing tells how far friction would let it be moved.";
       return band;
     }
@@ -390,6 +405,8 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     } else if (free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
       if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
+    } else if (FrictionBand placed = by_places(); placed.found) {
+      return placed;
     } else {
       band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
                      "push may make it jump.";
