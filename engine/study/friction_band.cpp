@@ -4,6 +4,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/study/counted_values.hpp"
@@ -29,6 +30,7 @@ constexpr int most_sweeps = 40;     // of all shares, one after the other
 constexpr double no_gain = 1e-16;   // of an output's size, in a sweep
 constexpr int most_crest_steps = 60;
 constexpr std::size_t most_outputs = 128;
+constexpr Index most_shares_around = 6;
 
 std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
   std::vector<FreeNumber> free;
@@ -144,6 +146,23 @@ class Box {
       if (const double rate = sense * from.rates(output, j); rate != 0 || p.size() == 1)
         p[j] = (rate != 0 ? rate : sense) > 0 ? 1 : -1;
     go(from, p);
+  }
+
+  // To all corners and to the middles of all faces, of not too many shares: whether the balance folds
+  // between.
+  void look_around() {
+    const Place from = places_.front();
+    const Index n = from.state.p.size();
+    if (n > most_shares_around) return;
+    for (int corner = 0; corner < 1 << n; ++corner) {
+      VectorXd p(n);
+      for (Index j = 0; j < n; ++j)
+        p[j] = (corner >> j) & 1 ? 1 : -1;
+      go(from, p);
+    }
+    for (Index j = 0; j < n; ++j)
+      for (const double side : {-1., 1.})
+        go(from, side * VectorXd::Unit(n, j));
   }
 
  private:
@@ -328,6 +347,19 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   return true;
 }
 
+// That nothing resists, not even friction.
+std::string loose_joints(const Mechanism& mechanism, const Solution& state) {
+  std::vector<std::string_view> names;
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  for (const std::string& name : state.neutral)
+    if (std::ranges::none_of(frictions, [&](CoordinateReference at) {
+          return joint_of(mechanism, at).name == name ||
+                 coordinate_name(joint_of(mechanism, at), at.coordinate) == name;
+        }))
+      names.push_back(name);
+  return word_list(names, "and");
+}
+
 } // namespace
 
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options) {
@@ -364,7 +396,11 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     };
     if (!box.begin(start_values(state.coordinates))) {
       if (FrictionBand placed = by_places(); placed.found) return placed;
-      band.message = "The state is singular, so that nothing tells how far friction would let it be moved.";
+      const std::string loose = loose_joints(mechanism, state);
+      band.message =
+          loose.empty()
+              ? "The state is singular, so that nothing tells how far friction would let it be moved."
+              : "No band is told: nothing resists " + loose + ", whatever friction does.";
       return band;
     }
     const auto count = static_cast<Index>(names.size());
@@ -378,6 +414,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       for (const double sense : {1., -1.})
         if (measured(i)) box.go_to_corner(i, sense);
     const bool one_motion = free.size() == 1 || holding->independent.size() == 1;
+    if (!one_motion) box.look_around();
     std::vector<std::string> frictional;
     for (const CoordinateReference& at : find_frictions(mechanism))
       frictional.push_back(
@@ -400,13 +437,15 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     }
     band.found = true;
     band.whole = !box.lost();
-    if (band.whole) {
-      band.message = free.size() > 1 ? "Each extent is an extremum nearby: rates tell of none beyond." : "";
-    } else if (free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
+    if (!band.whole && free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
       if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
-    } else if (FrictionBand placed = by_places(); placed.found) {
-      return placed;
+      return band;
+    }
+    if (!band.whole)
+      if (FrictionBand placed = by_places(); placed.found) return placed;
+    if (band.whole) {
+      band.message = free.size() > 1 ? "Each extent is an extremum nearby: rates tell of none beyond." : "";
     } else {
       band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
                      "push may make it jump.";

@@ -4,11 +4,15 @@
 #include "engine/linear/linear_program.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/solve/solution_difference.hpp"
 #include "engine/study/standing_joints.hpp"
 #include "engine/study/steady_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,29 +28,33 @@ constexpr double most_give = 1e-3, least_give = 1e-6; // of the springs: see sta
 constexpr double longest_place_step = 0.2;            // rad, reaches or shares
 constexpr double shortest_place_step = 1e-7;
 constexpr int most_place_steps = 2000;
-constexpr int most_place_rounds = 3; // of all outputs, each from the best place that another found
+constexpr std::size_t most_joints_placed = 6, most_places = 8000, most_ends = 120; // that are explored
+constexpr double same_end = 1e-3;                                                  // rad, reaches or shares
 constexpr int most_restorations = 8;
 constexpr double within_limit = 1e-9;    // of the limit: what still counts as held
 constexpr double most_bulge = 1e-2;      // of the limit, between two places at one: the way is curved
 constexpr double no_placed_gain = 1e-13; // of an output's size, in a step
-constexpr double on_mark = 1e-9, same_after_turn = 1e-7; // rad; scaled
-constexpr int most_turns = 20;
+constexpr double on_mark = 1e-9, same_after_turn = 1e-6; // rad; scaled
+constexpr int most_turns = 8;
 constexpr double farthest_way = 100; // reaches
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 class PlacedBand {
  public:
-  PlacedBand(const StandingJoints& standing, const std::vector<std::string>& names, double reach,
-             const std::atomic<bool>* cancel)
-      : standing_(standing), outputs_(static_cast<Index>(names.size())), reach_(reach),
+  PlacedBand(const StandingJoints& standing, const std::vector<std::string>& names,
+             const std::vector<std::string>& turning, double reach, const std::atomic<bool>* cancel)
+      : standing_(standing), outputs_(static_cast<Index>(names.size())), reach_(reach), cancel_(cancel),
         map_(standing.mechanism, numbers(standing), wanted(standing, names), cancel) {
     map_.count_turns();
+    for (const std::string& name : names)
+      turns_freely_.push_back(std::ranges::find(turning, name) != turning.end());
     radius_ = VectorXd::Ones(map_.count());
     for (Index j = 0; j < map_.count(); ++j)
       if (is_length(j)) radius_[j] = reach;
   }
 
-  enum class End { extremum, round, far, lost };
+  // `left`: another coordinate went too far to say.
+  enum class End { extremum, round, far, left, lost };
 
   bool begin(const Solution& solution) {
     Solution first;
@@ -66,10 +74,51 @@ class PlacedBand {
   double best(Index output, double sense) const {
     return places_[best_place(output, sense)].state.values[output];
   }
+  std::size_t best_place(Index output, double sense) const {
+    const auto better = [&](const Place& a, const Place& b) {
+      return sense * a.state.values[output] < sense * b.state.values[output];
+    };
+    return static_cast<std::size_t>(std::ranges::max_element(places_, better) - places_.begin());
+  }
+  std::size_t last_place() const { return places_.size() - 1; }
+  // What is told of the shares follows the outputs.
+  Index objectives() const { return places_.front().state.values.size(); }
 
-  // From the best place that is known up to where the output, times `sense`, grows no more.
-  End climb(Index output, double sense) {
-    Place at = places_[best_place(output, sense)];
+  // Whether the state there is stable as friction gives just that; nothing where that is not known.
+  std::optional<bool> stable_at(const Mechanism& mechanism, std::size_t place) {
+    const Place& at = places_[place];
+    const VectorXd share = shares(at);
+    Mechanism pushed = mechanism;
+    for (Index j = 0; j < share.size(); ++j)
+      put_number(pushed, standing_.joints[static_cast<std::size_t>(j)].share, std::clamp(share[j], -1., 1.));
+    const Solution stood = map_.solution(at.state, false);
+    SolveOptions options;
+    options.start = start_values(stood.coordinates);
+    options.nearest = true;
+    options.details = options.friction = false;
+    options.cancel = cancel_;
+    const Solution found = Analysis(pushed).solve(options);
+    const bool same = found.status == Status::converged && found.frictions.empty() &&
+                      scaled_distance(found.coordinates, stood.coordinates) < same_end;
+    return same ? found.stable : std::nullopt;
+  }
+
+  // How the last place differs from another.
+  enum class Beside { elsewhere, same, turned };
+  Beside compare_last(std::size_t other) const {
+    const Place &a = places_[other], &b = places_.back();
+    if (largest_part(a.state.p - b.state.p) < same_end) return Beside::same;
+    return comes_back(a, b) ? Beside::turned : Beside::elsewhere;
+  }
+  // Whether an output is another at the last place than at this one.
+  bool changes_to_last(std::size_t other, Index output) const {
+    const double a = places_[other].state.values[output], b = places_.back().state.values[output];
+    return !(std::abs(b - a) <= same_after_turn * (1 + std::abs(a)));
+  }
+
+  // From a place up to where the output, times `sense`, grows no more.
+  End climb(Index output, double sense, std::size_t from) {
+    Place at = places_[from];
     const Place begin = at;
     double step = longest_place_step, mark = sense * at.state.values[output];
     std::optional<Place> before; // at the last mark
@@ -82,7 +131,8 @@ class PlacedBand {
         before = at;
         mark += 2 * std::numbers::pi;
       }
-      if (went_far(begin, at)) return End::far;
+      if (went_far(begin, at))
+        return is_coordinate(output) && !went_far(output, begin, at) ? End::left : End::far;
       const VectorXd gradient = sense * at.rates.row(output).transpose();
       if (!gradient.allFinite()) return End::lost;
       const VectorXd d = best_step(at, gradient, step, turns ? mark - now : infinite);
@@ -129,13 +179,6 @@ class PlacedBand {
   }
 
   void add(SteadyMap::State state) { places_.push_back({std::move(state), map_.rates()}); }
-
-  std::size_t best_place(Index output, double sense) const {
-    const auto better = [&](const Place& a, const Place& b) {
-      return sense * a.state.values[output] < sense * b.state.values[output];
-    };
-    return static_cast<std::size_t>(std::ranges::max_element(places_, better) - places_.begin());
-  }
 
   // What friction gives, of each limit; and how that goes with the numbers.
   VectorXd shares(const Place& at) const {
@@ -249,37 +292,82 @@ class PlacedBand {
     return false;
   }
 
-  // Whether two places differ by whole turns of angles alone, so that the way from one to the other goes on
-  // from there.
+  // Whether two places differ by whole turns of angles alone, of which the balance knows nothing: the way
+  // from one to the other then goes on from there.
   bool comes_back(const Place& before, const Place& now) const {
     if ((shares(now) - shares(before)).lpNorm<Eigen::Infinity>() > same_after_turn) return false;
     for (Index i = 0; i < outputs_; ++i) {
-      if (!map_.scale(static_cast<std::size_t>(i))) continue; // a measure
+      if (!is_coordinate(i)) continue;
       const double change = now.state.values[i] - before.state.values[i];
-      const bool angle = unit(i) == "rad";
-      const double left = angle ? std::remainder(change, 2 * std::numbers::pi) : change / reach_;
+      const bool turns = turns_freely_[static_cast<std::size_t>(i)];
+      const double left = turns ? std::remainder(change, 2 * std::numbers::pi) : change / scale_of(i);
       if (!(std::abs(left) <= same_after_turn)) return false;
     }
     return true;
   }
 
+  double scale_of(Index output) const { return unit(output) == "rad" ? 1 : reach_; }
+
+  bool is_coordinate(Index output) const { return map_.scale(static_cast<std::size_t>(output)).has_value(); }
+
+  // From the first place, and farther than where the way began.
+  bool went_far(Index output, const Place& begin, const Place& now) const {
+    const auto way = [&](const Place& place) {
+      return std::abs(place.state.values[output] - places_.front().state.values[output]);
+    };
+    const double far = unit(output) == "rad" ? most_turns * 2 * std::numbers::pi : farthest_way * reach_;
+    return way(now) > far && way(now) > way(begin);
+  }
   bool went_far(const Place& begin, const Place& now) const {
-    for (Index i = 0; i < outputs_; ++i) {
-      if (!map_.scale(static_cast<std::size_t>(i))) continue;
-      const double way = std::abs(now.state.values[i] - begin.state.values[i]);
-      if (way > (unit(i) == "rad" ? most_turns * 2 * std::numbers::pi : farthest_way * reach_)) return true;
-    }
+    for (Index i = 0; i < outputs_; ++i)
+      if (is_coordinate(i) && went_far(i, begin, now)) return true;
     return false;
   }
 
   const StandingJoints& standing_;
   Index outputs_;
   double reach_;
+  const std::atomic<bool>* cancel_;
   SteadyMap map_;
-  VectorXd radius_; // of the numbers: a radian, the reach, all of a share
+  std::vector<bool> turns_freely_; // the outputs
+  VectorXd radius_;                // of the numbers: a radian, the reach, all of a share
   std::vector<Place> places_;
   bool lost_ = false; // the last step: no state followed
 };
+
+// Whether the torque or load of a drive is one of where anything stands.
+bool asks_for_place(const Mechanism& mechanism, const Joint& joint, int i) {
+  return std::ranges::any_of(std::array<std::string_view, 2>{"torque", "load"}, [&](std::string_view which) {
+    const Formula* law = drive_law(mechanism, joint, i, which);
+    if (!law) return false;
+    const Expression read = read_drive_law(mechanism, law->text);
+    return std::ranges::any_of(read.results(),
+                               [](const ResultCall& call) { return call.result != Result::rate; });
+  });
+}
+
+// Angles whose whole turns no spring, stop or torque tells apart; none where one might that is not told.
+std::vector<std::string> freely_turning(const Mechanism& mechanism, const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  for (const Joint& joint : mechanism.joints) {
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const Coordinate& c = joint.coordinates[i];
+      const int index = static_cast<int>(i);
+      const std::string name = coordinate_name(joint, index);
+      if (c.drive && finds_speed(*c.drive) && asks_for_place(mechanism, joint, index)) return {};
+      if (!c.spring && !c.stop) {
+        if (is_angle(joint.type, index) && !is_rotation_vector(joint.type, index)) out.push_back(name);
+      } else if (std::ranges::find(names, name) == names.end()) {
+        return {};
+      }
+    }
+  }
+  return out;
+}
+
+bool is_unbounded(PlacedBand::End end) {
+  return end == PlacedBand::End::round || end == PlacedBand::End::far;
+}
 
 } // namespace
 
@@ -288,44 +376,67 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
                               const std::vector<std::size_t>& independent, double reach,
                               const std::atomic<bool>* cancel) {
   FrictionBand none;
+  if (independent.size() > most_joints_placed) return none;
   // Springs that give too much fold with what they hold against.
   for (double give = most_give; give > 0.9 * least_give; give /= 30) {
     FrictionBand band;
     const auto standing = stand_on_springs(mechanism, state, independent, reach, give);
     if (!standing || standing->joints.empty()) return none;
-    PlacedBand places(*standing, names, reach, cancel);
+    PlacedBand places(*standing, names, freely_turning(mechanism, names), reach, cancel);
     if (!places.begin(state)) return none;
     const auto count = static_cast<Index>(names.size());
     std::vector<std::array<PlacedBand::End, 2>> ends(names.size());
-    std::vector<std::array<double, 2>> reached(names.size());
     bool lost = false;
-    for (int round = 0; round < most_place_rounds; ++round)
-      for (Index i = 0; i < count; ++i)
-        for (const std::size_t side : {0u, 1u}) {
-          const auto k = static_cast<std::size_t>(i);
-          const double sense = side == 0 ? -1 : 1;
-          PlacedBand::End& end = ends[k][side];
-          if (!places.has_rates(i)) continue;
-          if (round > 0 && (end == PlacedBand::End::round || end == PlacedBand::End::far ||
-                            places.best(i, sense) == reached[k][side]))
-            continue;
-          end = places.climb(i, sense);
-          reached[k][side] = places.best(i, sense);
-        }
+    // The ends of each joint's way, also from each end of the others': what is an extremum from one side may
+    // be passed from another.
+    std::vector<std::size_t> starts{0};
+    const auto climb = [&](Index i, std::size_t side, std::size_t from) {
+      const PlacedBand::End end = places.climb(i, side == 0 ? -1 : 1, from);
+      if (i < count) ends[static_cast<std::size_t>(i)][side] = end;
+      for (const std::size_t start : starts) {
+        const auto beside = places.compare_last(start);
+        if (beside == PlacedBand::Beside::elsewhere) continue;
+        for (Index k = 0; k < count && beside == PlacedBand::Beside::turned; ++k)
+          if (places.changes_to_last(start, k))
+            ends[static_cast<std::size_t>(k)].fill(places.unit(k) == "rad" ? PlacedBand::End::round
+                                                                           : PlacedBand::End::far);
+        return;
+      }
+      starts.push_back(places.last_place());
+    };
+    const auto is_explored = [&](Index i) {
+      return i >= count || std::ranges::any_of(standing->joints, [&](const StandingJoint& joint) {
+               return joint.name == names[static_cast<std::size_t>(i)];
+             });
+    };
+    std::size_t explored = 0;
+    for (; explored < std::min(starts.size(), most_ends) && places.last_place() < most_places; ++explored)
+      for (Index i = 0; i < places.objectives(); ++i)
+        for (const std::size_t side : {0u, 1u})
+          if (places.has_rates(i) && is_explored(i) &&
+              (i >= count || !is_unbounded(ends[static_cast<std::size_t>(i)][side])))
+            climb(i, side, starts[explored]);
+    bool all = explored == starts.size();
+    for (Index i = 0; i < count; ++i)
+      for (const std::size_t side : {0u, 1u})
+        if (places.has_rates(i) && !is_unbounded(ends[static_cast<std::size_t>(i)][side]))
+          climb(i, side, places.best_place(i, side == 0 ? -1 : 1));
     std::vector<std::string_view> round, farther;
     for (Index i = 0; i < count; ++i) {
       if (!places.has_rates(i)) continue;
       const auto k = static_cast<std::size_t>(i);
-      const auto unbounded = [](PlacedBand::End end) {
-        return end == PlacedBand::End::round || end == PlacedBand::End::far;
-      };
+      all = all && std::ranges::count(ends[k], PlacedBand::End::left) == 0;
       lost = lost || ends[k][0] == PlacedBand::End::lost || ends[k][1] == PlacedBand::End::lost;
       BandExtent extent;
       extent.name = names[k];
       extent.unit = places.unit(i);
       extent.value = places.value(i);
-      extent.low = unbounded(ends[k][0]) ? -infinite : reached[k][0];
-      extent.high = unbounded(ends[k][1]) ? infinite : reached[k][1];
+      extent.low = is_unbounded(ends[k][0]) ? -infinite : places.best(i, -1);
+      extent.high = is_unbounded(ends[k][1]) ? infinite : places.best(i, 1);
+      if (std::isfinite(extent.low))
+        extent.stable_low = places.stable_at(mechanism, places.best_place(i, -1));
+      if (std::isfinite(extent.high))
+        extent.stable_high = places.stable_at(mechanism, places.best_place(i, 1));
       if (std::ranges::count(ends[k], PlacedBand::End::far) > 0)
         farther.push_back(names[k]);
       else if (std::ranges::count(ends[k], PlacedBand::End::round) > 0)
@@ -337,7 +448,9 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
     band.whole = false;
     band.folds = true;
     band.message = "It is the band by where the joints with friction stand";
-    band.message += independent.size() > 1 ? "; each extent is an extremum nearby." : ".";
+    band.message += standing->joints.size() < 2 ? "."
+                    : all                       ? "; each extent is an extremum nearby."
+                          : "; each extent is an extremum nearby, and it may go farther.";
     if (!round.empty())
       band.message += " Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
     if (!farther.empty())

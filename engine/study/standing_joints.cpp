@@ -88,7 +88,10 @@ StandingJoint pull(Mechanism& mechanism, CoordinateReference at, std::size_t i, 
                                         " - coordinate(" +
                                         coordinate_argument(coordinate_name(joint, at.coordinate)) + "))",
                                 .unit = ""});
-  return {{"parameters." + name, place - far, place + far}, measure};
+  return {{"parameters." + name, place - far, place + far},
+          measure,
+          coordinate_name(joint, at.coordinate),
+          share_address(mechanism, at)};
 }
 
 } // namespace
@@ -104,7 +107,10 @@ std::optional<StandingJoints> stand_on_springs(const Mechanism& mechanism, const
     const Friction& friction = friction_at(mechanism, frictions[i]);
     if (!(friction_limit(friction) > 0)) continue;
     if (std::ranges::find(independent, i) == independent.end())
-      out.joints.push_back({{address, -1, 1}, {}});
+      out.joints.push_back({{address, -1, 1},
+                            {},
+                            coordinate_name(joint_of(mechanism, frictions[i]), frictions[i].coordinate),
+                            address});
     else
       out.joints.push_back(pull(out.mechanism, frictions[i], i,
                                 value_in(state, joint_of(mechanism, frictions[i]), frictions[i].coordinate),

@@ -16,6 +16,8 @@ namespace flyball {
 struct StandingJoint {
   FreeNumber number;   // where its spring pulls it, or the share itself where a loop ties it to others
   std::string measure; // of the share; empty where the number is it
+  std::string name;    // of the coordinate
+  std::string share;   // address of the scene's own
 };
 
 struct StandingJoints {
