@@ -3,6 +3,7 @@
 #include "engine/linear/spectral.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -77,6 +78,27 @@ VectorXd largest_within(const VectorXd& g, const MatrixXd& A, const VectorXd& lo
     active.push_back(next);
   }
   return x;
+}
+
+std::optional<double> least_largest(const MatrixXd& A, const VectorXd& b) {
+  constexpr Index most_columns = 60;
+  constexpr double balanced = 1e-9;
+  const Index n = A.cols();
+  if (b.isZero(0)) return 0.;
+  if (n > most_columns) return std::nullopt;
+  // The most that entries up to 1 give along b and along nothing else.
+  const VectorXd along = b.normalized();
+  const auto null = null_space(A - along * (along.transpose() * A));
+  if (!null || null->cols() == 0) return std::nullopt;
+  const auto basis = orthonormal_completion(*null);
+  if (!basis) return std::nullopt;
+  const MatrixXd entries = std::sqrt(static_cast<double>(n)) * basis->leftCols(null->cols());
+  const VectorXd x = entries * largest_within(entries.transpose() * (A.transpose() * along), entries,
+                                              VectorXd::Constant(n, -1), VectorXd::Constant(n, 1));
+  const VectorXd given = A * x;
+  const double most = along.dot(given);
+  if (!(most > 0) || (given - most * along).norm() > balanced * most) return std::nullopt;
+  return b.norm() / most;
 }
 
 } // namespace flyball

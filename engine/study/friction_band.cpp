@@ -4,6 +4,7 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/measure_plan.hpp"
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
@@ -75,6 +76,7 @@ class Box {
   const Place& first() const { return places_.front(); }
   const std::vector<Place>& places() const { return places_; }
   bool lost() const { return lost_; }
+  bool jumps(Index output) const { return map_.jumps(static_cast<std::size_t>(output)); }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
 
   // What lengths are measured by.
@@ -263,6 +265,26 @@ void take_crests(const Mechanism& mechanism, const FreeNumber& share,
     }
 }
 
+// Takes out what jumps: it has values between its extremes that no state has, or more than one.
+void drop_jumping(const std::vector<std::string>& jumping, FrictionBand& band) {
+  if (jumping.empty()) return;
+  std::erase_if(band.extents, [&](const BandExtent& extent) {
+    return std::ranges::find(jumping, extent.name) != jumping.end();
+  });
+  band.message += std::string(band.message.empty() ? "" : " ") + "No extent is told of " +
+                  word_list(std::vector<std::string_view>(jumping.begin(), jumping.end()), "and") +
+                  ", which jumps within the band.";
+}
+
+// Whether values along a branch change between two points by far more than before and after.
+bool jumps_along(const std::vector<double>& values) {
+  constexpr double far_more = 4;
+  const auto change = [&](std::size_t i) { return std::abs(values[i + 1] - values[i]); };
+  for (std::size_t i = 1; i + 2 < values.size(); ++i)
+    if (change(i) > far_more * (change(i - 1) + change(i + 1)) + 1e-9 * std::abs(values[i])) return true;
+  return false;
+}
+
 // The extents over all that hangs together along one share, folds included.
 bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution& state,
             const std::atomic<bool>* cancel, FrictionBand& band) {
@@ -299,6 +321,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     }
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> round, farther;
+  std::vector<std::string> jumping;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
     extent.stable_low = extent.stable_high = state.stable;
@@ -316,6 +339,10 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
       }
     };
     const CountedValues values = counted_values(mechanism, *diagram, point, extent.name, extent.value);
+    if (measure_index(mechanism, extent.name) >= 0 && std::ranges::any_of(values.branches, jumps_along)) {
+      jumping.push_back(extent.name);
+      continue;
+    }
     for (std::size_t b = 0; b < values.branches.size(); ++b)
       for (std::size_t i = 0; i < values.branches[b].size(); ++i)
         take(values.branches[b][i], diagram->branches[b].points[i]);
@@ -344,6 +371,8 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   if (!farther.empty())
     band.message += (band.message.empty() ? "" : " ") + ("Friction holds " + word_list(farther)) +
                     " farther than the band was followed, so that no bound is told: " + why + ".";
+  if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
+  drop_jumping(jumping, band);
   return true;
 }
 
@@ -415,7 +444,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
         if (measured(i)) box.go_to_corner(i, sense);
     const bool one_motion = free.size() == 1 || holding->independent.size() == 1;
     if (!one_motion) box.look_around();
-    std::vector<std::string> frictional;
+    std::vector<std::string> frictional, jumping;
     for (const CoordinateReference& at : find_frictions(mechanism))
       frictional.push_back(
           coordinate_name(mechanism.joints[static_cast<std::size_t>(at.joint)], at.coordinate));
@@ -425,6 +454,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       double below = 0, above = 0;
       const Box::Place low = box.climb(i, -1, below), high = box.climb(i, 1, above);
       const std::string& name = names[static_cast<std::size_t>(i)];
+      if (box.jumps(i)) jumping.push_back(name);
       std::optional<double> error;
       if (options.errors)
         if (const double worst = std::max(box.errors(low)[i] + below, box.errors(high)[i] + above);
@@ -439,7 +469,6 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     band.whole = !box.lost();
     if (!band.whole && free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
-      if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
       return band;
     }
     if (!band.whole)
@@ -453,6 +482,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
         band.message +=
             " Friction may hold it beyond: with several joints that have some that is not followed.";
     }
+    drop_jumping(jumping, band);
   } catch (const Interrupted&) {
     band = {};
     band.message = "Cancelled.";

@@ -64,6 +64,7 @@ class PlacedBand {
     return true;
   }
 
+  bool jumps(Index output) const { return map_.jumps(static_cast<std::size_t>(output)); }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
   double value(Index output) const { return places_.front().state.values[output]; }
   bool has_rates(Index output) const {
@@ -421,12 +422,16 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
       for (const std::size_t side : {0u, 1u})
         if (places.has_rates(i) && !is_unbounded(ends[static_cast<std::size_t>(i)][side]))
           climb(i, side, places.best_place(i, side == 0 ? -1 : 1));
-    std::vector<std::string_view> round, farther;
+    std::vector<std::string_view> round, farther, jumping;
     for (Index i = 0; i < count; ++i) {
       if (!places.has_rates(i)) continue;
       const auto k = static_cast<std::size_t>(i);
       all = all && std::ranges::count(ends[k], PlacedBand::End::left) == 0;
       lost = lost || ends[k][0] == PlacedBand::End::lost || ends[k][1] == PlacedBand::End::lost;
+      if (places.jumps(i)) {
+        jumping.push_back(names[k]);
+        continue;
+      }
       BandExtent extent;
       extent.name = names[k];
       extent.unit = places.unit(i);
@@ -456,6 +461,8 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
     if (!farther.empty())
       band.message += " Friction holds " + word_list(farther, "and") +
                       " farther than the band was followed, so that no bound is told.";
+    if (!jumping.empty())
+      band.message += " No extent is told of " + word_list(jumping, "and") + ", which jumps within the band.";
     return band;
   }
   return none;
