@@ -53,7 +53,7 @@ class PlacedBand {
       if (is_length(j)) radius_[j] = reach;
   }
 
-  // `left`: another coordinate went too far to say.
+  // `left`: undecided, as another coordinate went too far or there were too many steps.
   enum class End { extremum, round, far, left, lost };
 
   bool begin(const Solution& solution) {
@@ -145,13 +145,12 @@ class PlacedBand {
         at = std::move(*to);
         places_.push_back(at);
         step = std::min(longest_place_step, 2 * step);
-        lost_ = false;
         continue;
       }
       step /= 4;
       if (step < shortest_place_step) return lost_ ? End::lost : End::extremum;
     }
-    return End::lost;
+    return End::left;
   }
 
  private:
@@ -222,6 +221,7 @@ class PlacedBand {
   // To other numbers, and from there back to the limits where one is passed, and to the mark of the output.
   // Nothing where no state follows, or between the two a joint would slip.
   std::optional<Place> go(const Place& from, const VectorXd& p, Index output, double sense, double mark) {
+    lost_ = false;
     SteadyMap::State state = from.state;
     const double way = largest_part(p - from.state.p);
     VectorXd to = p;
