@@ -4,7 +4,6 @@
 #include "engine/linear/linear_program.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/solve/solution_difference.hpp"
@@ -28,8 +27,9 @@ constexpr double most_give = 1e-3, least_give = 1e-6; // of the springs: see sta
 constexpr double longest_place_step = 0.2;            // rad, reaches or shares
 constexpr double shortest_place_step = 1e-7;
 constexpr int most_place_steps = 2000;
-constexpr std::size_t most_joints_placed = 6, most_places = 8000, most_ends = 120; // that are explored
-constexpr double same_end = 1e-3;                                                  // rad, reaches or shares
+constexpr std::size_t most_joints_placed = 6;
+constexpr std::size_t most_places = 8000, most_ends = 120; // that are explored
+constexpr double same_end = 1e-3;                          // rad, reaches or shares
 constexpr int most_restorations = 8;
 constexpr double within_limit = 1e-9;    // of the limit: what still counts as held
 constexpr double most_bulge = 1e-2;      // of the limit, between two places at one: the way is curved
@@ -135,7 +135,7 @@ class PlacedBand {
       if (went_far(begin, at))
         return is_coordinate(output) && !went_far(output, begin, at) ? End::left : End::far;
       const VectorXd gradient = sense * at.rates.row(output).transpose();
-      if (!gradient.allFinite()) return End::lost;
+      if (!gradient.allFinite()) return End::left; // a measure has no value there
       const VectorXd d = best_step(at, gradient, step, turns ? mark - now : infinite);
       const double gain = gradient.dot(d);
       if (gain <= no_placed_gain * (std::abs(now) + gradient.cwiseProduct(radius_).lpNorm<1>()))
@@ -232,7 +232,7 @@ class PlacedBand {
       }
       const Place at{state, map_.rates()};
       const VectorXd share = shares(at);
-      if (!share.allFinite() || !at.rates.allFinite()) return std::nullopt;
+      if (!share.allFinite() || !share_rates(at).allFinite()) return std::nullopt;
       const double beyond = share.cwiseAbs().maxCoeff() - 1;
       const double past = sense * state.values[output] - mark;
       std::optional<VectorXd> back;
@@ -336,38 +336,116 @@ class PlacedBand {
   bool lost_ = false; // the last step: no state followed
 };
 
-// Whether the torque or load of a drive is one of where anything stands.
-bool asks_for_place(const Mechanism& mechanism, const Joint& joint, int i) {
-  return std::ranges::any_of(std::array<std::string_view, 2>{"torque", "load"}, [&](std::string_view which) {
-    const Formula* law = drive_law(mechanism, joint, i, which);
-    if (!law) return false;
-    const Expression read = read_drive_law(mechanism, law->text);
-    return std::ranges::any_of(read.results(),
-                               [](const ResultCall& call) { return call.result != Result::rate; });
-  });
-}
-
-// Angles whose whole turns no spring, stop or torque tells apart; none where one might that is not told.
-std::vector<std::string> freely_turning(const Mechanism& mechanism, const std::vector<std::string>& names) {
-  std::vector<std::string> out;
-  for (const Joint& joint : mechanism.joints) {
-    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
-      const Coordinate& c = joint.coordinates[i];
-      const int index = static_cast<int>(i);
-      const std::string name = coordinate_name(joint, index);
-      if (c.drive && finds_speed(*c.drive) && asks_for_place(mechanism, joint, index)) return {};
-      if (!c.spring && !c.stop) {
-        if (is_angle(joint.type, index) && !is_rotation_vector(joint.type, index)) out.push_back(name);
-      } else if (std::ranges::find(names, name) == names.end()) {
-        return {};
-      }
-    }
-  }
-  return out;
-}
-
 bool is_unbounded(PlacedBand::End end) {
   return end == PlacedBand::End::round || end == PlacedBand::End::far;
+}
+
+// The ends of all ways that are looked for.
+class PlacedEnds {
+ public:
+  using Ends = std::array<PlacedBand::End, 2>; // downwards, upwards
+
+  PlacedEnds(PlacedBand& places, std::size_t outputs) : places_(places), ends_(outputs) {}
+
+  // The ends of each joint's way, also from each end of the others', and where each is about to slip: what is
+  // an extremum from one side may be passed from another.
+  void explore(const std::vector<bool>& is_joint) {
+    std::size_t explored = 0;
+    for (; explored < std::min(starts_.size(), most_ends) && places_.last_place() < most_places; ++explored)
+      for (Index i = 0; i < places_.objectives(); ++i)
+        if (i >= count() || is_joint[static_cast<std::size_t>(i)])
+          for (const std::size_t side : {0u, 1u})
+            climb(i, side, starts_[explored]);
+    all_ = explored == starts_.size();
+  }
+
+  // Of each output from the best place that is known.
+  void finish() {
+    for (Index i = 0; i < count(); ++i)
+      for (const std::size_t side : {0u, 1u})
+        climb(i, side, places_.best_place(i, side == 0 ? -1 : 1));
+  }
+
+  const Ends& operator[](Index output) const { return ends_[static_cast<std::size_t>(output)]; }
+  bool any(PlacedBand::End end) const {
+    return std::ranges::any_of(ends_, [&](const Ends& each) { return std::ranges::count(each, end) > 0; });
+  }
+  bool all_explored() const { return all_ && !any(PlacedBand::End::left); }
+
+ private:
+  Index count() const { return static_cast<Index>(ends_.size()); }
+
+  void climb(Index output, std::size_t side, std::size_t from) {
+    if (!places_.has_rates(output)) return;
+    if (output < count() && is_unbounded((*this)[output][side])) return;
+    const PlacedBand::End end = places_.climb(output, side == 0 ? -1 : 1, from);
+    if (output < count()) ends_[static_cast<std::size_t>(output)][side] = end;
+    for (const std::size_t start : starts_) {
+      const PlacedBand::Beside beside = places_.compare_last(start);
+      if (beside == PlacedBand::Beside::turned) take_turn(start);
+      if (beside != PlacedBand::Beside::elsewhere) return;
+    }
+    starts_.push_back(places_.last_place());
+  }
+
+  // What the last place has otherwise than one that differs by whole turns goes on either way.
+  void take_turn(std::size_t other) {
+    for (Index i = 0; i < count(); ++i)
+      if (places_.has_rates(i) && places_.changes_to_last(other, i))
+        ends_[static_cast<std::size_t>(i)].fill(places_.unit(i) == "rad" ? PlacedBand::End::round
+                                                                         : PlacedBand::End::far);
+  }
+
+  PlacedBand& places_;
+  std::vector<Ends> ends_;
+  std::vector<std::size_t> starts_{0};
+  bool all_ = true;
+};
+
+FrictionBand tell(const Mechanism& mechanism, const std::vector<std::string>& names, PlacedBand& places,
+                  const PlacedEnds& ends, bool several) {
+  FrictionBand band;
+  std::vector<std::string_view> round, farther, jumping;
+  for (Index i = 0; i < static_cast<Index>(names.size()); ++i) {
+    const std::string& name = names[static_cast<std::size_t>(i)];
+    if (!places.has_rates(i)) continue;
+    if (places.jumps(i)) {
+      jumping.push_back(name);
+      continue;
+    }
+    BandExtent extent;
+    extent.name = name;
+    extent.unit = places.unit(i);
+    extent.value = places.value(i);
+    const auto end = [&](std::size_t side, double sense, double& value, std::optional<bool>& stable) {
+      const std::size_t place = places.best_place(i, sense);
+      const bool unbounded = is_unbounded(ends[i][side]);
+      value = unbounded ? sense * infinite : places.best(i, sense);
+      if (!unbounded) stable = places.stable_at(mechanism, place);
+    };
+    end(0, -1, extent.low, extent.stable_low);
+    end(1, 1, extent.high, extent.stable_high);
+    if (std::ranges::count(ends[i], PlacedBand::End::far) > 0)
+      farther.push_back(name);
+    else if (std::ranges::count(ends[i], PlacedBand::End::round) > 0)
+      round.push_back(name);
+    band.extents.push_back(std::move(extent));
+  }
+  band.found = true;
+  band.whole = false;
+  band.folds = true;
+  band.message = "It is the band by where the joints with friction stand";
+  if (several) band.message += "; each extent is an extremum nearby";
+  if (several && !ends.all_explored()) band.message += ", and it may go farther";
+  band.message += ".";
+  if (!round.empty())
+    band.message += " Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
+  if (!farther.empty())
+    band.message += " Friction holds " + word_list(farther, "and") +
+                    " farther than the band was followed, so that no bound is told.";
+  if (!jumping.empty())
+    band.message += " No extent is told of " + word_list(jumping, "and") + ", which jumps within the band.";
+  return band;
 }
 
 } // namespace
@@ -376,96 +454,24 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
                               const std::vector<std::string>& names,
                               const std::vector<std::size_t>& independent, double reach,
                               const std::atomic<bool>* cancel) {
-  FrictionBand none;
-  if (independent.size() > most_joints_placed) return none;
+  if (independent.size() > most_joints_placed) return {};
   // Springs that give too much fold with what they hold against.
   for (double give = most_give; give > 0.9 * least_give; give /= 30) {
-    FrictionBand band;
     const auto standing = stand_on_springs(mechanism, state, independent, reach, give);
-    if (!standing || standing->joints.empty()) return none;
+    if (!standing || standing->joints.empty()) return {};
     PlacedBand places(*standing, names, freely_turning(mechanism, names), reach, cancel);
-    if (!places.begin(state)) return none;
-    const auto count = static_cast<Index>(names.size());
-    std::vector<std::array<PlacedBand::End, 2>> ends(names.size());
-    bool lost = false;
-    // The ends of each joint's way, also from each end of the others': what is an extremum from one side may
-    // be passed from another.
-    std::vector<std::size_t> starts{0};
-    const auto climb = [&](Index i, std::size_t side, std::size_t from) {
-      const PlacedBand::End end = places.climb(i, side == 0 ? -1 : 1, from);
-      if (i < count) ends[static_cast<std::size_t>(i)][side] = end;
-      for (const std::size_t start : starts) {
-        const auto beside = places.compare_last(start);
-        if (beside == PlacedBand::Beside::elsewhere) continue;
-        for (Index k = 0; k < count && beside == PlacedBand::Beside::turned; ++k)
-          if (places.changes_to_last(start, k))
-            ends[static_cast<std::size_t>(k)].fill(places.unit(k) == "rad" ? PlacedBand::End::round
-                                                                           : PlacedBand::End::far);
-        return;
-      }
-      starts.push_back(places.last_place());
-    };
-    const auto is_explored = [&](Index i) {
-      return i >= count || std::ranges::any_of(standing->joints, [&](const StandingJoint& joint) {
-               return joint.name == names[static_cast<std::size_t>(i)];
-             });
-    };
-    std::size_t explored = 0;
-    for (; explored < std::min(starts.size(), most_ends) && places.last_place() < most_places; ++explored)
-      for (Index i = 0; i < places.objectives(); ++i)
-        for (const std::size_t side : {0u, 1u})
-          if (places.has_rates(i) && is_explored(i) &&
-              (i >= count || !is_unbounded(ends[static_cast<std::size_t>(i)][side])))
-            climb(i, side, starts[explored]);
-    bool all = explored == starts.size();
-    for (Index i = 0; i < count; ++i)
-      for (const std::size_t side : {0u, 1u})
-        if (places.has_rates(i) && !is_unbounded(ends[static_cast<std::size_t>(i)][side]))
-          climb(i, side, places.best_place(i, side == 0 ? -1 : 1));
-    std::vector<std::string_view> round, farther, jumping;
-    for (Index i = 0; i < count; ++i) {
-      if (!places.has_rates(i)) continue;
-      const auto k = static_cast<std::size_t>(i);
-      all = all && std::ranges::count(ends[k], PlacedBand::End::left) == 0;
-      lost = lost || ends[k][0] == PlacedBand::End::lost || ends[k][1] == PlacedBand::End::lost;
-      if (places.jumps(i)) {
-        jumping.push_back(names[k]);
-        continue;
-      }
-      BandExtent extent;
-      extent.name = names[k];
-      extent.unit = places.unit(i);
-      extent.value = places.value(i);
-      extent.low = is_unbounded(ends[k][0]) ? -infinite : places.best(i, -1);
-      extent.high = is_unbounded(ends[k][1]) ? infinite : places.best(i, 1);
-      if (std::isfinite(extent.low))
-        extent.stable_low = places.stable_at(mechanism, places.best_place(i, -1));
-      if (std::isfinite(extent.high))
-        extent.stable_high = places.stable_at(mechanism, places.best_place(i, 1));
-      if (std::ranges::count(ends[k], PlacedBand::End::far) > 0)
-        farther.push_back(names[k]);
-      else if (std::ranges::count(ends[k], PlacedBand::End::round) > 0)
-        round.push_back(names[k]);
-      band.extents.push_back(std::move(extent));
-    }
-    if (lost) continue;
-    band.found = true;
-    band.whole = false;
-    band.folds = true;
-    band.message = "It is the band by where the joints with friction stand";
-    band.message += standing->joints.size() < 2 ? "."
-                    : all                       ? "; each extent is an extremum nearby."
-                          : "; each extent is an extremum nearby, and it may go farther.";
-    if (!round.empty())
-      band.message += " Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
-    if (!farther.empty())
-      band.message += " Friction holds " + word_list(farther, "and") +
-                      " farther than the band was followed, so that no bound is told.";
-    if (!jumping.empty())
-      band.message += " No extent is told of " + word_list(jumping, "and") + ", which jumps within the band.";
-    return band;
+    if (!places.begin(state)) return {};
+    std::vector<bool> is_joint;
+    for (const std::string& name : names)
+      is_joint.push_back(std::ranges::find(standing->joints, name, &StandingJoint::name) !=
+                         standing->joints.end());
+    PlacedEnds ends(places, names.size());
+    ends.explore(is_joint);
+    ends.finish();
+    if (!ends.any(PlacedBand::End::lost))
+      return tell(mechanism, names, places, ends, standing->joints.size() > 1);
   }
-  return none;
+  return {};
 }
 
 } // namespace flyball

@@ -12,6 +12,8 @@
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace flyball {
 namespace {
@@ -94,6 +96,17 @@ StandingJoint pull(Mechanism& mechanism, CoordinateReference at, std::size_t i, 
           share_address(mechanism, at)};
 }
 
+// Whether the torque or load of a drive is one of where anything stands.
+bool asks_for_place(const Mechanism& mechanism, const Joint& joint, int i) {
+  return std::ranges::any_of(std::array<std::string_view, 2>{"torque", "load"}, [&](std::string_view which) {
+    const Formula* law = drive_law(mechanism, joint, i, which);
+    if (!law) return false;
+    const Expression read = read_drive_law(mechanism, law->text);
+    return std::ranges::any_of(read.results(),
+                               [](const ResultCall& call) { return call.result != Result::rate; });
+  });
+}
+
 } // namespace
 
 std::optional<StandingJoints> stand_on_springs(const Mechanism& mechanism, const Solution& state,
@@ -115,6 +128,24 @@ std::optional<StandingJoints> stand_on_springs(const Mechanism& mechanism, const
       out.joints.push_back(pull(out.mechanism, frictions[i], i,
                                 value_in(state, joint_of(mechanism, frictions[i]), frictions[i].coordinate),
                                 friction.share, reach, give));
+  }
+  return out;
+}
+
+std::vector<std::string> freely_turning(const Mechanism& mechanism, const std::vector<std::string>& names) {
+  std::vector<std::string> out;
+  for (const Joint& joint : mechanism.joints) {
+    for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+      const Coordinate& c = joint.coordinates[i];
+      const int index = static_cast<int>(i);
+      const std::string name = coordinate_name(joint, index);
+      if (c.drive && finds_speed(*c.drive) && asks_for_place(mechanism, joint, index)) return {};
+      if (!c.spring && !c.stop) {
+        if (is_angle(joint.type, index) && !is_rotation_vector(joint.type, index)) out.push_back(name);
+      } else if (std::ranges::find(names, name) == names.end()) {
+        return {};
+      }
+    }
   }
   return out;
 }

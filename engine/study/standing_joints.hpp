@@ -32,4 +32,8 @@ std::optional<StandingJoints> stand_on_springs(const Mechanism& mechanism, const
                                                const std::vector<std::size_t>& independent, double reach,
                                                double give);
 
+// Of these names those of angles whose whole turns no spring, stop or torque tells apart; none where one
+// might that is not among them.
+std::vector<std::string> freely_turning(const Mechanism& mechanism, const std::vector<std::string>& names);
+
 } // namespace flyball
