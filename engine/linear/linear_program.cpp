@@ -88,11 +88,17 @@ std::optional<double> least_largest(const MatrixXd& A, const VectorXd& b) {
   if (n > most_columns) return std::nullopt;
   // The most that entries up to 1 give along b and along nothing else.
   const VectorXd along = b.normalized();
-  const auto null = null_space(A - along * (along.transpose() * A));
-  if (!null || null->cols() == 0) return std::nullopt;
-  const auto basis = orthonormal_completion(*null);
+  const auto across = orthonormal_completion(along);
+  if (!across) return std::nullopt;
+  MatrixXd null = MatrixXd::Identity(n, n);
+  if (b.size() > 1) {
+    const auto found = null_space(across->rightCols(b.size() - 1).transpose() * A);
+    if (!found || found->cols() == 0) return std::nullopt;
+    null = *found;
+  }
+  const auto basis = orthonormal_completion(null);
   if (!basis) return std::nullopt;
-  const MatrixXd entries = std::sqrt(static_cast<double>(n)) * basis->leftCols(null->cols());
+  const MatrixXd entries = std::sqrt(static_cast<double>(n)) * basis->leftCols(null.cols());
   const VectorXd x = entries * largest_within(entries.transpose() * (A.transpose() * along), entries,
                                               VectorXd::Constant(n, -1), VectorXd::Constant(n, 1));
   const VectorXd given = A * x;
