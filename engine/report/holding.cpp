@@ -1,6 +1,7 @@
 #include "engine/report/holding.hpp"
 
 #include "engine/linear/interruption.hpp"
+#include "engine/linear/linear_program.hpp"
 #include "engine/linear/root_bracket.hpp"
 #include "engine/linear/spectral.hpp"
 #include "engine/mechanism/body_groups.hpp"
@@ -124,8 +125,8 @@ void tell_each(const std::vector<double>& needed, Holding& out) {
 }
 
 // The least largest share t with |force_i| <= t limit_i and G force = needed; G [I, follow^T]. With one
-// independent motion all limits are used alike. With several, between the share of the least-squares forces
-// and the work that any one motion takes.
+// independent motion all limits are used alike. With several where no least is found it is between the share
+// of the least-squares forces and the work that any one motion takes.
 void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Holding& out) {
   const auto n = static_cast<Index>(which.independent.size()), m = static_cast<Index>(which.others.size());
   MatrixXd g(n, n + m);
@@ -146,6 +147,10 @@ void tell_shared(const TiedMotions& which, const std::vector<double>& needed, Ho
     out.at_least = std::max(out.at_least, work_share(VectorXd::Unit(n, i)));
   if (n == 1) {
     out.takes = out.at_least;
+    return;
+  }
+  if (const std::optional<double> least = least_largest(scaled, d)) {
+    out.takes = out.at_least = *least;
     return;
   }
   const VectorXd shares = fit(scaled, d);

@@ -206,11 +206,29 @@ class BandBesideBrakes {
       const bool goes = extent && (parts_[i] == Part::slips_forwards ? extent->low > 0 : extent->high < 0);
       return goes ? "" : label(i) + " comes to rest within it.";
     }
-    const std::optional<Extent> carried = carried_extent(still, band, frictions_[i]);
-    const double limit = friction_limit(friction_at(mechanism_, frictions_[i]));
-    const bool holds =
-        extent && carried && extent->high - carried->low <= limit && extent->low - carried->high >= -limit;
+    // Gears make all that have friction in a train hold together.
+    Extent sum;
+    double limit = 0;
+    for (const GearedCoordinate& geared : gear_train(mechanism_, frictions_[i])) {
+      const auto found = std::ranges::find(frictions_, geared.at);
+      if (found == frictions_.end()) continue;
+      const std::optional<Extent> own =
+          held_extent(still, band, static_cast<std::size_t>(found - frictions_.begin()));
+      if (!own) return "what holding " + label(i) + " takes over it is not determined.";
+      sum.low += geared.ratio * (geared.ratio > 0 ? own->low : own->high);
+      sum.high += geared.ratio * (geared.ratio > 0 ? own->high : own->low);
+      limit += std::abs(geared.ratio) * friction_limit(friction_at(mechanism_, geared.at));
+    }
+    const bool holds = sum.high <= limit && sum.low >= -limit;
     return holds ? "" : "within it " + label(i) + " may have to hold more than its limit, and slip.";
+  }
+
+  // Of what it would take to hold one alone.
+  std::optional<Extent> held_extent(const Standstill& still, const FrictionBand& band, std::size_t i) const {
+    const std::optional<Extent> drive = extent_of(band, measure_name(i)),
+                                carried = carried_extent(still, band, frictions_[i]);
+    if (!drive || !carried) return std::nullopt;
+    return Extent{drive->low - carried->high, drive->high - carried->low};
   }
 
   // Of what torques give along what is held.

@@ -4,9 +4,12 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/frictions.hpp"
+#include "engine/mechanism/measure_plan.hpp"
+#include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/study/counted_values.hpp"
+#include "engine/study/placed_band.hpp"
 #include "engine/study/steady_map.hpp"
 
 #include <algorithm>
@@ -28,6 +31,7 @@ constexpr int most_sweeps = 40;     // of all shares, one after the other
 constexpr double no_gain = 1e-16;   // of an output's size, in a sweep
 constexpr int most_crest_steps = 60;
 constexpr std::size_t most_outputs = 128;
+constexpr Index most_shares_around = 6;
 
 std::vector<FreeNumber> all_shares(const Mechanism& mechanism) {
   std::vector<FreeNumber> free;
@@ -51,7 +55,7 @@ class Box {
  public:
   Box(const Mechanism& mechanism, std::span<const FreeNumber> free, std::vector<std::string> names,
       const std::atomic<bool>* cancel)
-      : map_(mechanism, free, std::move(names), cancel) {
+      : outputs_(static_cast<Index>(names.size())), map_(mechanism, free, std::move(names), cancel) {
     map_.count_turns();
   }
 
@@ -72,7 +76,15 @@ class Box {
   const Place& first() const { return places_.front(); }
   const std::vector<Place>& places() const { return places_; }
   bool lost() const { return lost_; }
+  bool jumps(Index output) const { return map_.jumps(static_cast<std::size_t>(output)); }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
+
+  // What lengths are measured by.
+  double reach() const {
+    for (Index i = 0; i < outputs_; ++i)
+      if (const auto scale = map_.scale(static_cast<std::size_t>(i)); scale && unit(i) == "m") return *scale;
+    return 1;
+  }
 
   // Of all outputs at a place: as a solve estimates it, not numbers where it does not.
   VectorXd errors(const Place& place) {
@@ -138,6 +150,23 @@ class Box {
     go(from, p);
   }
 
+  // To all corners and to the middles of all faces, of not too many shares: whether the balance folds
+  // between.
+  void look_around() {
+    const Place from = places_.front();
+    const Index n = from.state.p.size();
+    if (n > most_shares_around) return;
+    for (int corner = 0; corner < 1 << n; ++corner) {
+      VectorXd p(n);
+      for (Index j = 0; j < n; ++j)
+        p[j] = (corner >> j) & 1 ? 1 : -1;
+      go(from, p);
+    }
+    for (Index j = 0; j < n; ++j)
+      for (const double side : {-1., 1.})
+        go(from, side * VectorXd::Unit(n, j));
+  }
+
  private:
   void add(const SteadyMap::State& state) { places_.push_back({state, map_.rates()}); }
 
@@ -195,6 +224,7 @@ class Box {
     return middle;
   }
 
+  Index outputs_;
   SteadyMap map_;
   std::vector<Place> places_;
   bool lost_ = false;
@@ -235,6 +265,26 @@ void take_crests(const Mechanism& mechanism, const FreeNumber& share,
     }
 }
 
+// Takes out what jumps: it has values between its extremes that no state has, or more than one.
+void drop_jumping(const std::vector<std::string>& jumping, FrictionBand& band) {
+  if (jumping.empty()) return;
+  std::erase_if(band.extents, [&](const BandExtent& extent) {
+    return std::ranges::find(jumping, extent.name) != jumping.end();
+  });
+  band.message += std::string(band.message.empty() ? "" : " ") + "No extent is told of " +
+                  word_list(std::vector<std::string_view>(jumping.begin(), jumping.end()), "and") +
+                  ", which jumps within the band.";
+}
+
+// Whether values along a branch change between two points by far more than before and after.
+bool jumps_along(const std::vector<double>& values) {
+  constexpr double far_more = 4;
+  const auto change = [&](std::size_t i) { return std::abs(values[i + 1] - values[i]); };
+  for (std::size_t i = 1; i + 2 < values.size(); ++i)
+    if (change(i) > far_more * (change(i - 1) + change(i + 1)) + 1e-9 * std::abs(values[i])) return true;
+  return false;
+}
+
 // The extents over all that hangs together along one share, folds included.
 bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution& state,
             const std::atomic<bool>* cancel, FrictionBand& band) {
@@ -271,6 +321,7 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
     }
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::string_view> round, farther;
+  std::vector<std::string> jumping;
   for (BandExtent& extent : band.extents) {
     extent.low = extent.high = extent.value;
     extent.stable_low = extent.stable_high = state.stable;
@@ -288,6 +339,10 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
       }
     };
     const CountedValues values = counted_values(mechanism, *diagram, point, extent.name, extent.value);
+    if (measure_index(mechanism, extent.name) >= 0 && std::ranges::any_of(values.branches, jumps_along)) {
+      jumping.push_back(extent.name);
+      continue;
+    }
     for (std::size_t b = 0; b < values.branches.size(); ++b)
       for (std::size_t i = 0; i < values.branches[b].size(); ++i)
         take(values.branches[b][i], diagram->branches[b].points[i]);
@@ -316,7 +371,22 @@ bool follow(const Mechanism& mechanism, const FreeNumber& share, const Solution&
   if (!farther.empty())
     band.message += (band.message.empty() ? "" : " ") + ("Friction holds " + word_list(farther)) +
                     " farther than the band was followed, so that no bound is told: " + why + ".";
+  if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
+  drop_jumping(jumping, band);
   return true;
+}
+
+// That nothing resists, not even friction.
+std::string loose_joints(const Mechanism& mechanism, const Solution& state) {
+  std::vector<std::string_view> names;
+  const std::vector<CoordinateReference> frictions = find_frictions(mechanism);
+  for (const std::string& name : state.neutral)
+    if (std::ranges::none_of(frictions, [&](CoordinateReference at) {
+          return joint_of(mechanism, at).name == name ||
+                 coordinate_name(joint_of(mechanism, at), at.coordinate) == name;
+        }))
+      names.push_back(name);
+  return word_list(names, "and");
 }
 
 } // namespace
@@ -348,8 +418,18 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       return band;
     }
     Box box(mechanism, free, names, options.cancel);
+    const auto by_places = [&] {
+      const std::vector<std::size_t> independent =
+          holding ? holding->independent : std::vector<std::size_t>{0};
+      return find_placed_band(mechanism, state, names, independent, box.reach(), options.cancel);
+    };
     if (!box.begin(start_values(state.coordinates))) {
-      band.message = "The state is singular, so that nothing tells how far friction would let it be moved.";
+      if (FrictionBand placed = by_places(); placed.found) return placed;
+      const std::string loose = loose_joints(mechanism, state);
+      band.message =
+          loose.empty()
+              ? "The state is singular, so that nothing tells how far friction would let it be moved."
+              : "No band is told: nothing resists " + loose + ", whatever friction does.";
       return band;
     }
     const auto count = static_cast<Index>(names.size());
@@ -363,7 +443,8 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       for (const double sense : {1., -1.})
         if (measured(i)) box.go_to_corner(i, sense);
     const bool one_motion = free.size() == 1 || holding->independent.size() == 1;
-    std::vector<std::string> frictional;
+    if (!one_motion) box.look_around();
+    std::vector<std::string> frictional, jumping;
     for (const CoordinateReference& at : find_frictions(mechanism))
       frictional.push_back(
           coordinate_name(mechanism.joints[static_cast<std::size_t>(at.joint)], at.coordinate));
@@ -373,6 +454,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       double below = 0, above = 0;
       const Box::Place low = box.climb(i, -1, below), high = box.climb(i, 1, above);
       const std::string& name = names[static_cast<std::size_t>(i)];
+      if (box.jumps(i)) jumping.push_back(name);
       std::optional<double> error;
       if (options.errors)
         if (const double worst = std::max(box.errors(low)[i] + below, box.errors(high)[i] + above);
@@ -385,11 +467,14 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
     }
     band.found = true;
     band.whole = !box.lost();
+    if (!band.whole && free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
+      band.folds = true;
+      return band;
+    }
+    if (!band.whole)
+      if (FrictionBand placed = by_places(); placed.found) return placed;
     if (band.whole) {
       band.message = free.size() > 1 ? "Each extent is an extremum nearby: rates tell of none beyond." : "";
-    } else if (free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
-      band.folds = true;
-      if (band.message.empty()) band.message = "The band passes a fold, beyond which friction alone holds.";
     } else {
       band.message = "Within the limits of friction the balance folds: the band is told up to there, and a "
                      "push may make it jump.";
@@ -397,6 +482,7 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
         band.message +=
             " Friction may hold it beyond: with several joints that have some that is not followed.";
     }
+    drop_jumping(jumping, band);
   } catch (const Interrupted&) {
     band = {};
     band.message = "Cancelled.";

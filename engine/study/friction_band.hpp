@@ -32,7 +32,8 @@ struct FrictionBand {
   bool found = false;
   std::vector<BandExtent> extents; // free coordinates, speeds that are found, then measures
   bool whole = true;               // reached all corners of the box that were asked for
-  bool folds = false;              // followed through folds, where the balance without friction is unstable
+  bool folds = false;              // followed through folds, where the balance without friction is unstable,
+                                   // or by where the joints stand (placed_band.hpp)
   std::string message;             // a sentence or more
 };
 
@@ -45,7 +46,8 @@ struct FrictionBandOptions {
 
 // The band that is connected with a steady state; none about an unstable one that friction does not hold, as
 // what is free beside the joints that have some leaves it. With several joints each extent is a local
-// extremum: rates tell of no other beyond. Throws SceneError as SteadyMap does.
+// extremum: rates tell of no other beyond. Measures that jump within it have no extent. Throws SceneError as
+// SteadyMap does.
 FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOptions& options = {});
 
 } // namespace flyball

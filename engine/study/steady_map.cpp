@@ -292,6 +292,53 @@ std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eige
   return to;
 }
 
+// Measures that rates at both ends do not lead from one value to the other.
+void SteadyMap::look_for_jumps(const State& from, const State& to) {
+  jumps_.resize(wanted_.size(), false);
+  const Eigen::MatrixXd before = rates_;
+  if (!find_rates(to)) return;
+  const Eigen::MatrixXd after = rates_;
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (wanted_[i].coordinate || jumps_[i]) continue;
+    jumps_[i] = may_jump(i, from, before.row(k), to, after.row(k)) && is_jump(i, from, to);
+  }
+}
+
+bool SteadyMap::may_jump(std::size_t wanted, const State& from, const Eigen::VectorXd& rate_from,
+                         const State& to, const Eigen::VectorXd& rate_to) const {
+  const auto k = static_cast<Eigen::Index>(wanted);
+  const Eigen::VectorXd step = to.p - from.p;
+  const double a = rate_from.dot(step), b = rate_to.dot(step), change = to.values[k] - from.values[k];
+  if (!std::isfinite(a + b + change)) return false;
+  const double rounding = 1e-9 * (std::abs(to.values[k]) + std::abs(from.values[k]));
+  return std::abs(change - (a + b) / 2) >
+         0.6 * (std::abs(a) + std::abs(b)) + rounding; // of a kink less than half
+}
+
+// By halving: what is steep is smooth near by.
+bool SteadyMap::is_jump(std::size_t wanted, State from, State to) {
+  constexpr int halvings = 30;
+  const auto k = static_cast<Eigen::Index>(wanted);
+  for (int i = 0; i < halvings; ++i) {
+    interruption_point();
+    if (!find_rates(to)) return false;
+    const Eigen::VectorXd rate_to = rates_.row(k);
+    if (!find_rates(from)) return false;
+    const Eigen::VectorXd rate_from = rates_.row(k);
+    std::optional<State> middle = step_to(from, (from.p + to.p) / 2);
+    if (!middle || !find_rates(*middle)) return false;
+    const Eigen::VectorXd rate = rates_.row(k);
+    if (may_jump(wanted, from, rate_from, *middle, rate))
+      to = std::move(*middle);
+    else if (may_jump(wanted, *middle, rate, to, rate_to))
+      from = std::move(*middle);
+    else
+      return false;
+  }
+  return true;
+}
+
 bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
   double part = 1;
   for (int halvings = 0; state.p != p && halvings <= most_halvings;) {
@@ -302,6 +349,7 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
     const Eigen::VectorXd to = step == 1 ? p : (state.p + step * (p - state.p)).eval();
     if (to == state.p) return false; // the state runs away at numbers that are told apart no more
     if (std::optional<State> next = step_to(state, to)) {
+      if (counts_turns_ && measures_wanted()) look_for_jumps(state, *next);
       state = std::move(*next);
       part = std::min(1., 2 * part);
     } else {

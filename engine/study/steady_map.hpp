@@ -57,6 +57,8 @@ class SteadyMap {
   // From here on measures of angles, in rad, that jump from pi to -pi go on beyond pi along the states, as
   // coordinates do.
   void count_turns() { counts_turns_ = true; }
+  // Whether a measure jumped otherwise on a way that was walked since.
+  bool jumps(std::size_t wanted) const { return wanted < jumps_.size() && jumps_[wanted]; }
 
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
@@ -104,6 +106,10 @@ class SteadyMap {
   // The same of a state to which a step leads from the one whose rates were found last.
   void find_values(State& state, const State& from);
   bool correct(Unknowns& z);
+  void look_for_jumps(const State& from, const State& to);
+  bool may_jump(std::size_t wanted, const State& from, const Eigen::VectorXd& rate_from, const State& to,
+                const Eigen::VectorXd& rate_to) const;
+  bool is_jump(std::size_t wanted, State from, State to);
 
   Mechanism varied_;
   std::optional<VariedNumbers> numbers_; // of it
@@ -118,6 +124,7 @@ class SteadyMap {
   Eigen::MatrixXd state_rates_, rates_;
   std::optional<Analysis> analysis_;  // of states that are told
   bool counts_turns_ = false;         // see count_turns()
+  std::vector<bool> jumps_;           // see jumps()
   bool across_ = false;               // see follow_across()
   std::vector<bool> open_;            // what of `wanted_` has no value then
   int negative_ = 0;                  // eigenvalues of the balance, at the state with these rates,

@@ -1,0 +1,240 @@
+// Bands by where joints with friction stand: of several joints past folds and round, within the play of
+// stops, and what jumps. Against closed forms and against places that are flooded one by one.
+#include "engine/linear/uniform_random.hpp"
+#include "engine/mechanism/scene.hpp"
+#include "engine/mechanism/text.hpp"
+#include "engine/report/analysis.hpp"
+#include "engine/study/friction_report.hpp"
+#include "tests/catch.hpp"
+
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <set>
+
+using namespace flyball;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+// 1 kg at 0.5 m and 0.7 kg at 0.4 m from there, hanging: 8.5 N m sin h + 2.8 N m sin(h + k), and the latter
+// alone, less what `h` and `k` say.
+Mechanism two_hinges(const std::string& h, const std::string& k, double gravity = 10,
+                     const std::string& measures = "") {
+  return read_scene(R"json({"flyball": 2, "name": "Double pendulum", "gravity": [0, )json" +
+                    number_text(-gravity) +
+                    R"json(, 0], "bodies": [{"name": "p", "mass": 1, "position": [0, -0.5, 0]},
+        {"name": "q", "mass": 0.7, "position": [0, -0.9, 0]}],
+      "joints": [{"name": "h", "type": "revolute", "bodies": ["ground", "p"], "at": [0, 0, 0],
+          "axis": [0, 0, 1])json" +
+                    h + R"json(}, {"name": "k", "type": "revolute", "bodies": ["p", "q"], "at": [0, -0.5, 0],
+          "axis": [0, 0, 1])json" +
+                    k + R"json(}], "measures": {)json" + measures + "}}");
+}
+
+std::string rubs(double limit) {
+  return R"(, "friction": {"limit": )" + number_text(limit) + "}";
+}
+
+std::string sprung(double stiffness, double free) {
+  return R"(, "spring": {"stiffness": )" + number_text(stiffness) + R"(, "free": )" + number_text(free) + "}";
+}
+
+std::string plays(double play, double stiffness) {
+  return R"(, "stop": {"lower": )" + number_text(-play) + R"(, "upper": )" + number_text(play) +
+         R"(, "stiffness": )" + number_text(stiffness) + "}";
+}
+
+FrictionBand band_of(const Mechanism& m) {
+  return report_friction(m, Analysis(m).solve()).band;
+}
+
+const BandExtent& extent_in(const FrictionBand& band, std::string_view name) {
+  INFO(band.message);
+  REQUIRE(band.found);
+  const auto found = std::ranges::find(band.extents, name, &BandExtent::name);
+  REQUIRE(found != band.extents.end());
+  return *found;
+}
+
+// The extents in two angles of the places that hang together with zero, by steps of 0.02 rad.
+struct Flood {
+  std::array<double, 2> low{}, high{};
+};
+constexpr double flood_step = 0.02, flood_range = 9;
+Flood flood(const std::function<bool(double, double)>& holds) {
+  Flood out;
+  std::set<std::pair<int, int>> seen{{0, 0}};
+  std::deque<std::pair<int, int>> next{{0, 0}};
+  while (!next.empty()) {
+    const auto [a, b] = next.front();
+    next.pop_front();
+    const std::array<double, 2> at{a * flood_step, b * flood_step};
+    for (const std::size_t i : {0u, 1u}) {
+      out.low[i] = std::min(out.low[i], at[i]);
+      out.high[i] = std::max(out.high[i], at[i]);
+    }
+    for (int x = a - 1; x <= a + 1; ++x)
+      for (int y = b - 1; y <= b + 1; ++y)
+        if (std::max(std::abs(x), std::abs(y)) * flood_step <= flood_range && seen.insert({x, y}).second &&
+            holds(x * flood_step, y * flood_step))
+          next.emplace_back(x, y);
+  }
+  return out;
+}
+
+} // namespace
+
+TEST_CASE("two hinges of which friction holds one at any angle have no bound", "[placed-band]") {
+  // Whichever it is, the other can turn against it.
+  const bool first = GENERATE(true, false);
+  const FrictionBand band = band_of(first ? two_hinges(rubs(20), rubs(0.3)) : two_hinges(rubs(2), rubs(5)));
+  INFO(band.message);
+  const BandExtent &h = extent_in(band, "h"), &k = extent_in(band, "k");
+  if (first) {
+    CHECK(h.low == -endless);
+    CHECK(h.high == endless);
+    CHECK_THAT(band.message, ContainsSubstring("h and k can go round"));
+  } else {
+    CHECK_THAT(h.high, WithinAbs(std::asin((2 + 2.8) / 8.5), 1e-9));
+    CHECK_THAT(h.low, WithinAbs(-std::asin((2 + 2.8) / 8.5), 1e-9));
+    CHECK_THAT(band.message, ContainsSubstring("k can go round"));
+  }
+  CHECK(k.low == -endless);
+  CHECK(k.high == endless);
+  CHECK_FALSE(band.whole);
+}
+
+TEST_CASE("what a stop ends one way has no bound the other way alone", "[placed-band]") {
+  const FrictionBand band = band_of(
+      two_hinges(R"(, "stop": {"lower": -0.1, "stiffness": 100})" + rubs(0.1), sprung(5, 0) + rubs(0.1), 0));
+  CHECK_THAT(extent_in(band, "h").low, WithinAbs(-0.101, 1e-12));
+  CHECK(extent_in(band, "h").high == endless);
+  CHECK_THAT(extent_in(band, "k").low, WithinAbs(-0.02, 1e-12));
+  CHECK_THAT(extent_in(band, "k").high, WithinAbs(0.02, 1e-12));
+  CHECK_THAT(band.message, ContainsSubstring("no bound is told"));
+}
+
+TEST_CASE(
+    "a joint that nothing presses may stand anywhere in its play and as far in its stop as friction holds",
+    "[placed-band]") {
+  const FrictionBand one = band_of(read_scene(
+      R"({"flyball": 2, "name": "Play", "bodies": [{"name": "p", "mass": 1, "position": [1, 0, 0]}],
+          "joints": [{"name": "h", "type": "revolute", "bodies": ["ground", "p"], "at": [0, 0, 0],
+            "axis": [0, 0, 1])" +
+      plays(0.1, 100) + rubs(0.1) + "}]}"));
+  CHECK_THAT(extent_in(one, "h").low, WithinAbs(-0.101, 1e-12));
+  CHECK_THAT(extent_in(one, "h").high, WithinAbs(0.101, 1e-12));
+  const FrictionBand both = band_of(two_hinges(plays(0.1, 100) + rubs(0.1), plays(0.2, 50) + rubs(0.3), 0));
+  CHECK_THAT(extent_in(both, "h").high, WithinAbs(0.101, 1e-12));
+  CHECK_THAT(extent_in(both, "k").low, WithinAbs(-0.206, 1e-12));
+  // Without friction of its own it stands anywhere, whatever friction does elsewhere.
+  const FrictionBand loose = band_of(two_hinges(rubs(0.1), plays(0.1, 100), 0));
+  CHECK_FALSE(loose.found);
+  CHECK(loose.message == "No band is told: nothing resists k, whatever friction does.");
+}
+
+TEST_CASE("random hinges with springs and play have the band that places tell", "[placed-band]") {
+  std::mt19937 random(5);
+  int bounded = 0, past_stops = 0, round = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    std::array<double, 2> limit{uniform(random, 0.05, 1.3) * 11.3, uniform(random, 0.05, 1.3) * 2.8};
+    std::array<double, 2> stiffness{}, play{endless, endless}, stop{};
+    std::array<std::string, 2> more;
+    for (const std::size_t i : {0u, 1u}) {
+      if (trial % 3 == 0) {
+        stiffness[i] = uniform(random, 0.3, 1) * (i == 0 ? 11.3 : 2.8);
+        more[i] += sprung(stiffness[i], 0);
+      }
+      if (trial % 2 == 1) {
+        play[i] = uniform(random, 0.1, 1.5);
+        stop[i] = uniform(random, 20, 50);
+        more[i] += plays(play[i], stop[i]);
+      }
+      more[i] += rubs(limit[i]);
+    }
+    const Flood expected = flood([&](double h, double k) {
+      const std::array<double, 2> at{h, k};
+      std::array<double, 2> load{8.5 * std::sin(h) + 2.8 * std::sin(h + k), 2.8 * std::sin(h + k)};
+      for (const std::size_t i : {0u, 1u}) {
+        load[i] += stiffness[i] * at[i];
+        if (std::abs(at[i]) > play[i]) load[i] += stop[i] * (at[i] - std::copysign(play[i], at[i]));
+        if (std::abs(load[i]) > limit[i]) return false;
+      }
+      return true;
+    });
+    const FrictionBand band = band_of(two_hinges(more[0], more[1]));
+    CAPTURE(trial, limit, stiffness, play, stop, band.message, expected.low, expected.high);
+    for (const std::size_t i : {0u, 1u}) {
+      const BandExtent& found = extent_in(band, i == 0 ? "h" : "k");
+      CAPTURE(i, found.low, found.high);
+      const bool endless_there = expected.high[i] > flood_range - 2 * flood_step;
+      CHECK((endless_there ? found.high > flood_range - 2 * flood_step
+                           : std::abs(found.high - expected.high[i]) < 3 * flood_step));
+      CHECK((endless_there ? found.low < 2 * flood_step - flood_range
+                           : std::abs(found.low - expected.low[i]) < 3 * flood_step));
+      round += endless_there;
+      bounded += !endless_there;
+      past_stops += found.high > play[i];
+    }
+  }
+  CHECK(bounded > 20);
+  CHECK(past_stops > 6);
+  CHECK(round > 6);
+}
+
+TEST_CASE("of a measure that jumps within a band no extent is told", "[placed-band]") {
+  const double limit = GENERATE(3., 12.);
+  const auto upwards = [](const char* name, const char* factor) {
+    return "\"" + std::string(name) + R"(": {"value": "=)" + factor +
+           R"json(*atan2(-x(p), y(p))", "unit": "rad"})json";
+  };
+  const std::string measures =
+      upwards("half", "0.5") + ", " + upwards("up", "1") + ", " + upwards("twice", "2");
+  const bool two = GENERATE(false, true);
+  const FrictionBand band = band_of(two_hinges(rubs(limit), two ? rubs(0.3) : "", 10, measures));
+  CHECK_THAT(band.message, ContainsSubstring("No extent is told of half, which jumps within the band."));
+  CHECK(std::ranges::find(band.extents, "half", &BandExtent::name) == band.extents.end());
+  const BandExtent &h = extent_in(band, "h"), &up = extent_in(band, "up"), &twice = extent_in(band, "twice");
+  CHECK((up.high - up.low == h.high - h.low || std::abs(up.high - up.low - h.high + h.low) < 1e-9));
+  CHECK((twice.high - twice.low == h.high - h.low ||
+         std::abs(twice.high - twice.low - 2 * (h.high - h.low)) < 1e-9));
+}
+
+TEST_CASE("brakes that gears tie hold by the sum of their limits, and others have their band beside them",
+          "[placed-band]") {
+  // 2 N m at rest against 1.2 N m and, through a gear of -2, 0.5 N m; a bob of 1 kg on 0.5 m beside them.
+  const double second = GENERATE(0.5, 0.39);
+  const Mechanism m =
+      read_scene(R"json({"flyball": 2, "name": "Two brakes", "gravity": [0, -10, 0],
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.15, 0.1]},
+      {"name": "c", "mass": 1, "position": [0.3, 0, 0], "inertia": [0.1, 0.15, 0.1]},
+      {"name": "bob", "mass": 1, "position": [0.1, -0.5, 0]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=2 N m - 0.4 N m s*rate(spin)", "speed": 5
+}
+, "friction" : {
+  "limit" : 1.2
+}
+}
+, {"name": "pc", "type": "revolute", "bodies": ["ground", "c"], "at": [0.3, 0, 0], "axis": [0, 1, 0])json" +
+                 rubs(second) +
+                 R"json(}, {"name": "g", "type": "gear", "joints": ["spin", "pc"], "ratio": -2},
+      {"name": "swing", "type": "revolute", "bodies": ["a", "bob"], "at": [0.1, 0, 0], "axis": [0, 0, 1],
+        "friction": {"limit": 0.3}}]})json");
+  const Solution s = Analysis(m).solve();
+  REQUIRE(s.status == Status::converged);
+  const FrictionBand band = report_friction(m, s).band;
+  if (second == 0.5) {
+    CHECK_THAT(find_holding(m, {}).takes.value(), WithinRel(2 / 2.2, 1e-12));
+    CHECK_THAT(extent_in(band, "swing").high, WithinAbs(std::asin(0.3 / 5), 1e-12));
+    CHECK(band.message == "It is the band while spin stands and pc stands.");
+  } else {
+    CHECK_THAT(extent_in(band, "spin.speed").high, WithinRel((2 - 1.2 - 2 * 0.39) / 0.4, 1e-9));
+  }
+}
