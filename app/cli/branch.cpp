@@ -90,7 +90,10 @@ std::string diagram_text(const Mechanism& m, const std::string& address, const R
   }
   for (std::size_t i = 0; i < d.special.size(); ++i) {
     const SpecialPoint& s = d.special[i];
-    out += fmt::format("  {} on branch {} at {:.12g} {}:", word(s.type), s.branch, s.at.parameter, unit);
+    const std::string error =
+        s.at.parameter_error ? fmt::format(" +- {:.1g}", *s.at.parameter_error) : std::string();
+    out += fmt::format("  {} on branch {} at {:.12g}{} {}:", word(s.type), s.branch, s.at.parameter, error,
+                       unit);
     for (const CoordinateSolution& c : s.at.coordinates)
       if (const auto found = found_number(c))
         out += fmt::format("  {} = {:.9g} {}", printable(found->name), found->value, found->unit);

@@ -117,6 +117,7 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
     const SpecialPoint& s = d.special[i];
     Json entry = {{"type", word(s.type)}, {"branch", s.branch}};
     entry.update(point_json(s.at));
+    entry["parameter_error"] = s.at.parameter_error ? Json(*s.at.parameter_error) : Json(nullptr);
     if (hunting[i]) entry["hunting"] = hunting_json(*hunting[i]);
     out["special"].push_back(std::move(entry));
   }

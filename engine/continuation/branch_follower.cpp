@@ -13,6 +13,7 @@
 #include "engine/search/find_equilibrium.hpp"
 #include "engine/solve/drive_cuts.hpp"
 #include "engine/solve/existence.hpp"
+#include "engine/solve/refine.hpp"
 #include "engine/solve/singular_loops.hpp"
 #include "engine/stability/sign_is_open.hpp"
 #include "engine/stability/stability.hpp"
@@ -278,10 +279,21 @@ BranchState BranchFollower::nearest_of_family(const std::vector<BranchState>& fa
   return state;
 }
 
+Eigen::VectorXd BranchFollower::error_of(const Problem& problem, const BranchState& state) {
+  if (system_.torques.empty() || problem.form != KktForm::dense) return {};
+  factor_at(problem, state.z, w_);
+  Unknowns refined = state.z;
+  NewtonOutcome outcome;
+  outcome.converged = true;
+  ErrorEstimate error;
+  refine(problem, refined, outcome, w_, error);
+  return error.solution.allFinite() ? error.solution : Eigen::VectorXd();
+}
+
 BranchFollower::Described BranchFollower::describe(const BranchState& state) {
   const Problem problem = problem_at(state);
   Described d;
-  d.point = response_point(family_.mechanism(), problem, state.z, {},
+  d.point = response_point(family_.mechanism(), problem, state.z, error_of(problem, state),
                            {options_.eigenvalues, options_.reactions, &measures_}, w_);
   d.point.parameter = state.parameter;
   // Exponents have their frequencies but for whole turns a period: multipliers tell what crosses.

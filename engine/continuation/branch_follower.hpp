@@ -107,12 +107,28 @@ class BranchFollower {
     BranchState at;
     double along = 0; // scaled arclength from the step's start
     bool leaps = false;
+    std::optional<double> parameter_error{};
+  };
+  // Where a pair of eigenvalues crosses the axis.
+  struct PairPlace {
+    SpecialPointType type = SpecialPointType::hopf;
+    BranchState at;
+    std::optional<double> parameter_error;
   };
   void follow(BranchState state, bool tell_progress, FollowedBranch& out);
   Described describe(const BranchState& state);
+  // By coordinate of q_R (rad, m, rad/s, m/s), where speeds are found, of which all digits may be lost: empty
+  // where none are.
+  Eigen::VectorXd error_of(const Problem& problem, const BranchState& state);
   template <class Value>
   std::pair<BranchState, double> locate(const BranchState& from, double low, double at_low, double high,
                                         double at_high, const BranchState& beyond, Value value);
+  // How well the parameter of a state that locate() found is known. Nothing where rounding hides the slope of
+  // `value`, or no steps lead past it.
+  template <class Value>
+  std::optional<double> parameter_error(const BranchState& from, const BranchState& at, double along,
+                                        Value value);
+  ResponsePoint special_point(const BranchState& at, std::optional<double> parameter_error);
   std::optional<Crossing> find_crossing(const BranchState& state, const BranchState& next, double length);
   // Whether what steps of this length reach is on two branches, not on two sides of a kink.
   bool jumps_aside(const BranchState& state, double along);
@@ -131,12 +147,9 @@ class BranchFollower {
                            int after, FollowedBranch& out);
   // Halves the bracket to `width`. False where the branch cannot be followed into it.
   bool narrow(const BranchState& state, double width, CrossingBracket& at);
-  std::optional<std::pair<SpecialPointType, BranchState>> locate_pair_crossing(const BranchState& state,
-                                                                               const BranchState& next,
-                                                                               double length,
-                                                                               const CrossingBracket& at);
-  std::optional<std::pair<SpecialPointType, BranchState>> jumping_pair(const BranchState& state,
-                                                                       CrossingBracket at);
+  std::optional<PairPlace> locate_pair_crossing(const BranchState& state, const BranchState& next,
+                                                double length, const CrossingBracket& at);
+  std::optional<PairPlace> jumping_pair(const BranchState& state, CrossingBracket at);
   // Of a step along which the linearised motion turns with the drives.
   void find_multiplier_crossing(const BranchState& state, const BranchState& next, double length,
                                 FollowedBranch& out);

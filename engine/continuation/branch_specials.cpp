@@ -7,9 +7,30 @@
 #include "engine/stability/stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace flyball {
+namespace {
+
+// The parabola nearest to values at -2 to 2.
+struct Parabola {
+  double value = 0, slope = 0, bend = 0; // value + slope x + bend x^2
+  double spread = 0;                     // of the values beside it
+  explicit Parabola(const std::array<double, 5>& y)
+      : value((-3 * y[0] + 12 * y[1] + 17 * y[2] + 12 * y[3] - 3 * y[4]) / 35),
+        slope((-2 * y[0] - y[1] + y[3] + 2 * y[4]) / 10),
+        bend((2 * y[0] - y[1] - 2 * y[2] - y[3] + 2 * y[4]) / 14) {
+    for (int i = 0; i < 5; ++i) {
+      const double x = i - 2;
+      spread =
+          std::max(spread, std::abs(y[static_cast<std::size_t>(i)] - (value + slope * x + bend * x * x)));
+    }
+  }
+};
+
+} // namespace
 
 Spectrum BranchFollower::spectrum(const BranchState& state) {
   const FactoredState at = factor_at(problem_at(state), state.z, w_);
@@ -46,16 +67,49 @@ std::pair<BranchState, double> BranchFollower::locate(const BranchState& from, d
   return {std::move(at), found};
 }
 
+// What rounding, and steps that end before they are exact, do to the state and to what was made zero is seen
+// in how these scatter beside it; the rest follows from slopes there.
+template <class Value>
+std::optional<double> BranchFollower::parameter_error(const BranchState& from, const BranchState& at,
+                                                      double along, Value value) {
+  constexpr double beside = 1e-5; // scaled: what bends more than a parabola there is told as an error
+  constexpr double safety = 4;    // of five that scatter
+  std::array<double, 5> parameters{}, values{};
+  for (int i = -2; i <= 2; ++i) {
+    BranchState probe = at;
+    int iterations = 0;
+    const double there = along + i * beside;
+    if (i != 0 && !continuation_.step(from, there, probe, iterations)) return {};
+    const auto entry = static_cast<std::size_t>(i + 2);
+    parameters[entry] = probe.parameter - at.parameter;
+    values[entry] = value(probe, there);
+  }
+  const Parabola parameter(parameters), test(values);
+  const double unknown = std::abs(test.value) + safety * test.spread;
+  if (!(std::abs(test.slope) > unknown)) return {};
+  const double away = unknown / std::abs(test.slope); // in steps of `beside`
+  return std::abs(parameter.value) + safety * parameter.spread +
+         (std::abs(parameter.slope) + std::abs(parameter.bend) * away) * away +
+         2 * std::numeric_limits<double>::epsilon() * std::abs(at.parameter);
+}
+
+ResponsePoint BranchFollower::special_point(const BranchState& at, std::optional<double> parameter_error) {
+  ResponsePoint out = point(at);
+  out.parameter_error = parameter_error;
+  return out;
+}
+
 std::optional<BranchFollower::Crossing>
 BranchFollower::find_crossing(const BranchState& state, const BranchState& next, double length) {
   if (!comparable(state, next) || !(state.determinant * next.determinant < 0)) return {};
-  auto [at, along] = locate(state, 0, state.determinant, length, next.determinant, next,
-                            [](const BranchState& s, double) { return s.determinant; });
+  const auto determinant = [](const BranchState& s, double) { return s.determinant; };
+  auto [at, along] = locate(state, 0, state.determinant, length, next.determinant, next, determinant);
   constexpr double at_once = 0.05; // of the larger at the ends
   const bool jumps =
       std::abs(at.determinant) > at_once * std::max(std::abs(state.determinant), std::abs(next.determinant));
   const bool leaps = jumps && jumps_aside(state, along);
-  return Crossing{std::move(at), along, leaps};
+  const auto error = jumps ? std::nullopt : parameter_error(state, at, along, determinant);
+  return Crossing{std::move(at), along, leaps, error};
 }
 
 bool BranchFollower::jumps_aside(const BranchState& state, double along) {
@@ -77,18 +131,18 @@ void BranchFollower::find_specials(const BranchState& state, const BranchState& 
   if (comparable(state, next) && state.turning * next.turning < 0 &&
       std::max(std::abs(state.turning), std::abs(next.turning)) > rounding) {
     // At a crossing the tangent can jump; a fold's own balance stays regular.
-    const BranchState at =
-        locate(state, 0, state.turning, length, next.turning, next, [](const BranchState& s, double) {
-          return s.turning;
-        }).first;
-    out.special.emplace_back(SpecialPointType::fold, point(at));
+    const auto turning = [](const BranchState& s, double) { return s.turning; };
+    const auto [at, along] = locate(state, 0, state.turning, length, next.turning, next, turning);
+    out.special.emplace_back(SpecialPointType::fold,
+                             special_point(at, parameter_error(state, at, along, turning)));
     ++explained;
   }
   if (!crossing) crossing = find_crossing(state, next, length);
   if (crossing) {
     // At the crossing itself the balance has two tangents; this is the branch's own.
     crossing->at.tangent = state.tangent;
-    out.special.emplace_back(SpecialPointType::branch_point, point(crossing->at));
+    out.special.emplace_back(SpecialPointType::branch_point,
+                             special_point(crossing->at, crossing->parameter_error));
     out.crossings.push_back(std::move(crossing->at));
     ++explained;
   }
@@ -110,11 +164,12 @@ int BranchFollower::find_even_crossings(const BranchState& state, const BranchSt
     auto located = locate(state, low, -1, length, 1, next,
                           [&](const BranchState& s, double) { return s.falling == falling ? -1. : 1.; });
     BranchState& at = located.first;
+    const double along = located.second;
     low = located.second + past * length;
     BranchState beyond;
     int iterations = 0;
     if (low >= length || !continuation_.step(state, low, beyond, iterations)) break;
-    const int more = std::abs(beyond.falling - falling);
+    const int more = std::abs(beyond.falling - falling), before = falling;
     falling = beyond.falling;
     // A fold's balance is regular, and so is one where a pair of K's eigenvalues turns over.
     if (!(std::abs(at.determinant) <= singular * size)) continue;
@@ -123,7 +178,10 @@ int BranchFollower::find_even_crossings(const BranchState& state, const BranchSt
       continue;
     at.tangent = state.tangent;
     at.twofold = more > 1;
-    out.special.emplace_back(SpecialPointType::branch_point, point(at));
+    const auto error = parameter_error(state, at, along, [&](const BranchState& s, double) {
+      return s.falling == before ? -std::abs(s.determinant) : std::abs(s.determinant);
+    });
+    out.special.emplace_back(SpecialPointType::branch_point, special_point(at, error));
     out.crossings.push_back(std::move(at));
   }
   return found;
@@ -160,7 +218,7 @@ void BranchFollower::find_pair_crossings(const BranchState& state, const BranchS
     at.high = length;
     at.right_high = after;
     // Their number is blurred by rounding where they meet: it brackets, and a smooth function locates.
-    std::optional<std::pair<SpecialPointType, BranchState>> found;
+    std::optional<PairPlace> found;
     const auto one = [&] { return std::abs(at.right_high - at.right_low) == 1; }; // no pair
     for (const double width : {1e-3 * length, 1e-7 * length}) {
       if (!narrow(state, width, at)) return;
@@ -169,9 +227,10 @@ void BranchFollower::find_pair_crossings(const BranchState& state, const BranchS
     if (!found && !one()) found = jumping_pair(state, at);
     // A pair that goes through zero counts a while later.
     const bool crosses = found && std::ranges::any_of(out.crossings, [&](const BranchState& other) {
-                           return same(found->second, other);
+                           return same(found->at, other);
                          });
-    if (found && !crosses) out.special.emplace_back(found->first, point(found->second));
+    if (found && !crosses)
+      out.special.emplace_back(found->type, special_point(found->at, found->parameter_error));
     at.low = at.high;
     at.right_low = at.right_high;
   }
@@ -190,9 +249,10 @@ bool BranchFollower::narrow(const BranchState& state, double width, CrossingBrac
   return true;
 }
 
-std::optional<std::pair<SpecialPointType, BranchState>>
-BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState& next, double length,
-                                     const CrossingBracket& at) {
+std::optional<BranchFollower::PairPlace> BranchFollower::locate_pair_crossing(const BranchState& state,
+                                                                              const BranchState& next,
+                                                                              double length,
+                                                                              const CrossingBracket& at) {
   const bool forth = at.right_high > at.right_low; // towards the unstable side
   const auto spectrum_at = [&](double along) {
     BranchState probe;
@@ -224,21 +284,23 @@ BranchFollower::locate_pair_crossing(const BranchState& state, const BranchState
     if (!(at_stable < 0 && at_unstable > 0)) continue;
     const double ends[] = {std::min(stable, unstable), std::max(stable, unstable)};
     double last = at_unstable;
-    const BranchState found =
-        locate(state, ends[0], forth ? at_stable : at_unstable, ends[1], forth ? at_unstable : at_stable,
-               next, [&](const BranchState& s, double along) { return last = value(spectrum(s), along); })
-            .first;
+    const auto of_state = [&](const BranchState& s, double along) {
+      return last = value(spectrum(s), along);
+    };
+    const auto located = locate(state, ends[0], forth ? at_stable : at_unstable, ends[1],
+                                forth ? at_unstable : at_stable, next, of_state);
     const double jump = std::max(1e-5, 10 * tolerance::special_point / (ends[1] - ends[0]));
     if (std::abs(last) > jump * std::max(-at_stable, at_unstable)) continue;
-    return std::pair{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, found};
+    return PairPlace{crossing.coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, located.first,
+                     parameter_error(state, located.first, located.second, of_state)};
   }
   return {};
 }
 
 // Where nothing goes through zero smoothly the number of eigenvalues itself is followed, as at a corner of
 // the branch. Nothing where only real ones cross.
-std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_pair(const BranchState& state,
-                                                                                     CrossingBracket at) {
+std::optional<BranchFollower::PairPlace> BranchFollower::jumping_pair(const BranchState& state,
+                                                                      CrossingBracket at) {
   BranchState low, high;
   int iterations = 0;
   if (!narrow(state, tolerance::special_point, at) || !continuation_.step(state, at.low, low, iterations) ||
@@ -248,7 +310,7 @@ std::optional<std::pair<SpecialPointType, BranchState>> BranchFollower::jumping_
   const auto crossings = possible_crossings(spectrum(forth ? high : low),
                                             std::abs(at.right_high - at.right_low), state.one_of_many());
   if (crossings.empty()) return {};
-  return std::pair{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high};
+  return PairPlace{crossings[0].coalescence ? SpecialPointType::flutter : SpecialPointType::hopf, high, {}};
 }
 
 } // namespace flyball

@@ -1,6 +1,7 @@
 #include "engine/continuation/branches.hpp"
 
 #include "engine/continuation/branch_follower.hpp"
+#include "engine/continuation/unknown_speeds.hpp"
 #include "engine/kkt/configuration_difference.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/address.hpp"
@@ -63,7 +64,8 @@ class Diagram {
     }
     drop_folds_at_crossings();
     if (out_.status == Status::converged && out_.message.empty()) out_.message = summary();
-    for (const std::string& note : {begun_, bands(), kinks(), follower_.limits()})
+    for (const std::string& note :
+         {begun_, bands(), kinks(), unknown_speeds(out_, address_), follower_.limits()})
       if (out_.status == Status::converged && !note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);
@@ -84,7 +86,7 @@ class Diagram {
     const auto through = std::ranges::count(out_.branches, true, &ResponseBranch::connected);
     out_.message = std::to_string(through) + (through == 1 ? " branch" : " branches") +
                    " through the present state" + (follower_.cancelled() ? "; cancelled." : ".");
-    for (const std::string& note : {kinks(), follower_.limits()})
+    for (const std::string& note : {kinks(), unknown_speeds(out_, address_), follower_.limits()})
       if (!note.empty()) out_.message += " " + note;
     out_.run_time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return std::move(out_);

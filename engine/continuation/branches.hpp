@@ -25,6 +25,7 @@ struct ResponsePoint {
   bool singular_loops = false;                   // its eigenvalues belong to no modes
   std::string kinks;                             // a sentence on each law on a kink of which it stands
   std::vector<FrictionForce> frictions;          // where the state rests on dry friction: what it rests on
+  std::optional<double> parameter_error;         // of a special point; nothing where it is not known
 };
 
 enum class SpecialPointType {

@@ -1,6 +1,7 @@
 #include "engine/linear/pencil.hpp"
 
 #include "engine/linear/spectral.hpp"
+#include "engine/linear/state_space.hpp"
 
 #include <algorithm>
 
@@ -21,6 +22,59 @@ void sort_eigenvalues(std::vector<Complex>& s) {
   });
 }
 
+// E x' = A x, x = (positions, velocities), p' = to_positions u, M u' = -D u - K p: nothing is divided by M.
+StateSpace first_order(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
+                       const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& to_positions) {
+  const Eigen::Index n = mass.rows(), positions = to_positions.rows();
+  StateSpace out;
+  out.e.setIdentity(positions + n, positions + n);
+  out.e.bottomRightCorner(n, n) = mass;
+  out.a.setZero(positions + n, positions + n);
+  out.a.topRightCorner(positions, n) = to_positions;
+  out.a.bottomLeftCorner(n, positions) = -stiffness;
+  out.a.bottomRightCorner(n, n) = -velocity;
+  return out;
+}
+
+// What a companion matrix of M^-1 D and M^-1 K has as eigenvalues, by the pencil itself where they are far
+// apart: rounding of the companion is that of the largest, or of its square, which leaves slow ones beside a
+// fast one few digits. QZ of the pencil in like sizes leaves each its own.
+Eigenvalues with_digits(Eigenvalues of_companion, const StateSpace& pencil, CancelFlag cancel) {
+  constexpr double apart = 300; // of whose square eleven digits are left
+  if (!of_companion) return {};
+  double largest = 0, smallest = std::numeric_limits<double>::infinity();
+  for (const Complex s : *of_companion) {
+    largest = std::max(largest, std::abs(s));
+    if (s != Complex()) smallest = std::min(smallest, std::abs(s));
+  }
+  if (!(largest > apart * smallest)) return of_companion;
+  auto found = poles(pencil, cancel);
+  return found && found->size() == of_companion->size() ? found : of_companion;
+}
+
+// The same of M x = -mu K x, both symmetric, M = L L^T: eigenvalues of L^-1 K L^-T, whose rounding is that of
+// the largest, and where these are far apart of its inverse, whose rounding is that of the smallest.
+std::optional<std::vector<double>> squares_of(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& stiffness,
+                                              const Eigen::MatrixXd& whitened) {
+  const auto squares = symmetric_eigenvalues(whitened);
+  if (!squares) return {};
+  std::vector<double> out(squares->begin(), squares->end()); // ascending
+  constexpr double apart = 1e4;
+  const double largest = std::max(std::abs(out.front()), std::abs(out.back()));
+  Cholesky k;
+  if (!(largest > apart * std::abs(out.front())) || !k.compute((stiffness + stiffness.transpose()) / 2))
+    return out;
+  const Eigen::MatrixXd half = k.forward(mass);
+  const auto inverses = symmetric_eigenvalues(k.forward(half.transpose()));
+  if (!inverses || !((*inverses)[0] > 0)) return out;
+  const auto n = static_cast<Eigen::Index>(out.size());
+  const double least = 1 / (*inverses)[n - 1];
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (const double mu = 1 / (*inverses)[n - 1 - i]; mu * mu < least * largest)
+      out[static_cast<std::size_t>(i)] = mu;
+  return out;
+}
+
 // Of s^2 + s d + k with d = L^-1 D L^-T, k = L^-1 K L^-T, M = L L^T.
 Eigenvalues regular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                                 const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
@@ -34,7 +88,7 @@ Eigenvalues regular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::Matrix
   const Eigen::MatrixXd d = whiten(velocity), k = whiten(stiffness);
   const double asymmetry = (k - k.transpose()).norm();
   if (d.norm() == 0 && asymmetry <= 1e-12 * k.norm()) { // s^2 = -eigenvalue of k: exact on the axes
-    const auto squares = symmetric_eigenvalues(k);
+    const auto squares = squares_of(mass, stiffness, k);
     if (!squares) return {};
     std::vector<Complex> s;
     for (double mu : *squares) {
@@ -44,23 +98,15 @@ Eigenvalues regular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::Matrix
     }
     return s;
   }
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  companion.topRightCorner(n, n).setIdentity();
-  companion.bottomLeftCorner(n, n) = -k;
-  companion.bottomRightCorner(n, n) = -d;
-  return eigenvalues(companion, cancel);
+  const auto identity = Eigen::MatrixXd::Identity(n, n);
+  return with_digits(eigenvalues(first_order(identity, d, k, identity).a, cancel),
+                     first_order(mass, velocity, stiffness, identity), cancel);
 }
 
 Eigenvalues singular_eigenvalues(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                                  const Eigen::MatrixXd& stiffness, CancelFlag cancel) {
-  const Eigen::Index n = mass.rows();
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * n, 2 * n), b = a;
-  a.topRightCorner(n, n).setIdentity();
-  a.bottomLeftCorner(n, n) = -stiffness;
-  a.bottomRightCorner(n, n) = -velocity;
-  b.topLeftCorner(n, n).setIdentity();
-  b.bottomRightCorner(n, n) = mass;
-  return generalized_eigenvalues(a, b, cancel);
+  return poles(first_order(mass, velocity, stiffness, Eigen::MatrixXd::Identity(mass.rows(), mass.rows())),
+               cancel);
 }
 
 Eigen::MatrixXd onto(const Eigen::MatrixXd& z, const Eigen::MatrixXd& a) {
@@ -265,20 +311,20 @@ Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen:
   const auto equilibrated = [&](const Eigen::MatrixXd& a) {
     return Eigen::MatrixXd(own.asDiagonal() * a * own.asDiagonal());
   };
+  const Eigen::MatrixXd inertia = equilibrated((mass + mass.transpose()) / (2 * m));
   Cholesky l;
-  if (!l.compute(equilibrated((mass + mass.transpose()) / (2 * m))) || !(l.smallest_pivot() > 1e-13))
-    return {};
+  if (!l.compute(inertia) || !(l.smallest_pivot() > 1e-13)) return {};
   // Whitened: M = L L^T, u = L^-T w.
   const auto whiten = [&](const Eigen::MatrixXd& a) {
     const Eigen::MatrixXd half = l.forward(a);
     return Eigen::MatrixXd(l.forward(half.transpose()).transpose());
   };
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(positions + n, positions + n);
-  const Eigen::MatrixXd forces = own.asDiagonal() * (stiffness * p), moved = own.asDiagonal() * p;
-  companion.topRightCorner(positions, n) = l.forward(moved).transpose();
-  companion.bottomLeftCorner(n, positions) = -l.forward(forces) / (m * rate * rate);
-  companion.bottomRightCorner(n, n) = -whiten(equilibrated(velocity)) / (m * rate);
-  auto s = eigenvalues(companion, cancel);
+  const Eigen::MatrixXd forces = own.asDiagonal() * (stiffness * p) / (m * rate * rate),
+                        moved = own.asDiagonal() * p, damping = equilibrated(velocity) / (m * rate);
+  const StateSpace whitened = first_order(Eigen::MatrixXd::Identity(n, n), whiten(damping), l.forward(forces),
+                                          l.forward(moved).transpose()),
+                   pencil = first_order(inertia, damping, forces, moved.transpose());
+  auto s = with_digits(eigenvalues(whitened.a, cancel), pencil, cancel);
   if (!s) return {};
   for (Complex& x : *s)
     x *= rate;

@@ -105,16 +105,16 @@ StateSpace balanced(StateSpace x) {
   return x;
 }
 
-Poles poles(const StateSpace& system) {
+Poles poles(const StateSpace& system, CancelFlag cancel) {
   Poles found;
   if (system.e.size() == 0) {
-    found = eigenvalues(balanced(system).a);
+    found = eigenvalues(balanced(system).a, cancel);
   } else {
     const double a = system.a.norm(), e = system.e.norm(),
                  rate = a > 0 && e > 0 ? power_of_two_near(a / e) : 1;
     Eigen::MatrixXd scaled_a = system.a / rate, scaled_e = system.e;
     equilibrate(scaled_a, scaled_e);
-    found = generalized_eigenvalues(scaled_a, scaled_e);
+    found = generalized_eigenvalues(scaled_a, scaled_e, cancel);
     for (std::size_t i = 0; found && i < found->size(); ++i)
       (*found)[i] *= rate;
   }

@@ -26,7 +26,7 @@ StateSpace balanced(StateSpace system);
 
 // The finite s with det(A - s E) = 0 (1/s), by size of the imaginary part. Nothing where the iteration does
 // not converge, as of a singular pencil.
-std::optional<std::vector<std::complex<double>>> poles(const StateSpace& system);
+std::optional<std::vector<std::complex<double>>> poles(const StateSpace& system, CancelFlag cancel = nullptr);
 
 // The s at which the pencil [A - s E, b; c, d] of one input and one output loses rank: invariant zeros, those
 // of the transfer function and what cancels against poles. Of a system without E, by taking off a state for

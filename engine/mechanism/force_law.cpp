@@ -159,8 +159,12 @@ void check_drag_law(const Mechanism& mechanism, const Formula& law, const std::s
 
 bool resists_at_rest(const Formula& damper_law) {
   const ForceLaw law(damper_law.text, damper_variable);
+  if (!law.names().empty()) return false;
   constexpr double near = 1e-9; // before and after a kink
-  return law.names().empty() && law({}, {-near, 1}).rate >= 0 && law({}, {near, 1}).rate >= 0;
+  const auto before = law({}, {-near, 1}), at_rest = law({}, {0, 1}), beyond = law({}, {near, 1});
+  // What is steep between these has its slope at rest, and beyond acts the same way.
+  return before.rate >= 0 && !(at_rest.rate < 0) && beyond.rate >= 0 && before.value <= 0 &&
+         beyond.value >= 0;
 }
 
 } // namespace flyball

@@ -185,7 +185,7 @@ Solution Analysis::solve_through(const SolveOptions& options) {
   s.conclude(problem, steady, std::move(stability), without_modes, options, out);
   if (options.details && !options.nearest && s.system.nv <= largest_for_answer_search)
     explain_unbounded(problem, *s.mechanism, steady.start, steady.elsewhere(), out);
-  std::string unknown = unknown_coordinate_message(out);
+  std::string unknown = unknown_coordinate_message(out.coordinates);
   if (!unknown.empty() || !is_finite(out)) {
     s.settled = false;
     Solution refused;

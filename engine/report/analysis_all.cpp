@@ -124,7 +124,7 @@ AllSolutions Analysis::solve_all_through(const SolveOptions& options) {
     s.conclude(problem, steady, std::move(stability), without_modes, options, entry.solution);
     if (s.system.conservative) entry.solution.potential = potential.value;
     if (!is_finite(entry.solution)) continue;
-    if (std::string why = unknown_coordinate_message(entry.solution); !why.empty()) {
+    if (std::string why = unknown_coordinate_message(entry.solution.coordinates); !why.empty()) {
       unknown = std::move(why);
       continue;
     }

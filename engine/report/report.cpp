@@ -235,14 +235,14 @@ bool is_finite(const Solution& s) {
          numbers(s.poses, [](const Pose& p) { return p.position.sum() + p.rotation.coeffs().sum(); });
 }
 
-std::string unknown_coordinate_message(const Solution& s) {
+std::string unknown_coordinate_message(const std::vector<CoordinateSolution>& coordinates) {
   // What is soft may be anywhere, which its error tells, and the rest be known all the same. A speed has a
   // part in all that turns with it.
   constexpr double anywhere = 1e6;
   const auto lost = [](double value, double error, double scale, double times) {
     return error > times * std::max(std::abs(value), scale);
   };
-  for (const CoordinateSolution& c : s.coordinates)
+  for (const CoordinateSolution& c : coordinates)
     if ((!c.driven && lost(c.value, c.error, c.scale, anywhere)) ||
         (c.speed && lost(*c.speed, c.speed_error, c.speed_scale, 1)))
       return "An equilibrium was found, but rounding leaves no digit of " + coordinate_label(c) +

@@ -24,7 +24,7 @@ bool is_finite(const Solution& solution);
 
 // Names a coordinate whose error is far beyond all turns or reaches of the mechanism, and beyond the value
 // itself, or a speed that was found of which not a digit is known. A sentence; empty where all are known.
-std::string unknown_coordinate_message(const Solution& solution);
+std::string unknown_coordinate_message(const std::vector<CoordinateSolution>& coordinates);
 
 // Fills the parts of a converged solution; `error` by coordinate of q_R.
 void report(const ReportInput& input, const Eigen::VectorXd& error, bool details, Workspace& w,

@@ -136,10 +136,10 @@ class Searcher {
     const std::size_t most = list_.states.size() + 50;
     const bool none = list_.states.empty();
     if (kept_.size() == p_.system.torques.size()) return;
-    if (ended() || !widen_speeds(p_, times, none, report_.ranges)) return;
+    if (ended() || !widen_speeds(p_, times, report_.ranges)) return;
     SearchStarts starts(p_, report_.ranges, options_.seed);
     Eigen::VectorXd q = drawn_;
-    const int enough = (none ? 10 : 1) * least_arrivals();
+    const int enough = (none ? 10 : 2) * least_arrivals(); // of either way
     std::size_t known = list_.states.size();
     for (int vain = 0; vain < enough && known < most && !ended(); ++vain) {
       starts.next(q);

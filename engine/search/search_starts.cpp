@@ -116,14 +116,13 @@ std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::Vect
   return ranges;
 }
 
-bool widen_speeds(const Problem& problem, double times, bool either_way, std::vector<SearchRange>& ranges) {
+bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges) {
   bool any = false;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (!finds_speed(link_of(problem, problem.system.coordinates[i]))) continue;
     const double far = std::max(std::abs(ranges[i].lower), std::abs(ranges[i].upper)), most = times * far,
                  even = far / times;
-    ranges[i] = either_way ? SearchRange{-most, most, even}
-                           : SearchRange{times * ranges[i].lower, times * ranges[i].upper, even};
+    ranges[i] = SearchRange{-most, most, even};
     any = true;
   }
   return any;

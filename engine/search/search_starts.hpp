@@ -23,9 +23,9 @@ struct SearchRange {
 // makes of it at the starts.
 std::vector<SearchRange> search_ranges(const Problem& problem, const Eigen::VectorXd& drawn);
 
-// Widens those of speeds that are found to `times` as much, and `either_way` or as they go, with starts of
-// every order of magnitude. False where there are none.
-bool widen_speeds(const Problem& problem, double times, bool either_way, std::vector<SearchRange>& ranges);
+// Widens those of speeds that are found to `times` as much either way, with starts of every order of
+// magnitude. False where there are none.
+bool widen_speeds(const Problem& problem, double times, std::vector<SearchRange>& ranges);
 
 // Widens the ranges of slides, and of angles with springs or stops, so that they contain `q`.
 void include(const Problem& problem, const Eigen::VectorXd& q, std::vector<SearchRange>& ranges);

@@ -329,6 +329,10 @@ TEST_CASE("a damper that drives at rest makes a minimum unstable", "[laws]") {
   CHECK(other.stability_reason == StabilityReason::asymptotic);
   CHECK(solved(sliding(1, damped_by_law(by_law(slide_along_x(), "100 N/m*deflection"), "2 N s/m*rate")))
             .stability_reason == StabilityReason::minimum);
+  // However narrow the range of rates in which it drives.
+  for (const char* law : {"-5 N*tanh(1e12 s/m*rate)", "3 N s/m*rate - 5 N*tanh(1e12 s/m*rate)"})
+    CHECK(solved(sliding(1, damped_by_law(by_law(slide_along_x(), "100 N/m*deflection"), law))).stable ==
+          false);
   m.parameters[0].value = 0.5;
   const Run run = simulate(m, kicked(lasting(80), "slide", 0.1));
   double fastest = 0;
@@ -340,6 +344,9 @@ TEST_CASE("a damper that drives at rest makes a minimum unstable", "[laws]") {
   REQUIRE(d.special.size() == 1);
   CHECK(d.special[0].type == SpecialPointType::hopf);
   CHECK(std::abs(d.special[0].at.parameter) < 1e-9);
+  REQUIRE(d.special[0].at.parameter_error);
+  CHECK(std::abs(d.special[0].at.parameter) <= *d.special[0].at.parameter_error);
+  CHECK(*d.special[0].at.parameter_error < 1e-9);
   for (const ResponsePoint& p : d.branches[0].points)
     if (std::abs(p.parameter) > 1e-6) CHECK(p.stable == (p.parameter < 0));
 }

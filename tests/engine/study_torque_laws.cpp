@@ -12,6 +12,7 @@
 #include "tests/support/scenes.hpp"
 #include "tests/support/solutions.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace flyball;
@@ -354,6 +355,26 @@ TEST_CASE("a kink at which a law asks twice for the same has both its sides' slo
   CHECK_THAT(s.message, ContainsSubstring("kink"));
 }
 
+TEST_CASE("speeds against the one that is asked for are among all equilibria", "[torque]") {
+  for (const double asked : {1., -1., 30., -0.01}) {
+    CAPTURE(asked);
+    Mechanism m;
+    m.bodies = {body("rotor", 1, {0, 0, 0}, {1, 1, 1})};
+    m.joints = {
+        torque_driven(revolute("p", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), asked,
+                      "-1e-3 N m s^3*(rate(p) + 20 rad/s)*(rate(p) - 0.5 rad/s)*(rate(p) - 9 rad/s)")};
+    validate(m);
+    std::vector<double> speeds;
+    for (const Solution& s : Analysis(m).solve_all().equilibria)
+      speeds.push_back(speed(s, "p"));
+    std::ranges::sort(speeds);
+    REQUIRE(speeds.size() == 3);
+    CHECK_THAT(speeds[0], WithinRel(-20, 1e-12));
+    CHECK_THAT(speeds[1], WithinRel(0.5, 1e-12));
+    CHECK_THAT(speeds[2], WithinRel(9, 1e-12));
+  }
+}
+
 TEST_CASE("the error of a speed has the rounding of torque and load by laws", "[torque]") {
   const auto shaft = [](const std::string& torque, double load) {
     Mechanism m;
@@ -361,25 +382,30 @@ TEST_CASE("the error of a speed has the rounding of torque and load by laws", "[
     m.joints = {torque_driven(revolute("p", "ground", "rotor", {0, 0, 0}, {0, 0, 1}), 5, torque)};
     m.joints[0].coordinates[0].drive->load = load;
     validate(m);
-    return Analysis(m);
+    return m;
   };
   // 67724.3 - 0.03919 w of all that is given, in units of the last place.
   for (const double speed_asked : {2.7, 6.06730543, 9.3}) {
     const double load = 67724.3 - 0.03919 * speed_asked;
-    const Solution s = shaft("67724.3 N m - 0.03919 N m s*rate(p)", load).solve();
+    const Solution s = Analysis(shaft("67724.3 N m - 0.03919 N m s*rate(p)", load)).solve();
     INFO(s.message);
     REQUIRE(s.status == Status::converged);
     const auto exact = static_cast<double>((67724.3L - static_cast<long double>(load)) / 0.03919L);
     CHECK_THAT(speed(s, "p"), WithinAbs(exact, coordinate(s, "p").speed_error));
   }
   // The load is all of the torque: it would stand still, but no digit of that is known.
-  Analysis unknown = shaft("5 N m - 1e-18 N m s*rate(p)", 5);
-  const Solution lost = unknown.solve();
+  const Mechanism unknown = shaft("5 N m - 1e-18 N m s*rate(p)", 5);
+  const Solution lost = Analysis(unknown).solve();
   CHECK(lost.status == Status::not_converged);
   CHECK_THAT(lost.message, ContainsSubstring("rounding leaves no digit of p"));
   SolveOptions few;
   few.search_starts = 20;
-  const AllSolutions all = unknown.solve_all(few);
+  const AllSolutions all = Analysis(unknown).solve_all(few);
   CHECK(all.equilibria.empty());
   CHECK_THAT(all.message, ContainsSubstring("rounding leaves no digit of p"));
+  // Branches are followed, and say so.
+  CHECK_THAT(follow_branches(unknown, "bodies.rotor.inertia.2", 0.5, 1.5).message,
+             ContainsSubstring("rounding leaves no digit of p"));
+  CHECK_THAT(follow_branches(shaft("5 N m - 1 N m s*rate(p)", 3), "joints.p.drive.load", 3, 4).message,
+             !ContainsSubstring("rounding"));
 }
