@@ -195,6 +195,10 @@ class Box {
     const auto [beyond, there] = go(at, end);
     if (beyond.state.p == at.state.p) return false;
     if (sense * beyond.rates(output, j) * rate >= 0) {
+      if (!(sense * (beyond.state.values[output] - at.state.values[output]) > 0)) {
+        lost_ = true; // it led down between: past a fold, or a dip
+        return false;
+      }
       at = beyond;
       return there;
     }
@@ -418,7 +422,8 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
       return band;
     }
     Box box(mechanism, free, names, options.cancel);
-    const auto by_places = [&] {
+    const auto by_places = [&]() -> FrictionBand {
+      if (!options.past_folds) return {};
       const std::vector<std::size_t> independent =
           holding ? holding->independent : std::vector<std::size_t>{0};
       return find_placed_band(mechanism, state, names, independent, box.reach(), options.cancel);
@@ -466,7 +471,8 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
                               state.stable, state.stable});
     }
     band.found = true;
-    band.whole = !box.lost();
+    // About an unstable state friction holds many shares beyond whose folds others lie.
+    band.whole = !box.lost() && (one_motion || state.stable != false);
     if (!band.whole && free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
       return band;

@@ -42,6 +42,8 @@ struct FrictionBandOptions {
   std::vector<std::pair<std::string, double>> start{};
   bool errors = true; // of the extents, two solves each
   const std::atomic<bool>* cancel = nullptr;
+  // Bands of several joints past folds, by where these stand: up to some seconds.
+  bool past_folds = true;
 };
 
 // The band that is connected with a steady state; none about an unstable one that friction does not hold, as

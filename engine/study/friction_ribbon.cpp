@@ -42,7 +42,7 @@ RibbonPoint ribbon_point(const Mechanism& mechanism, const std::string& address,
                          const std::atomic<bool>* cancel) {
   FrictionBandOptions options;
   options.start = place.start;
-  options.errors = false;
+  options.errors = options.past_folds = false;
   options.cancel = cancel;
   RibbonPoint point{place.number, {}};
   FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);

@@ -28,13 +28,14 @@ constexpr double longest_place_step = 0.2;            // rad, reaches or shares
 constexpr double shortest_place_step = 1e-7;
 constexpr int most_place_steps = 2000;
 constexpr std::size_t most_joints_placed = 6;
-constexpr std::size_t most_places = 8000, most_ends = 120; // that are explored
+constexpr std::size_t most_places = 3000, most_ends = 120; // that are explored
 constexpr double same_end = 1e-3;                          // rad, reaches or shares
 constexpr int most_restorations = 8;
 constexpr double within_limit = 1e-9;    // of the limit: what still counts as held
 constexpr double most_bulge = 1e-2;      // of the limit, between two places at one: the way is curved
 constexpr double no_placed_gain = 1e-13; // of an output's size, in a step
 constexpr double on_mark = 1e-9, same_after_turn = 1e-6; // rad; scaled
+constexpr double another_after_turn = 1e-4;              // of a value: by far more than places differ
 constexpr int most_turns = 8;
 constexpr double farthest_way = 100; // reaches
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -64,6 +65,7 @@ class PlacedBand {
     return true;
   }
 
+  bool is_coordinate(Index output) const { return map_.scale(static_cast<std::size_t>(output)).has_value(); }
   bool jumps(Index output) const { return map_.jumps(static_cast<std::size_t>(output)); }
   std::string unit(Index output) const { return map_.unit(static_cast<std::size_t>(output)); }
   double value(Index output) const { return places_.front().state.values[output]; }
@@ -114,7 +116,7 @@ class PlacedBand {
   // Whether an output is another at the last place than at this one.
   bool changes_to_last(std::size_t other, Index output) const {
     const double a = places_[other].state.values[output], b = places_.back().state.values[output];
-    return !(std::abs(b - a) <= same_after_turn * (1 + std::abs(a)));
+    return !(std::abs(b - a) <= another_after_turn * (1 + std::abs(a)));
   }
 
   // From a place up to where the output, times `sense`, grows no more.
@@ -133,7 +135,7 @@ class PlacedBand {
         mark += 2 * std::numbers::pi;
       }
       if (went_far(begin, at))
-        return is_coordinate(output) && !went_far(output, begin, at) ? End::left : End::far;
+        return (turns || is_coordinate(output)) && went_far(output, begin, at) ? End::far : End::left;
       const VectorXd gradient = sense * at.rates.row(output).transpose();
       if (!gradient.allFinite()) return End::left; // a measure has no value there
       const VectorXd d = best_step(at, gradient, step, turns ? mark - now : infinite);
@@ -309,8 +311,6 @@ class PlacedBand {
 
   double scale_of(Index output) const { return unit(output) == "rad" ? 1 : reach_; }
 
-  bool is_coordinate(Index output) const { return map_.scale(static_cast<std::size_t>(output)).has_value(); }
-
   // From the first place, and farther than where the way began.
   bool went_far(Index output, const Place& begin, const Place& now) const {
     const auto way = [&](const Place& place) {
@@ -354,23 +354,26 @@ class PlacedEnds {
     for (; explored < std::min(starts_.size(), most_ends) && places_.last_place() < most_places; ++explored)
       for (Index i = 0; i < places_.objectives(); ++i)
         if (i >= count() || is_joint[static_cast<std::size_t>(i)])
-          for (const std::size_t side : {0u, 1u})
+          for (const std::size_t side : {0u, 1u}) {
             climb(i, side, starts_[explored]);
+            if (lost_) return;
+          }
     all_ = explored == starts_.size();
   }
 
   // Of each output from the best place that is known.
   void finish() {
     for (Index i = 0; i < count(); ++i)
-      for (const std::size_t side : {0u, 1u})
+      for (const std::size_t side : {0u, 1u}) {
+        if (lost_) return;
         climb(i, side, places_.best_place(i, side == 0 ? -1 : 1));
+      }
   }
 
   const Ends& operator[](Index output) const { return ends_[static_cast<std::size_t>(output)]; }
-  bool any(PlacedBand::End end) const {
-    return std::ranges::any_of(ends_, [&](const Ends& each) { return std::ranges::count(each, end) > 0; });
-  }
-  bool all_explored() const { return all_ && !any(PlacedBand::End::left); }
+  bool is_left(Index output) const { return std::ranges::count((*this)[output], PlacedBand::End::left) > 0; }
+  bool lost() const { return lost_; }
+  bool all_explored() const { return all_; }
 
  private:
   Index count() const { return static_cast<Index>(ends_.size()); }
@@ -379,6 +382,7 @@ class PlacedEnds {
     if (!places_.has_rates(output)) return;
     if (output < count() && is_unbounded((*this)[output][side])) return;
     const PlacedBand::End end = places_.climb(output, side == 0 ? -1 : 1, from);
+    lost_ = end == PlacedBand::End::lost;
     if (output < count()) ends_[static_cast<std::size_t>(output)][side] = end;
     for (const std::size_t start : starts_) {
       const PlacedBand::Beside beside = places_.compare_last(start);
@@ -392,25 +396,31 @@ class PlacedEnds {
   void take_turn(std::size_t other) {
     for (Index i = 0; i < count(); ++i)
       if (places_.has_rates(i) && places_.changes_to_last(other, i))
-        ends_[static_cast<std::size_t>(i)].fill(places_.unit(i) == "rad" ? PlacedBand::End::round
-                                                                         : PlacedBand::End::far);
+        ends_[static_cast<std::size_t>(i)].fill(places_.unit(i) == "rad"   ? PlacedBand::End::round
+                                                : places_.is_coordinate(i) ? PlacedBand::End::far
+                                                                           : PlacedBand::End::left);
   }
 
   PlacedBand& places_;
   std::vector<Ends> ends_;
   std::vector<std::size_t> starts_{0};
   bool all_ = true;
+  bool lost_ = false; // the last climb
 };
 
 FrictionBand tell(const Mechanism& mechanism, const std::vector<std::string>& names, PlacedBand& places,
                   const PlacedEnds& ends, bool several) {
   FrictionBand band;
-  std::vector<std::string_view> round, farther, jumping;
+  std::vector<std::string_view> round, farther, jumping, left;
   for (Index i = 0; i < static_cast<Index>(names.size()); ++i) {
     const std::string& name = names[static_cast<std::size_t>(i)];
     if (!places.has_rates(i)) continue;
     if (places.jumps(i)) {
       jumping.push_back(name);
+      continue;
+    }
+    if (ends.is_left(i)) {
+      left.push_back(name);
       continue;
     }
     BandExtent extent;
@@ -443,6 +453,9 @@ FrictionBand tell(const Mechanism& mechanism, const std::vector<std::string>& na
   if (!farther.empty())
     band.message += " Friction holds " + word_list(farther, "and") +
                     " farther than the band was followed, so that no bound is told.";
+  if (!left.empty())
+    band.message += " No extent is told of " + word_list(left, "and") +
+                    ", which was not followed to an end: other coordinates go round, or too far.";
   if (!jumping.empty())
     band.message += " No extent is told of " + word_list(jumping, "and") + ", which jumps within the band.";
   return band;
@@ -468,8 +481,7 @@ FrictionBand find_placed_band(const Mechanism& mechanism, const Solution& state,
     PlacedEnds ends(places, names.size());
     ends.explore(is_joint);
     ends.finish();
-    if (!ends.any(PlacedBand::End::lost))
-      return tell(mechanism, names, places, ends, standing->joints.size() > 1);
+    if (!ends.lost()) return tell(mechanism, names, places, ends, standing->joints.size() > 1);
   }
   return {};
 }
