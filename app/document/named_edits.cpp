@@ -169,7 +169,8 @@ std::optional<NamedParameter> lacking_parameter(const Mechanism& mechanism, cons
       if (!is_expression_name(name) || free_name(mechanism, name) != name ||
           std::ranges::find(variables, name) != variables.end())
         continue;
-      if (!lacking.name.empty()) return {};
+      // Who writes a joint's name means where the joint is, not a number of the scene.
+      if (!lacking.name.empty() || joint_index(mechanism, name) >= 0) return {};
       lacking.name = name;
     }
   } catch (const ExpressionError&) {

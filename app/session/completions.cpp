@@ -82,6 +82,18 @@ std::vector<Completion> all_names(const Mechanism& mechanism) {
   return all;
 }
 
+// What a coordinate's name could become where no function asks for it.
+void add_results(const Mechanism& mechanism, std::string_view word, std::vector<Completion>& found) {
+  std::vector<Completion> named;
+  add_arguments(mechanism, ArgumentKind::coordinate, named);
+  for (const Completion& each : named) {
+    const std::string_view name = each.text;
+    if (word.empty() || !begins_with(name.substr(name.find_first_not_of("'\"")), word)) continue;
+    found.push_back({"coordinate(" + each.text + ")", "where it is"});
+    found.push_back({"rate(" + each.text + ")", "how fast it moves"});
+  }
+}
+
 } // namespace
 
 Completions completions_at(const Mechanism& mechanism, std::string_view text, std::size_t cursor) {
@@ -96,11 +108,13 @@ Completions completions_at(const Mechanism& mechanism, std::string_view text, st
   const std::size_t last = before.find_last_not_of(' ');
   if (last != std::string_view::npos && (is_of_word(before[last]) || before[last] == ')')) return found;
   std::vector<Completion> all;
-  if (const ResultFunction* function = function_around(before)) add_arguments(mechanism, function->kind, all);
+  const ResultFunction* function = function_around(before);
+  if (function) add_arguments(mechanism, function->kind, all);
   for (Completion& each : all_names(mechanism))
     all.push_back(std::move(each));
   for (Completion& each : all)
     if (begins_with(each.text, word)) found.list.push_back(std::move(each));
+  if (!function) add_results(mechanism, word, found.list);
   std::stable_partition(found.list.begin(), found.list.end(),
                         [&](const Completion& each) { return each.text == word; });
   return found;

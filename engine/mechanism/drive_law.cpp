@@ -5,6 +5,7 @@
 #include "engine/mechanism/fields.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/given_names.hpp"
+#include "engine/mechanism/part_hint.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/unit.hpp"
 #include "engine/mechanism/unit_hint.hpp"
@@ -97,10 +98,26 @@ bool is_of_state(const Mechanism& mechanism, std::string_view text) {
   }
 }
 
+namespace {
+
+// A joint's name by itself: a mistake, which is told as one of a law.
+bool names_joint(const Mechanism& mechanism, std::string_view text) {
+  try {
+    const Expression expression(text);
+    return std::ranges::any_of(expression.names(), [&](const std::string& name) {
+      return parameter_index(mechanism, name) < 0 && joint_index(mechanism, name) >= 0;
+    });
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+} // namespace
+
 bool is_drive_law(const Mechanism& mechanism, const Formula& formula) {
   return formula.key.starts_with("drive.") &&
          (formula.key.ends_with(".torque") || formula.key.ends_with(".load")) &&
-         is_of_state(mechanism, formula.text);
+         (is_of_state(mechanism, formula.text) || names_joint(mechanism, formula.text));
 }
 
 const Formula* drive_law(const Mechanism& mechanism, const Joint& joint, int i, std::string_view which) {
@@ -155,8 +172,11 @@ void check_drive_law(const Mechanism& mechanism, const Formula& law, bool angle,
     const Expression expression = read_drive_law(mechanism, law.text);
     std::vector<ValueDimension> names, results;
     const GivenNames known(mechanism);
-    for (const std::string& name : expression.names())
+    for (const std::string& name : expression.names()) {
+      if (const std::string part = part_hint(mechanism, name); !known.has(name) && !part.empty())
+        throw ExpressionError("there is no parameter \"" + name + "\"" + part);
       names.push_back(known.dimension(known.find(name)));
+    }
     for (const ResultCall& call : expression.results())
       results.push_back(dimension_of(mechanism, call));
     expect_dimension(expression.dimension(names, results), fields::force_unit(angle));

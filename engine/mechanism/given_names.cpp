@@ -79,9 +79,11 @@ void GivenNames::take_values(const Mechanism& mechanism, const NumberRates& rate
 
 void expect_dimension(const ValueDimension& found, std::string_view unit) {
   const Dimension wanted = parse_unit(unit).value_or(Unit{}).dimension.without_angle();
-  if (!found.plain && !(found.dimension == wanted))
-    throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +
-                          dimension_text(found.dimension));
+  if (found.plain || found.dimension == wanted) return;
+  // Most often a number was typed for one with a unit: 7500*coordinate(slide) for a torque.
+  throw ExpressionError("expected " + (unit.empty() ? "a number" : std::string(unit)) + ", found " +
+                        dimension_text(found.dimension) + "; a factor in " +
+                        dimension_text(wanted + found.dimension * -1) + " is missing");
 }
 
 } // namespace flyball

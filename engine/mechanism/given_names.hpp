@@ -22,6 +22,7 @@ class GivenNames {
   std::size_t point(std::size_t point, int i) const {
     return mechanism_.parameters.size() + 3 * point + static_cast<std::size_t>(i);
   }
+  bool has(const std::string& name) const { return numbers_.contains(name); }
   // Throws ExpressionError where there is none, which tells those that there are: `also` among them.
   std::size_t find(const std::string& name, std::string_view also = {}) const;
   ValueDimension dimension(std::size_t number) const { return dimensions_[number]; }
@@ -40,7 +41,8 @@ class GivenNames {
   std::vector<ValueDimension> dimensions_;
 };
 
-// Throws ExpressionError where a value is not of this unit: "expected m, found kg".
+// Throws ExpressionError where a value is not of this unit: "expected m, found kg; a factor in m/kg
+// is missing".
 void expect_dimension(const ValueDimension& found, std::string_view unit);
 
 } // namespace flyball

@@ -3,6 +3,7 @@
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/given_names.hpp"
 #include "engine/mechanism/mistakes.hpp"
+#include "engine/mechanism/part_hint.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/unit_hint.hpp"
 
@@ -273,10 +274,9 @@ class MeasureCompiler {
     for (const auto& [each, place] : places_)
       known.push_back(each);
     std::ranges::sort(known);
-    const bool part = joint_index(m_, name) >= 0 || body_index(m_, name) >= 0 || force_index(m_, name) >= 0;
+    const std::string part = part_hint(m_, name);
     throw ExpressionError("there is no parameter or measure \"" + name + "\"" +
-                          (part ? "; of a part results are asked for, as in coordinate(slide) or x(ball)"
-                                : unit_hint(name) + did_you_mean(name, known)));
+                          (part.empty() ? unit_hint(name) + did_you_mean(name, known) : part));
   }
 
   void put_in_order(MeasurePlan& plan) {

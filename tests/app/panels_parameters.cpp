@@ -119,6 +119,41 @@ TEST_CASE("the parameter that an expression lacks is made where it is said to la
   CHECK(d.app.session.document.position() == steps + 1);
 }
 
+TEST_CASE("who writes a joint's name in a law is offered its coordinate and speed, and no parameter") {
+  Desk d("governor_engine");
+  d.build();
+  d.pick(PartKind::joint, "spin");
+  d.frames(60);
+  const std::string field = "inspector/drive/torque";
+  d.click(field);
+  SECTION("while it is typed") {
+    d.type("=-7500 N*(0.15 m - sli");
+    d.frames(3);
+    REQUIRE(d.app.ui.widgets.contains(field + "/completion/rate(slide)"));
+    d.click(field + "/completion/coordinate(slide)");
+    d.frames(4);
+    d.type(")");
+    d.frames(2);
+    d.key(key_enter);
+    d.frames(3);
+    CHECK(formula_at(d.m(), "joints.spin.drive.torque") == "-7500 N*(0.15 m - coordinate(slide))");
+  }
+  SECTION("and when it was") {
+    d.type("=7500 N*(slide - 0.15)");
+    d.frames(2);
+    CHECK_THAT(
+        d.app.ui.fields.typing.mistake,
+        ContainsSubstring("slide is a joint, whose results are written as coordinate(slide) or rate(slide)"));
+    CHECK_FALSE(d.app.ui.widgets.contains(field + "/offer"));
+  }
+  SECTION("a number without its unit is told by what it lacks") {
+    d.type("=7500*(coordinate(slide) - 0.15)");
+    d.frames(2);
+    CHECK_THAT(d.app.ui.fields.typing.mistake,
+               ContainsSubstring("expected N m, found m; a factor in N is missing"));
+  }
+}
+
 TEST_CASE("a parameter that is made for a number alone begins with the number's value") {
   Desk d;
   d.build();

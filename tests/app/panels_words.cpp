@@ -188,3 +188,22 @@ TEST_CASE("where the legend would cover a fifth of the view, it folds until it i
   CHECK_FALSE(app.ui.widgets.contains("legend/0"));
   CHECK(app.view.legend); // of larger views
 }
+
+TEST_CASE("a number and its unit stand on one line, however narrow a paragraph is") {
+  Robot robot;
+  robot.frames(2);
+  const std::string text =
+      "It hunts: swings at 6.02 Hz double every 0.0349 s. Damping of 1e-3 N m s, not 5\nm or 7 of it.";
+  std::size_t fewest = text.size(), most = 0;
+  for (float width = 90; width < 600; width += 3) {
+    const std::string lines = in_lines(text, width);
+    CAPTURE(width, lines);
+    for (const char* whole : {"6.02 Hz", "0.0349 s.", "1e-3 N m s,", "5\nm"})
+      CHECK(lines.find(whole) != std::string::npos);
+    const auto count = static_cast<std::size_t>(std::ranges::count(lines, '\n'));
+    fewest = std::min(fewest, count);
+    most = std::max(most, count);
+  }
+  CHECK(fewest <= 2);
+  CHECK(most >= 8);
+}

@@ -159,7 +159,7 @@ std::optional<fs::path> file_list(Ui& ui, FileQuery& query, const std::string& n
     note_widget(ui.widgets, name + "/" + file, KeyUse::row);
   }
   if (shown.empty())
-    paragraph(list.entries.empty() ? "Nothing to open here." : "Nothing of that name here.",
+    paragraph(list.entries.empty() ? "No " + extension + " files here." : "Nothing of that name here.",
               colors_of(ui).dim);
   ImGui::EndChild();
   ImGui::PopStyleColor();

@@ -58,6 +58,7 @@ void show_advice(Ui& ui) {
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize |
                                         ImGuiWindowFlags_NoFocusOnAppearing;
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_PopupBg));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, ImGui::GetStyle().PopupBorderSize);
   if (clickable)
     ImGui::Begin("mistake", nullptr, in_front);
   else
@@ -81,6 +82,7 @@ void show_advice(Ui& ui) {
     ImGui::End();
   else
     ImGui::EndTooltip();
+  ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 }
 

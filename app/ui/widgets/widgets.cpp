@@ -3,6 +3,7 @@
 #include "app/session/units.hpp"
 #include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/widgets/tooltip.hpp"
+#include "engine/mechanism/unit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -166,6 +167,27 @@ std::string name_list(const std::vector<std::string>& names) {
   return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
 }
 
+namespace {
+
+// Where the word at a place ends; a number's goes on over its unit, which nobody looks for on the next line.
+std::size_t word_end(std::string_view text, std::size_t at) {
+  std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+  const std::string_view number = text.substr(at, end - at);
+  if (number.empty() || number.find_first_of("0123456789") == std::string_view::npos ||
+      number.find_first_not_of("0123456789.,+-e") != std::string_view::npos)
+    return end;
+  while (end < text.size() && text[end] == ' ') {
+    const std::size_t next = std::min(text.find_first_of(" \n", end + 1), text.size());
+    std::string_view unit = text.substr(end + 1, next - end - 1);
+    unit = unit.substr(0, unit.find_last_not_of(".,;:") + 1);
+    if (unit.empty() || !parse_unit(unit)) break;
+    end = next;
+  }
+  return end;
+}
+
+} // namespace
+
 std::string in_lines(std::string_view text, float width) {
   const ImFont* font = ImGui::GetFont();
   const auto width_of = [&](std::string_view part) {
@@ -175,7 +197,9 @@ std::string in_lines(std::string_view text, float width) {
   float used = 0; // of the last line
   std::size_t at = 0;
   while (at < text.size()) {
-    const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+    std::size_t end = word_end(text, at);
+    if (width_of(text.substr(at, end - at)) > width)
+      end = std::min(text.find_first_of(" \n", at), text.size());
     const std::string_view word = text.substr(at, end - at), gap = at > 0 ? text.substr(at - 1, 1) : "";
     const float wide = width_of(word), room = gap == " " ? width_of(gap) : 0;
     const bool below = gap == "\n" || (used > 0 && used + room + wide > width);
