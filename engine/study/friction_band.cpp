@@ -471,8 +471,10 @@ FrictionBand find_friction_band(const Mechanism& mechanism, const FrictionBandOp
                               state.stable, state.stable});
     }
     band.found = true;
-    // About an unstable state friction holds many shares beyond whose folds others lie.
-    band.whole = !box.lost() && (one_motion || state.stable != false);
+    band.whole = !box.lost();
+    // Folds about an unstable state may lie between all ways that were gone.
+    if (!one_motion && state.stable == false)
+      if (FrictionBand placed = by_places(); placed.found) return placed;
     if (!band.whole && free.size() == 1 && follow(mechanism, free.front(), state, options.cancel, band)) {
       band.folds = true;
       return band;

@@ -69,7 +69,7 @@ MUTATIONS = [
              "equilibrium_tests", "[branches]"),
     Mutation("drive forces of a motion without inertia", "engine/dynamics/dense_motion.cpp",
              "force += mass_.mass(n_ + d, i) * a_[i];", "force += 0;", "dynamics_tests"),
-    Mutation("stops touched from the wrong side", "engine/dynamics/simulator.cpp",
+    Mutation("stops touched from the wrong side", "engine/dynamics/simulator_begin.cpp",
              "touching[i] = stops[i].upper ? value > 0 : value < 0;",
              "touching[i] = stops[i].upper ? value < 0 : value > 0;", "dynamics_tests"),
     Mutation("monodromy matrix, steps in the wrong order", "engine/stability/floquet.cpp",
@@ -88,6 +88,7 @@ MUTATIONS = [
              "out.emplace_back(t(i + 1, i + 1) + half, -imaginary);",
              "out.emplace_back(t(i + 1, i + 1) + half, imaginary);", "linear_tests"),
     Mutation("companion matrix, sign of the stiffness", "engine/linear/pencil.cpp",
-             "companion.bottomLeftCorner(n, n) = -k;", "companion.bottomLeftCorner(n, n) = k;", "equilibrium_tests",
+             "out.a.bottomLeftCorner(n, positions) = -stiffness;",
+             "out.a.bottomLeftCorner(n, positions) = stiffness;", "equilibrium_tests",
              "a spinning rotor*,a conical pendulum swings*,the swing pendulum*"),
 ]
