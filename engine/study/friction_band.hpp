@@ -18,9 +18,9 @@ struct BandExtent {
   std::string name, unit;         // of a found number or a measure; "rad", "m", or the measure's
   double value = 0;               // of the state it is about
   double low = 0, high = 0;       // over the band; infinite where nothing was found that bounds it
-  std::optional<double> error;    // of both, estimated; none where the curve was followed through folds
-  std::vector<double> shares_low, // of the joints with friction there; empty where the curve was followed
-      shares_high;                // through folds
+  std::optional<double> error;    // of both, estimated; none where `folds`
+  std::vector<double> shares_low, // of the joints with friction there; empty where `folds`
+      shares_high;
   bool stands = false; // a joint with friction, and that moves in one way only, as do all that have some: it
                        // stays as it is while nothing pushes it over an end
   // Whether it is stable at either end as friction gives its limit there: a slow change then goes along that
