@@ -29,7 +29,8 @@ struct Problem {
   // The system's own, or the dense matrices whatever their size, for studies of the matrices themselves.
   KktForm form = KktForm::dense;
 
-  // To be taken for the gradient of the amended potential although drives ride on drives: of a descent.
+  // To be taken for the gradient of the amended potential although drives ride on drives, or torques drive at
+  // speeds that then stay as they are: of a descent.
   bool as_gradient = false;
 
   // The balance is the gradient of the amended potential, so its Jacobian is symmetric where it matters.

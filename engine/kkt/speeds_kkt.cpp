@@ -67,8 +67,6 @@ void SpeedsKkt::factor(double shift) {
   Eigen::VectorXd noise(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     tree_.solve(columns_.col(i), answer_);
-    for (const int v : speeds_)
-      answer_[v] = 0;
     response_.col(i) = answer_;
     rows_times(answer_, rest_);
     noise[i] = rounding * (std::abs(border(i, i)) + std::abs(rest_[i]));
@@ -93,8 +91,6 @@ void SpeedsKkt::factor(double shift) {
 void SpeedsKkt::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing,
                          Eigen::VectorXd& x, Eigen::VectorXd& lambda) {
   tree_.solve(rhs, closing, x, lambda);
-  for (const int v : speeds_)
-    x[v] = 0;
   rows_times(x, rest_);
   for (Eigen::Index i = 0; i < rest_.size(); ++i)
     rest_[i] = rhs[speeds_[static_cast<std::size_t>(i)]] - rest_[i];
@@ -139,8 +135,6 @@ void SpeedsKkt::direction_of(const NullDirection& direction, Eigen::VectorXd& x)
       !direction.empty() && std::ranges::find(speeds_, direction.front().first) != speeds_.end();
   if (!of_speeds) {
     tree_.direction_of(direction, x);
-    for (const int v : speeds_)
-      x[v] = 0;
     return;
   }
   x.setZero(size_);

@@ -31,6 +31,8 @@ class SpeedsKkt final : public KktSystem {
   // factored without a shift.
   bool keeps_minimum() const;
 
+  TreeKkt& at_given_speeds() { return tree_; }
+
  private:
   void solve_to(double enough, const Eigen::VectorXd& rhs, const Eigen::VectorXd& closing, Eigen::VectorXd& x,
                 Eigen::VectorXd& lambda) override;

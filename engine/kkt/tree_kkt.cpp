@@ -72,6 +72,7 @@ void TreeKkt::place(int i, const Link& link) {
   Node& n = nodes_[static_cast<std::size_t>(i)];
   n.parent = link.parent < 0 ? -1 : node_of_link_[static_cast<std::size_t>(link.parent)];
   n.v = finds_speed(link) ? -1 : link.v;
+  if (finds_speed(link)) left_out_.push_back(link.v);
   n.ball = -1;
   if (link.v >= 0 && link.type == LinkType::spherical) {
     n.ball = static_cast<int>(balls_.size());
@@ -155,6 +156,7 @@ void TreeKkt::linearize_motion(const Problem& problem, const Unknowns& z, const 
   size_ = system.nv;
   mass_ = 0;
   balls_.clear();
+  left_out_.clear();
   branching_ = 0;
   node_of_link_.resize(system.links.size());
   std::size_t count = 0;
@@ -298,9 +300,15 @@ void TreeKkt::solve_to(double, const Eigen::VectorXd& rhs, const Eigen::VectorXd
   outwards(std::numeric_limits<double>::infinity(), x);
 }
 
+void TreeKkt::clear_left_out(Eigen::VectorXd& x) const {
+  for (const int v : left_out_)
+    x[v] = 0;
+}
+
 // From e, what each coordinate would do were its parent held, to the motion of all, none turning further than
 // `most`.
 void TreeKkt::outwards(double most, Eigen::VectorXd& x) {
+  clear_left_out(x);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     Node& n = nodes_[i];
     if (n.parent >= 0)
@@ -362,6 +370,7 @@ double TreeKkt::metric(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
 // Everything moves as the solution says.
 double TreeKkt::metric_of_solution(const Eigen::VectorXd& x, Eigen::VectorXd& product) {
   product.resize(x.size());
+  clear_left_out(product);
   double square = 0;
   inwards(wrench_branches_, [&](Node& n, Vec6& g) {
     const Vec6 own = times_inertia(n, n.motion);

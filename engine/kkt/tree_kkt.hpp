@@ -36,8 +36,8 @@ struct SubtreeSizes {
 
 class TreeKkt final : public KktSystem {
  public:
-  // Of a system with is_plain_tree(). Speeds that are found are left out: the tree at given speeds, its
-  // shafts held (speeds_kkt.hpp).
+  // Of a system with is_plain_tree(). Speeds that are found are left out, zero in what it gives: the tree at
+  // given speeds, its shafts held (speeds_kkt.hpp).
   void linearize(const Problem& problem, const Unknowns& z, const Evaluation& evaluation) override;
   // Takes in K + rate^2 M, or with velocities K + rate (C + G) + rate^2 M, in the place of K (rate in 1/s).
   void linearize_motion(const Problem& problem, const Unknowns& z, const Evaluation& evaluation, double rate,
@@ -89,12 +89,14 @@ class TreeKkt final : public KktSystem {
   void eliminate_one(Node& n, double shift, Mat6& h);
   void eliminate_three(Node& n, double shift, Mat6& h);
   void outwards(double most, Eigen::VectorXd& x);
+  void clear_left_out(Eigen::VectorXd& x) const;
 
   bool symmetric_ = true;
   double rate_ = 0; // see linearize_motion()
   bool with_velocities_ = false;
   std::vector<Node> nodes_;       // of mobile links, parents before children
   std::vector<int> node_of_link_; // -1: immobile
+  std::vector<int> left_out_;     // places of speeds that are found, in q_R
   std::vector<Ball> balls_;
   std::vector<Vec6> rows_; // r of a node's one coordinate, where that is not u
   std::vector<Mat6> stiffness_branches_;

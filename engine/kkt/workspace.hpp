@@ -14,7 +14,10 @@ namespace flyball {
 
 struct Workspace : Evaluation {
   KktSystem& kkt(const Problem& problem) {
-    if (problem.form == KktForm::tree && !problem.system.torques.empty()) return speeds;
+    if (problem.form == KktForm::tree && !problem.system.torques.empty()) {
+      if (problem.as_gradient) return speeds.at_given_speeds();
+      return speeds;
+    }
     switch (problem.form) {
     case KktForm::tree: return tree;
     case KktForm::sparse: return sparse;

@@ -38,9 +38,11 @@ StateSpace first_order(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& veloc
 
 // What a companion matrix of M^-1 D and M^-1 K has as eigenvalues, by the pencil itself where they are far
 // apart: rounding of the companion is that of the largest, or of its square, which leaves slow ones beside a
-// fast one few digits. QZ of the pencil in like sizes leaves each its own.
-Eigenvalues with_digits(Eigenvalues of_companion, const StateSpace& pencil, CancelFlag cancel) {
-  constexpr double apart = 300; // of whose square eleven digits are left
+// fast one few digits. QZ of the pencil in like sizes leaves each its own. With `few_digits` it is spared
+// where enough of them are left for the signs of the slow ones' real parts, and told.
+Eigenvalues with_digits(Eigenvalues of_companion, const StateSpace& pencil, CancelFlag cancel,
+                        bool* few_digits = nullptr) {
+  constexpr double apart = 300, far_apart = 1e5; // of whose squares eleven and six digits are left
   if (!of_companion) return {};
   double largest = 0, smallest = std::numeric_limits<double>::infinity();
   for (const Complex s : *of_companion) {
@@ -48,6 +50,13 @@ Eigenvalues with_digits(Eigenvalues of_companion, const StateSpace& pencil, Canc
     if (s != Complex()) smallest = std::min(smallest, std::abs(s));
   }
   if (!(largest > apart * smallest)) return of_companion;
+  const auto has_sign = [&](Complex s) {
+    return apart * std::abs(s) > largest || std::abs(s.real()) > 1e-3 * std::abs(s);
+  };
+  if (few_digits && largest < far_apart * smallest && std::ranges::all_of(*of_companion, has_sign)) {
+    *few_digits = true;
+    return of_companion;
+  }
   auto found = poles(pencil, cancel);
   return found && found->size() == of_companion->size() ? found : of_companion;
 }
@@ -297,7 +306,7 @@ double rate_of_heavy(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocit
 // With x = P p + C c, C cyclic, and the velocities u: p' = P^T u, M u' = -D u - K P p.
 Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                                        const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic,
-                                       double massless, CancelFlag cancel) {
+                                       double massless, CancelFlag cancel, bool* few_digits) {
   const Eigen::Index n = mass.rows(), positions = n - cyclic.cols();
   const double m = mass.norm(), k = stiffness.norm(), d = velocity.norm();
   if (n == 0 || !(m > 0) || !std::isfinite(m + k + d)) return {};
@@ -324,7 +333,7 @@ Eigenvalues eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen:
   const StateSpace whitened = first_order(Eigen::MatrixXd::Identity(n, n), whiten(damping), l.forward(forces),
                                           l.forward(moved).transpose()),
                    pencil = first_order(inertia, damping, forces, moved.transpose());
-  auto s = with_digits(eigenvalues(whitened.a, cancel), pencil, cancel);
+  auto s = with_digits(eigenvalues(whitened.a, cancel), pencil, cancel, few_digits);
   if (!s) return {};
   for (Complex& x : *s)
     x *= rate;

@@ -46,10 +46,11 @@ std::optional<std::vector<std::complex<double>>> pencil_eigenvalues(const Eigen:
 
 // The same where the orthonormal columns of `cyclic`, which K takes to nothing, are left out as positions:
 // each has an eigenvalue zero, and these are not among the result. M must be positive definite, else nothing:
-// a diagonal entry below `massless` of its size is rounding.
+// a diagonal entry below `massless` of its size is rounding. `few_digits`, where given: their signs alone are
+// asked for, and it is set where those far below the largest have few digits.
 std::optional<std::vector<std::complex<double>>>
 eigenvalues_without_cyclic(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& velocity,
                            const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& cyclic, double massless,
-                           const std::atomic<bool>* cancel);
+                           const std::atomic<bool>* cancel, bool* few_digits = nullptr);
 
 } // namespace flyball

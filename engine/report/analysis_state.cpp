@@ -155,7 +155,7 @@ std::string Analysis::State::add_eigenvalues(const Problem& problem, const Solve
   std::string failure;
   if (pivots_decide(problem))
     failure = add_lowest_eigenvalues(problem, steady.found.z, options.modes, steady.elsewhere(), stability);
-  else if (!stability.eigenvalues) // only of a minimum the sign is found without them
+  else if (!stability.eigenvalues || stability.few_digits) // else only the sign was looked for
     stability = stability_of(problem, steady, true, options.modes);
   keep_asked_for(problem, options.modes, stability);
   return failure;

@@ -47,8 +47,8 @@ class EquilibriumSearch {
   EquilibriumSearch(const Problem& problem, const Eigen::VectorXd& start, bool nearest, bool warm,
                     bool newton_only, Workspace& w, std::vector<double>& history, Found& found)
       : p_(problem), start_(start), nearest_(nearest), warm_(warm), newton_only_(newton_only),
-        large_(problem.form != KktForm::dense), descends_(!nearest && has_descent(problem)), w_(w),
-        history_(history), found_(found) {
+        large_(problem.form != KktForm::dense), descends_(!nearest && has_descent(problem)),
+        at_speeds_(problem.symmetric_at_speeds()), w_(w), history_(history), found_(found) {
     found_.status = Status::not_converged;
     found_.remark = Remark::none;
     found_.fallback.reset();
@@ -68,6 +68,7 @@ class EquilibriumSearch {
     if (!close_loops()) return false;
     if (against_stops()) return true;
     if (large_ && downhill()) return true;
+    if (at_speeds_ && newton_anyway()) return true;
     if (damped_newton() || from_rest() || slow_motion()) return true;
     if (!large_ && downhill()) return true;
     return settle_for_unstable();
@@ -86,8 +87,15 @@ class EquilibriumSearch {
     plain.impatient = large_;
     plain.trusting = warm_;
     // Where the descent comes next it leads to a minimum with fewer steps.
-    plain.to_minimum = descends_ && large_ && !warm_;
+    plain.to_minimum = descends_ && large_ && !warm_ && !(at_speeds_ && newton_only_);
     return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });
+  }
+
+  // From the start all the way, where it was given up for a descent at given speeds that led nowhere.
+  bool newton_anyway() {
+    NewtonSettings plain;
+    plain.impatient = true;
+    return !arrived_ && attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });
   }
 
   bool turned_round(const Link& link, const Eigen::VectorXd& q) const {
@@ -376,12 +384,13 @@ class EquilibriumSearch {
       found_.iterations += descent.iterations;
     }
     // A soft spring may hold a long way down: Newton's method takes that in a stride.
-    unbounded_ = descent.end == DescentEnd::unbounded;
+    unbounded_ = descent.end == DescentEnd::unbounded && !at_speeds_;
     if (descent.end == DescentEnd::minimum || unbounded_)
       outcome = solve_from_bottom(descent.factored);
     else if (descent.end != DescentEnd::near)
       return false;
-    if (!outcome.converged || (outcome.largest_step > 0.2 && !unbounded_) ||
+    // Speeds that are found may take what stands at others along a long way.
+    if (!outcome.converged || (outcome.largest_step > 0.2 && !unbounded_ && !at_speeds_) ||
         !same_assembly_mode(p_, w_.kinematics) || (unbounded_ && !below_assembled()))
       return false;
     found_.unbounded = unbounded_;
@@ -430,8 +439,9 @@ class EquilibriumSearch {
   const Problem& p_;
   const Eigen::VectorXd& start_;
   const bool nearest_, warm_, newton_only_;
-  const bool large_;    // many bodies: what leads to a minimum in few iterations comes first
-  const bool descends_; // there is a potential to go down by
+  const bool large_;     // many bodies: what leads to a minimum in few iterations comes first
+  const bool descends_;  // there is a potential to go down by
+  const bool at_speeds_; // it is one at given speeds, and torques drive
   Workspace& w_;
   std::vector<double>& history_;
   Found& found_;

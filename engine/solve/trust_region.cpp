@@ -60,9 +60,13 @@ class TrustRegion {
         if (travelled > 400 * unit_) return {DescentEnd::unbounded, i};
         compression_decides_ = convex_model_tried_ && !(ratio > 0.8 && ratio < 1.25);
         const bool model_serves = shift_ == 0 && !convex_model_tried_ && std::abs(ratio - 1) < 0.1;
-        if (!all_the_way && p_.system.rows > 0 && model_serves && size < tolerance::newton_leads_step &&
-            newton_leads())
-          return {DescentEnd::near, i + 1};
+        if (!all_the_way && model_serves) {
+          if (p_.system.rows > 0 && size < tolerance::newton_leads_step && newton_leads())
+            return {DescentEnd::near, i + 1};
+          // The speeds will be others, and the rest of the way goes elsewhere.
+          if (!p_.system.torques.empty() && size < tolerance::speeds_lead_step)
+            return {DescentEnd::minimum, i + 1};
+        }
         arrive(trial.potential);
         shortened = 0;
       } else {
@@ -199,7 +203,12 @@ class TrustRegion {
   void take_in() {
     if (history_) history_->push_back(scaled_residual(p_, w_));
     gradient_ = w_.residual.f.cwiseProduct(p_.scaling.column);
-    force_ = largest(w_.magnitudes.force.cwiseProduct(p_.scaling.column));
+    sizes_ = w_.magnitudes.force.cwiseProduct(p_.scaling.column);
+    for (const DriveTorqueElement& torque : p_.system.torques) { // speeds stay as they are
+      const int v = p_.system.links[static_cast<std::size_t>(torque.link)].v;
+      gradient_[v] = sizes_[v] = 0;
+    }
+    force_ = largest(sizes_);
     open_ = p_.system.rows == 0 ? 0 : w_.residual.phi.cwiseProduct(p_.scaling.row).lpNorm<Eigen::Infinity>();
     convex_model_tried_ = false;
     least_shift_ = 0;
@@ -381,7 +390,7 @@ class TrustRegion {
   Workspace& w_;
   KktSystem& kkt_;
   std::vector<double>* history_;
-  Eigen::VectorXd gradient_, rhs_, step_, metric_step_, other_, moved_;
+  Eigen::VectorXd gradient_, sizes_, rhs_, step_, metric_step_, other_, moved_;
   Eigen::VectorXd multipliers_;           // their change by the step, scaled
   Eigen::VectorXd lowest_, lowest_image_; // of lowest curvature, and what was factored times it
   Potential potential_;
@@ -401,7 +410,8 @@ class TrustRegion {
 } // namespace
 
 bool has_descent(const Problem& problem) {
-  return problem.system.conservative && (problem.symmetric() || problem.form == KktForm::dense);
+  return (problem.system.conservative && (problem.symmetric() || problem.form == KktForm::dense)) ||
+         problem.symmetric_at_speeds();
 }
 
 DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history,

@@ -28,12 +28,14 @@ struct DescentOutcome {
 };
 
 // Whether the forces have a potential to go down by. Away from equilibria that of drives that ride on drives
-// is one for few coordinates only, whose matrices can be made symmetric.
+// is one for few coordinates only, whose matrices can be made symmetric; where torques drive trees it is that
+// at the speeds of the start, which stay.
 bool has_descent(const Problem& problem);
 
 // From z.q, whose loops must be closed; never raises the potential. Appends the scaled residual to `history`
-// (may be null). Ends near a minimum where Newton-Raphson leads on at less cost, as with loops it does,
-// unless `all_the_way`. `falls`: the balance has been linearised at z and is known to be no minimum's.
+// (may be null). Ends near a minimum where Newton-Raphson leads on at less cost, as it does with loops and to
+// other speeds, unless `all_the_way`. `falls`: the balance has been linearised at z and is known to be no
+// minimum's.
 DescentOutcome descend(const Problem& problem, Unknowns& z, Workspace& w, std::vector<double>* history,
                        bool all_the_way, bool falls);
 

@@ -120,7 +120,7 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   if (potential) motion->stiffness = (reduced + reduced.transpose()) / 2;
   if (!verdict.stable && energy_first) verdict = by_energy(system, *motion);
   if (verdict.stable && !with_eigenvalues) return out;
-  out.eigenvalues = eigenvalues_of(problem, *motion);
+  out.eigenvalues = eigenvalues_of(problem, *motion, with_eigenvalues ? nullptr : &out.few_digits);
   if (verdict.stable || !out.eigenvalues) return out;
   BalanceShape balance{{}, static_cast<int>(null_space.cols()), neutral.count};
   out.null_eigenvalues =

@@ -27,6 +27,8 @@ struct Stability : Verdict {
   // Those directions, of the matrices (neutral_directions.hpp): (nv, count), scaled; empty where pivots
   // decide.
   Eigen::MatrixXd neutral_directions;
+  // Eigenvalues far below the largest have few digits: they were looked at for their signs alone.
+  bool few_digits = false;
 };
 
 // Whether f is the gradient of the amended potential at a steady state z although drives ride on drives:

@@ -65,13 +65,14 @@ std::optional<SteadyMotion> steady_motion(const Problem& problem, const Unknowns
   return out;
 }
 
-std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const SteadyMotion& motion) {
+std::optional<std::vector<Complex>> eigenvalues_of(const Problem& problem, const SteadyMotion& motion,
+                                                   bool* few_digits) {
   if (motion.phases.cols() == 0)
     return pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel, motion.inertia);
   // On a tree an entry of M is as exact as its bodies' own numbers; a basis of loops mixes them.
   const double massless = problem.system.rows == 0 ? 1e-26 : 1e-13;
   auto out = eigenvalues_without_cyclic(motion.mass, motion.velocity, motion.stiffness, motion.phases,
-                                        massless, problem.cancel);
+                                        massless, problem.cancel, few_digits);
   if (out) return out;
   // Something has no mass: all of them, and those nearest to zero left out.
   out = pencil_eigenvalues(motion.mass, motion.velocity, motion.stiffness, problem.cancel, motion.inertia);

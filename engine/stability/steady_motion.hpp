@@ -21,9 +21,9 @@ struct SteadyMotion : LinearPencil {
 std::optional<SteadyMotion> steady_motion(const Problem& problem, const Unknowns& z, Workspace& w);
 
 // Its eigenvalues (1/s, by size of the imaginary part), those of the phases left out. Nothing where they
-// cannot be found.
-std::optional<std::vector<std::complex<double>>> eigenvalues_of(const Problem& problem,
-                                                                const SteadyMotion& motion);
+// cannot be found. `few_digits`: see eigenvalues_without_cyclic().
+std::optional<std::vector<std::complex<double>>>
+eigenvalues_of(const Problem& problem, const SteadyMotion& motion, bool* few_digits = nullptr);
 // Of the motion linearised at the drawn phase, whatever it is at others.
 std::optional<std::vector<std::complex<double>>> motion_eigenvalues(const Problem& problem, const Unknowns& z,
                                                                     Workspace& w);

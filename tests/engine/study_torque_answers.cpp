@@ -328,6 +328,29 @@ TEST_CASE("a chain that a torque drives stands as at that speed prescribed, howe
   CHECK(std::ranges::all_of(*whole.eigenvalues, [](std::complex<double> x) { return x.real() < 0; }));
 }
 
+TEST_CASE("a chain that a torque turns leaves the pose it hangs in as at that speed prescribed, and as soon",
+          "[torque]") {
+  const int count = GENERATE(20, 200);
+  const double tilt = GENERATE(0., 0.1);
+  CAPTURE(count, tilt);
+  const Mechanism prescribed = hanging_chain(count, 5);
+  Mechanism m = prescribed;
+  m.joints[0] = torque_driven(m.joints[0], 4.95, "0.5 N m s * (5 - rate(spin))");
+  validate(m);
+  SolveOptions options;
+  options.details = false;
+  options.start = {{"hinge1", tilt}};
+  const Solution there = Analysis(prescribed).solve(options), s = Analysis(m).solve(options);
+  REQUIRE(there.status == Status::converged);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK_THAT(speed(s, "spin"), WithinRel(5, 1e-12));
+  CHECK(std::abs(value(s, "hinge1")) > 0.5);
+  for (const CoordinateSolution& c : there.coordinates)
+    if (!c.driven) CHECK(std::abs(std::abs(c.value) - std::abs(value(s, c.joint))) < 1e-9); // of either side
+  CHECK(s.iterations <= 2 * there.iterations);
+}
+
 TEST_CASE("what a minimum at given speeds proves needs torques that fall with these alone",
           "[torque][kinks]") {
   SECTION("shafts alone, more than eight") {
