@@ -28,6 +28,8 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   CHECK(hand.joint("slide").coordinates[0].damping == 40);
   hand.one_step([&] { hand.press_widget("inspector/stop"); });
   REQUIRE(hand.joint("slide").coordinates[0].stop);
+  CHECK(*hand.joint("slide").coordinates[0].stop->lower == Approx(0.0744 - 0.05));
+  CHECK(*hand.joint("slide").coordinates[0].stop->upper == Approx(0.0744 + 0.05));
   hand.one_step([&] { hand.fill("inspector/stop/lower", "50 mm"); });
   CHECK(hand.joint("slide").coordinates[0].stop->lower == Approx(0.05));
   hand.one_step([&] { hand.press_widget("inspector/stop/upper/reset"); });
@@ -38,6 +40,32 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   CHECK(hand.joint("slide").coordinates[0].drawn == Approx(0.0744));
   CHECK(find_mistakes(hand.mechanism()).empty());
 
+  SECTION("stops of an angle are whole degrees about where it is drawn") {
+    hand.choose(PartKind::joint, "arm1");
+    hand.one_step([&] { hand.press_widget("inspector/stop"); });
+    const Coordinate arm = hand.joint("arm1").coordinates[0];
+    CHECK(*arm.stop->lower == Approx(arm.drawn - std::numbers::pi / 6));
+    CHECK(*arm.stop->upper == Approx(arm.drawn + std::numbers::pi / 6));
+  }
+  SECTION("in a mechanism of another size stops of a length are as far in proportion") {
+    hand.press_widget("inspector/stop");
+    for (const double size : {0.01, 100.}) {
+      CAPTURE(size);
+      edit(hand.app.session, "Scale", [&](Mechanism& m, Selection&) {
+        for (Body& body : m.bodies)
+          body.position *= size;
+        for (Joint& joint : m.joints)
+          joint.at *= size;
+      });
+      hand.frames(2);
+      hand.one_step([&] { hand.press_widget("inspector/stop"); });
+      const Stop stop = *hand.joint("slide").coordinates[0].stop;
+      CHECK(*stop.upper - *stop.lower == Approx(0.1 * size));
+      hand.press_widget("inspector/stop");
+      undo(hand.app.session), undo(hand.app.session), undo(hand.app.session);
+      hand.frames(2);
+    }
+  }
   SECTION("a drive is refused beside a spring") {
     hand.press_widget("inspector/drive");
     CHECK_FALSE(hand.joint("slide").coordinates[0].drive);

@@ -332,6 +332,40 @@ std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std
   return other;
 }
 
+std::optional<std::size_t> side_by_side_row(Ui& ui, const std::string& name, const std::string& label,
+                                            std::span<const SideOption> options,
+                                            std::optional<std::size_t> chosen, const char* help) {
+  const float gap = 2 * ui.scale, least_padding = 4 * ui.scale;
+  const auto count = static_cast<float>(options.size());
+  float words = gap * (count - 1);
+  for (const SideOption& option : options)
+    words += ImGui::CalcTextSize(option.title).x;
+  float room = row_label(ui, label, help);
+  if (words + 2 * least_padding * count > room) room += margin_width(ui);
+  if (words + 2 * least_padding * count > room) { // below the label, from the left
+    ImGui::NewLine();
+    room = ImGui::GetContentRegionAvail().x;
+  }
+  const float padding = std::max((room - words) / count, 0.f);
+  std::optional<std::size_t> other;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, ImGui::GetStyle().FramePadding.y});
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const SideOption& option = options[i];
+    const bool on = i == chosen;
+    const char* refused = on ? nullptr : option.refused;
+    if (i > 0) ImGui::SameLine(0, gap);
+    ImGui::BeginDisabled(refused != nullptr);
+    if (option_button(ui, name + "/" + option.name, option.title, on, refused ? refused : option.help,
+                      ImGui::CalcTextSize(option.title).x + padding, KeyUse::tab) &&
+        !on)
+      other = i;
+    ImGui::EndDisabled();
+    if (on) mark_chosen(ui.widgets);
+  }
+  ImGui::PopStyleVar();
+  return other;
+}
+
 namespace {
 
 // The list of a choice that is open; ends it.
