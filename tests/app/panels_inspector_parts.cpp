@@ -28,8 +28,8 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   CHECK(hand.joint("slide").coordinates[0].damping == 40);
   hand.one_step([&] { hand.press_widget("inspector/stop"); });
   REQUIRE(hand.joint("slide").coordinates[0].stop);
-  CHECK(*hand.joint("slide").coordinates[0].stop->lower == Approx(0.0744 - 0.05));
-  CHECK(*hand.joint("slide").coordinates[0].stop->upper == Approx(0.0744 + 0.05));
+  CHECK(*hand.joint("slide").coordinates[0].stop->lower == Approx(0.0744 - 0.1));
+  CHECK(*hand.joint("slide").coordinates[0].stop->upper == Approx(0.0744 + 0.1));
   hand.one_step([&] { hand.fill("inspector/stop/lower", "50 mm"); });
   CHECK(hand.joint("slide").coordinates[0].stop->lower == Approx(0.05));
   hand.one_step([&] { hand.press_widget("inspector/stop/upper/reset"); });
@@ -60,7 +60,7 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
       hand.frames(2);
       hand.one_step([&] { hand.press_widget("inspector/stop"); });
       const Stop stop = *hand.joint("slide").coordinates[0].stop;
-      CHECK(*stop.upper - *stop.lower == Approx(0.1 * size));
+      CHECK(*stop.upper - *stop.lower == Approx(0.2 * size));
       hand.press_widget("inspector/stop");
       undo(hand.app.session), undo(hand.app.session), undo(hand.app.session);
       hand.frames(2);
