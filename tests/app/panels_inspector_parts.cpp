@@ -492,11 +492,11 @@ TEST_CASE("several joints are edited as one, with a word where they differ") {
     hand.one_step([&] { hand.press_widget("inspector/friction"); });
     hand.one_step([&] { hand.fill("inspector/friction/limit", "2"); });
     hand.one_step([&] { hand.press_widget("inspector/stop"); });
-    hand.one_step([&] { hand.fill("inspector/stop/upper", "10 mm"); });
+    hand.one_step([&] { hand.fill("inspector/stop/upper", "12 mm"); });
     for (const char* name : {"slide_a", "slide_b", "slide_c"}) {
       CHECK(of(name).spring->stiffness == 300);
       CHECK(of(name).friction->limit == 2.);
-      CHECK(of(name).stop->upper == 0.01);
+      CHECK(of(name).stop->upper == 0.012);
     }
     hand.one_step([&] { hand.press_widget("inspector/spring"); });
     for (const char* name : {"slide_a", "slide_b", "slide_c"})
