@@ -458,6 +458,26 @@ TEST_CASE("several joints are edited as one, with a word where they differ") {
   CHECK(of("slide_a").spring->free == 0.01);
   CHECK(of("slide_b").spring->free == 0.02);
 
+  SECTION("what their drives prescribe is lit where it is the same") {
+    const auto lit = [&] {
+      std::string names;
+      for (const KeyStop& stop : hand.app.ui.widgets.stops)
+        if (stop.chosen && stop.name.starts_with("inspector/drive/prescribes/"))
+          names += stop.name.substr(stop.name.rfind('/') + 1);
+      return names;
+    };
+    hand.one_step([&] { hand.press_widget("inspector/spring"); });
+    hand.one_step([&] { hand.press_widget("inspector/drive"); });
+    CHECK(lit() == "speed");
+    pick({"slide_a"});
+    hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/torque"); });
+    pick({"slide_a", "slide_b"});
+    CHECK(lit().empty());
+    hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/momentum"); });
+    CHECK(lit() == "momentum");
+    for (const char* name : {"slide_a", "slide_b"})
+      CHECK(*of(name).drive == Drive{.speed = 0.1, .keeps = DriveKeeps::momentum});
+  }
   SECTION("a field of various numbers is empty, and left so changes nothing") {
     hand.press_widget("inspector/spring/free");
     CHECK(hand.app.ui.fields.typing.text.empty());
