@@ -271,9 +271,10 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
   for (const ImVec2 place : {below, ImVec2(other, from.y), ImVec2(std::max(least, most), foot),
                              ImVec2(std::max(least, most), top), ImVec2(least, foot), ImVec2(least, top)})
     if (hidden(place) < 0.8f * hidden(from)) from = place;
-  // Nowhere in a small view: rather over the panel beside it.
-  const float farthest = ImGui::GetIO().DisplaySize.x - size.x - edge;
-  if (hidden(from) >= 1e9f && right <= farthest) from = {right, from.y};
+  // Where a small view leaves the point no place: rather over the panel beside it.
+  const float ring = 8 * s, farthest = ImGui::GetIO().DisplaySize.x - size.x - edge;
+  const PanelRect drawn{at.x - ring, at.y - ring, 2 * ring, 2 * ring};
+  if (common_area(drawn, from, size) > 0 && right <= farthest) from = {right, from.y};
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
 }
 
