@@ -5,6 +5,8 @@
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 
+#include <imgui_internal.h>
+
 #include <cmath>
 
 using namespace flyball;
@@ -203,6 +205,18 @@ TEST_CASE("what is recovered over a mechanism that was explored does not lie beh
   robot.frames(80);
   REQUIRE(robot.app.session.mode == Mode::build);
   CHECK(robot.pixel({-1.5, 0, 0}).x > robot.widget("tool strip").to.x);
+}
+
+TEST_CASE("the first steps lie beside the tools") {
+  Robot robot({GENERATE(1150, 1440, 820), 560});
+  CAPTURE(robot.size.width);
+  robot.key('N', true);
+  robot.frames(3);
+  const ImGuiWindow* card = ImGui::FindWindowByName("welcome");
+  REQUIRE(card);
+  const WidgetRect tools = robot.widget("tool strip"), view = robot.widget("view");
+  CHECK(card->Pos.x > tools.to.x);
+  CHECK(card->Pos.x + card->Size.x < view.to.x);
 }
 
 TEST_CASE("where the tools take all of the view's width what is fitted stands below them") {
