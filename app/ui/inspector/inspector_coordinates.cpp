@@ -234,8 +234,8 @@ struct CoordinateSection : CoordinateRows {
     help_on_hover("A limit on this side too.");
   }
 
-  // How far from the drawn value a new limit is: a quarter of the mechanism, or about 30 degrees, and round as
-  // it is shown.
+  // How far from the drawn value a new limit is: a quarter of the mechanism, or about 30 degrees, and round
+  // as it is shown.
   double stop_reach() const {
     if (angle()) return session.units.angle == AngleUnit::degree ? std::numbers::pi / 6 : 0.5;
     const ShownUnit unit = shown_unit("m", session.units);
