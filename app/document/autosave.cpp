@@ -1,6 +1,7 @@
 #include "app/document/autosave.hpp"
 
 #include "app/document/file_watch.hpp"
+#include "app/document/state_file.hpp"
 #include "app/platform/access.hpp"
 #include "app/platform/process.hpp"
 #include "engine/mechanism/error.hpp"
@@ -105,6 +106,7 @@ std::string write_autosave(const Autosave& autosave) {
   json line = {{"flyball_autosave", 1},         {"file", file},
                {"name", autosave.name},         {"owner", autosave.owner},
                {"based_on", autosave.based_on}, {"made", autosave.made}};
+  write_hues(line, autosave.hues);
   // Text of JSON is UTF-8, which names of files need not be.
   if (find_invalid_utf8(file) != std::string::npos)
     line["file_bytes"] = std::vector<unsigned char>(file.begin(), file.end());
@@ -127,6 +129,7 @@ Autosave parse_autosave(std::string_view text) {
     autosave.owner = line.at("owner").get<std::string>();
     autosave.based_on = line.at("based_on").get<std::uint64_t>();
     autosave.made = line.at("made").get<std::int64_t>();
+    autosave.hues = read_hues(line);
     autosave.scene = text.substr(end + 1);
     return autosave;
   } catch (const json::exception& error) {

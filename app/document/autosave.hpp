@@ -2,6 +2,8 @@
 // is of, and then the scene as it would have been saved.
 #pragma once
 
+#include "app/document/body_hues.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -17,6 +19,7 @@ struct Autosave {
   std::string owner;          // the process that wrote it; see process.hpp
   std::int64_t made = 0;      // s since 1970
   std::string scene;          // text
+  NamedHues hues;             // of its bodies, where they are not those that names ask for
 };
 
 std::string write_autosave(const Autosave& autosave);

@@ -41,7 +41,8 @@ std::string AutosaveSlot::write() {
                                              .based_on = work->based_on,
                                              .owner = work->settings.owner,
                                              .made = static_cast<std::int64_t>(std::time(nullptr)),
-                                             .scene = write_scene(*work->mechanism)});
+                                             .scene = write_scene(*work->mechanism),
+                                             .hues = hues_to_keep(*work->mechanism, *work->hues)});
     std::vector<fs::path> places = autosave_places(work->file, work->settings.state_folder);
     if (!former.empty()) places.insert(places.begin(), former);
     for (const fs::path& place : places) {

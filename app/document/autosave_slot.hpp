@@ -2,6 +2,7 @@
 // it changes, or by the one that notices that the program is about to end.
 #pragma once
 
+#include "app/document/body_hues.hpp"
 #include "engine/mechanism/mechanism.hpp"
 
 #include <cstdint>
@@ -26,6 +27,7 @@ struct UnsavedWork {
   std::filesystem::path file; // of the document; empty for one without
   std::uint64_t based_on = 0; // text_hash of what the file holds
   AutosaveSettings settings;
+  std::shared_ptr<const BodyHues> hues{}; // of its bodies
 };
 
 // All functions may be called from any thread.

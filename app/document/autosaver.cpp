@@ -32,10 +32,12 @@ void Autosaver::wait() {
 void Autosaver::note(const Document& document, bool to_lose, std::uint64_t based_on,
                      const AutosaveSettings& settings) {
   if (settings.state_folder.empty() || !to_lose) return slot_->expect(std::nullopt);
-  slot_->expect(UnsavedWork{.mechanism = document.steps()[document.position()].mechanism,
+  const Step& now = document.steps()[document.position()];
+  slot_->expect(UnsavedWork{.mechanism = now.mechanism,
                             .file = document.file(),
                             .based_on = based_on,
-                            .settings = settings});
+                            .settings = settings,
+                            .hues = now.hues});
 }
 
 void Autosaver::tick(const Document& document, bool to_lose, std::uint64_t based_on,

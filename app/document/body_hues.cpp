@@ -77,6 +77,14 @@ BodyHues choose_hues(const Mechanism& mechanism, const NamedHues& known) {
   return hues;
 }
 
+NamedHues hues_to_keep(const Mechanism& mechanism, const BodyHues& hues) {
+  NamedHues named;
+  if (hues == choose_hues(mechanism)) return named;
+  for (std::size_t i = 0; i < mechanism.bodies.size() && i < hues.size(); ++i)
+    named[mechanism.bodies[i].name] = hues[i];
+  return named;
+}
+
 BodyHues carried_hues(const Mechanism& before, const BodyHues& hues, const Mechanism& after) {
   if (hues.size() == before.bodies.size() && same_bodies(before, after)) return hues;
   std::unordered_map<std::string_view, std::uint8_t> known;

@@ -61,9 +61,10 @@ void Document::push(Step step) {
       step.explored.clear();
     }
   }
-  step.hues = step.mechanism == before || same_bodies(*before, *step.mechanism)
-                  ? now().hues
-                  : std::make_shared<const BodyHues>(carried_hues(*before, *now().hues, *step.mechanism));
+  if (!step.hues)
+    step.hues = step.mechanism == before || same_bodies(*before, *step.mechanism)
+                    ? now().hues
+                    : std::make_shared<const BodyHues>(carried_hues(*before, *now().hues, *step.mechanism));
   Step& last = steps_.back();
   if (step.gesture != 0 && position_ > 0 && last.gesture == step.gesture && last.name == step.name) {
     const Step& former = steps_[position_ - 1];
@@ -88,14 +89,16 @@ void Document::edit(std::string name, Mechanism next, Selection selection, std::
   take(std::move(name), std::move(next), std::move(selection), gesture);
 }
 
-void Document::take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture) {
+void Document::take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture,
+                    std::shared_ptr<const BodyHues> hues) {
   if (next == stored()) return select(std::move(selection));
   Explored left = carried_explored(now().explored, stored(), next);
   push({.name = std::move(name),
         .mechanism = std::make_shared<const Mechanism>(std::move(next)),
         .selection = std::move(selection),
         .gesture = gesture,
-        .explored = std::move(left)});
+        .explored = std::move(left),
+        .hues = std::move(hues)});
 }
 
 void Document::edit_number(std::string name, const std::string& address, double value,
@@ -225,8 +228,11 @@ void Document::name_untitled(const std::string& name) {
   changed(before.get());
 }
 
-void Document::replace(std::string name, Mechanism mechanism) {
-  if (flyball::is_finite(mechanism)) take(std::move(name), std::move(mechanism), selection_, 0);
+void Document::replace(std::string name, Mechanism mechanism, const std::optional<NamedHues>& hues) {
+  if (!flyball::is_finite(mechanism)) return;
+  std::shared_ptr<const BodyHues> known;
+  if (hues) known = std::make_shared<const BodyHues>(choose_hues(mechanism, *hues));
+  take(std::move(name), std::move(mechanism), selection_, 0, std::move(known));
 }
 
 Mechanism Document::empty_mechanism() {

@@ -89,8 +89,9 @@ class Document {
   // A mechanism that nobody has named is called so, in every step: a name that comes with its file is none
   // of the edits, and changes nothing that is solved.
   void name_untitled(const std::string& name);
-  // Another mechanism as a file has it, mistakes in its expressions too: a step of its own.
-  void replace(std::string name, Mechanism mechanism);
+  // Another mechanism as a file has it, mistakes in its expressions too: a step of its own. `hues` are those
+  // that its bodies are known by; without, as after an edit.
+  void replace(std::string name, Mechanism mechanism, const std::optional<NamedHues>& hues = {});
 
   // No bodies, the earth's gravity along -y.
   static Mechanism empty_mechanism();
@@ -101,7 +102,8 @@ class Document {
  private:
   const Step& now() const { return steps_[position_]; }
   bool is_seen(std::size_t step) const;
-  void take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture);
+  void take(std::string name, Mechanism next, Selection selection, std::uint64_t gesture,
+            std::shared_ptr<const BodyHues> hues = {});
   void push(Step step);
   void changed(const Mechanism* stored_before);
 

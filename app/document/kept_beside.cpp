@@ -77,10 +77,7 @@ KeptBeside read_beside(const fs::path& state_folder, const fs::path& file) {
     if (!is_of(entry, file)) continue;
     kept.explored = read_numbers(entry, "explored");
     kept.stored = read_numbers(entry, "stored");
-    if (const auto hues = entry.find("colours"); hues != entry.end() && hues->is_object())
-      for (const auto& [body, hue] : hues->items())
-        if (hue.is_number_unsigned() && hue.get<std::uint64_t>() < body_hue_count * body_shade_count)
-          kept.hues[body] = hue.get<std::uint8_t>();
+    kept.hues = read_hues(entry);
     break;
   }
   return kept;
@@ -96,8 +93,7 @@ void keep_beside(const fs::path& state_folder, const fs::path& file, const KeptB
       entry["explored"][each.address] = each.value;
     for (const ExploredValue& each : kept.stored)
       entry["stored"][each.address] = each.value;
-    for (const auto& [body, hue] : kept.hues)
-      entry["colours"][body] = hue;
+    write_hues(entry, kept.hues);
   }
   for (const json& entry : store)
     if (left.size() < most_kept_beside && !is_of(entry, file)) left.push_back(entry);

@@ -30,4 +30,18 @@ void write_state(const fs::path& file, const json& state) {
   }
 }
 
+NamedHues read_hues(const json& entry) {
+  NamedHues named;
+  if (const auto hues = entry.find("colours"); hues != entry.end() && hues->is_object())
+    for (const auto& [body, hue] : hues->items())
+      if (hue.is_number_unsigned() && hue.get<std::uint64_t>() < body_hue_count * body_shade_count)
+        named[body] = hue.get<std::uint8_t>();
+  return named;
+}
+
+void write_hues(json& entry, const NamedHues& hues) {
+  for (const auto& [body, hue] : hues)
+    entry["colours"][body] = hue;
+}
+
 } // namespace flyball

@@ -2,6 +2,8 @@
 // written is a reason to disturb anybody.
 #pragma once
 
+#include "app/document/body_hues.hpp"
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
@@ -13,5 +15,8 @@ nlohmann::json read_state(const std::filesystem::path& file);
 // Atomically, its folder too where there is none. Texts that are not UTF-8 are kept with marks in the place
 // of what is not.
 void write_state(const std::filesystem::path& file, const nlohmann::json& state);
+// The colours in an object that may have some.
+NamedHues read_hues(const nlohmann::json& entry);
+void write_hues(nlohmann::json& entry, const NamedHues& hues);
 
 } // namespace flyball

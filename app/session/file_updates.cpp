@@ -14,16 +14,21 @@ namespace {
 // folder is watched, as that does not see that a folder above it was renamed.
 constexpr double between_looks = 0.5, untold = 2, told = 30;
 
+std::string no_longer_there(const Session& session) {
+  return document_name(session) + " is no longer on disk. It is still open here; saving writes it anew.";
+}
+
 bool look_at_disk(Session& session) {
   const FileWatch::Look look = session.files.watch.look();
   switch (look.news) {
   case FileWatch::News::none: return false;
   case FileWatch::News::vanished:
-    show_error(session, document_name(session) +
-                            " is no longer on disk. It is still open here; saving writes it anew.");
+    session.files.conflict = session.files.save_wanted = false; // with nothing any more
+    show_error(session, no_longer_there(session));
     return true;
   case FileWatch::News::changed: break;
   }
+  if (session.notice == no_longer_there(session)) session.notice.clear(); // there it is
   if (session.document.unsaved()) {
     session.files.conflict = true;
     return true;

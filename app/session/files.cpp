@@ -66,16 +66,6 @@ void bring_back_explored(Session& session) {
         "leaves them.";
 }
 
-// Those that the bodies' names do not ask for.
-NamedHues hues_to_keep(const Document& document) {
-  const Mechanism& stored = document.stored();
-  NamedHues named;
-  if (document.hues() == choose_hues(stored)) return named;
-  for (std::size_t i = 0; i < stored.bodies.size() && i < document.hues().size(); ++i)
-    named[stored.bodies[i].name] = document.hues()[i];
-  return named;
-}
-
 // "swing_pendulum.flyball" as a person would write it.
 std::string words_of(std::string stem) {
   if (stem.ends_with(".flyball")) stem.resize(stem.rfind('.'));
@@ -129,7 +119,7 @@ std::string save_to(Session& session, const fs::path& file) {
   session.files.autosave.remove();
   if (!session.options.state.empty()) remove_aside(own, session.options.state);
   note_explored(session);
-  session.files.beside.hues = hues_to_keep(session.document);
+  session.files.beside.hues = hues_to_keep(session.document.stored(), session.document.hues());
   keep_beside(session.options.state, own, session.files.beside);
   note_recent(session, own);
   const std::size_t tried = session.document.explored().size();

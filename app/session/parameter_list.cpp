@@ -272,10 +272,13 @@ std::vector<ParameterControl> automatic_controls(const Mechanism& mechanism, con
   return controls;
 }
 
-constexpr const char* as_drawn = "drawn "; // a speed
+// What stands before the word.
+std::string kind_word(SpeedKind kind) {
+  return kind == SpeedKind::drawn ? "drawn " : kind == SpeedKind::guessed ? "guessed " : "";
+}
 
-void tell_drawn_speed(const Mechanism& mechanism, ParameterControl& control) {
-  if (is_drawn_speed(mechanism, control.address)) control.what = as_drawn + control.what;
+void tell_speed_kind(const Mechanism& mechanism, ParameterControl& control) {
+  control.what = kind_word(speed_kind(mechanism, control.address)) + control.what;
 }
 
 } // namespace
@@ -300,7 +303,7 @@ std::vector<ParameterControl> parameter_controls(const Mechanism& mechanism, con
     if (!pinned.contains(control.address)) controls.push_back(std::move(control));
   for (ParameterControl& control : controls) {
     set_step(control);
-    tell_drawn_speed(mechanism, control);
+    tell_speed_kind(mechanism, control);
   }
   std::ranges::stable_sort(controls, {}, &ParameterControl::group);
   return controls;
@@ -314,7 +317,7 @@ std::optional<ParameterControl> number_control(const Mechanism& mechanism, const
                                            *value, find_number(file, address));
   set_range(control, range_of(mechanism, address, control.file_value, control.unit, units));
   set_step(control);
-  tell_drawn_speed(mechanism, control);
+  tell_speed_kind(mechanism, control);
   return control;
 }
 
@@ -359,21 +362,24 @@ std::string parameter_phrase(std::string_view address) {
   return (drive && what.starts_with("torque") ? "drive " : "") + what + " of " + owner;
 }
 
-bool is_drawn_speed(const Mechanism& mechanism, const std::string& address) {
-  if (!address.starts_with("joints.") || !address.ends_with(".speed")) return false;
+SpeedKind speed_kind(const Mechanism& mechanism, const std::string& address) {
+  if (!address.starts_with("joints.") || !address.ends_with(".speed")) return SpeedKind::prescribed;
   const int index = joint_index(mechanism, split(address)[1]);
-  if (index < 0) return false;
+  if (index < 0) return SpeedKind::prescribed;
   const Joint& joint = mechanism.joints[static_cast<std::size_t>(index)];
   for (std::size_t i = 0; i < joint.coordinates.size(); ++i)
     if (drive_speed_address(joint, i) == address) {
       const std::optional<Drive>& drive = joint.coordinates[i].drive;
-      return drive && !drive->torque && drive->keeps == DriveKeeps::momentum;
+      if (!drive) break;
+      return drive->torque                          ? SpeedKind::guessed
+             : drive->keeps == DriveKeeps::momentum ? SpeedKind::drawn
+                                                    : SpeedKind::prescribed;
     }
-  return false;
+  return SpeedKind::prescribed;
 }
 
 std::string number_phrase(const Mechanism& mechanism, const std::string& address) {
-  return (is_drawn_speed(mechanism, address) ? as_drawn : "") + parameter_phrase(address);
+  return kind_word(speed_kind(mechanism, address)) + parameter_phrase(address);
 }
 
 std::string with_phrase(std::string sentence, const std::string& address) {

@@ -18,7 +18,7 @@ struct ParameterControl {
   std::string address;
   ParameterGroup group = ParameterGroup::pinned;
   std::string name; // of the joint, body or force
-  std::string what; // "speed", "stiffness", ...: what of it; see is_drawn_speed()
+  std::string what; // "speed", "stiffness", ...: what of it; see speed_kind()
   std::string unit; // "rad/s", "N/m", ...
   double value = 0;
   double from = 0, to = 1;
@@ -50,10 +50,12 @@ Slider slider_for(const Mechanism& mechanism, const std::string& address, const 
 double new_drive_speed(const DisplayUnits& units);
 // "speed of spin", "mass of ball1", "y of gravity".
 std::string parameter_phrase(std::string_view address);
-// Whether it is the speed by which a drive keeps its momentum: that of the drawn pose, where the momentum is
-// made, and not the one at which it turns in the steady state.
-bool is_drawn_speed(const Mechanism& mechanism, const std::string& address);
-// As parameter_phrase(), but "drawn speed of spin" where it is one.
+// What a drive's speed is that is not the one of the steady state: by which a drive keeps its momentum, that
+// of the drawn pose, where the momentum is made; of a drive by torque the guess that the search begins at.
+enum class SpeedKind { prescribed, drawn, guessed };
+// Prescribed for all other numbers.
+SpeedKind speed_kind(const Mechanism& mechanism, const std::string& address);
+// As parameter_phrase(), but "drawn speed of spin" or "guessed speed of spin" where it is one.
 std::string number_phrase(const Mechanism& mechanism, const std::string& address);
 // The sentence with the number's phrase where it names the address.
 std::string with_phrase(std::string sentence, const std::string& address);

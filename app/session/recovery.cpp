@@ -39,7 +39,7 @@ void recover_now(Session& session, const Leftover& leftover) {
     show_error(session, "What was left is no longer there; another window may have recovered it.");
     return;
   }
-  replace_mechanism(session, "Recover", std::move(mechanism));
+  replace_mechanism(session, "Recover", std::move(mechanism), leftover.autosave.hues);
   session.notice = "Recovered; not saved yet";
 }
 

@@ -160,9 +160,10 @@ void edit(Session& session, const std::string& name,
   if (session.document.revision() != before) take_document(session, false, false);
 }
 
-void replace_mechanism(Session& session, const std::string& name, Mechanism mechanism) {
+void replace_mechanism(Session& session, const std::string& name, Mechanism mechanism,
+                       const std::optional<NamedHues>& hues) {
   const std::uint64_t before = session.document.revision();
-  session.document.replace(name, std::move(mechanism));
+  session.document.replace(name, std::move(mechanism), hues);
   session.notice.clear();
   if (session.document.revision() != before) take_document(session, false, false);
 }

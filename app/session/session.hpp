@@ -95,7 +95,8 @@ void open_document(Session& session, Document document);
 void edit(Session& session, const std::string& name,
           const std::function<void(Mechanism&, Selection&)>& change);
 // Another mechanism as a file has it: a step of its own, which no expression refuses.
-void replace_mechanism(Session& session, const std::string& name, Mechanism mechanism);
+void replace_mechanism(Session& session, const std::string& name, Mechanism mechanism,
+                       const std::optional<NamedHues>& hues = {});
 void undo(Session& session);
 void redo(Session& session);
 void go_to_step(Session& session, std::size_t step);

@@ -99,8 +99,10 @@ void fit_whole(const ViewContext& context, ViewSize size) {
     camera.zoom(1 - tools.y() / size.height, {size.width / 2, size.height / 2}, size);
     camera.pan(tools.x() / 2, tools.y() / 2, size);
   }
-  // Until the first answer is there nobody knows what will have to be in view.
-  if (!solving(context.session)) context.view.fit = false;
+  // Until the first answer is there nobody knows what will have to be in view, nor where the tools are before
+  // they were drawn.
+  const bool tools_known = context.session.mode != Mode::build || context.ui.widgets.contains("tool strip");
+  if (!solving(context.session) && tools_known) context.view.fit = false;
 }
 
 void fit_view(const ViewContext& context, ViewSize size) {

@@ -223,7 +223,8 @@ TEST_CASE("an autosave reads back as it was") {
                           .based_on = 0xFFFF'FFFF'FFFF'FFFFU,
                           .owner = "here:1:2",
                           .made = 1'700'000'000,
-                          .scene = "{\n \"flyball\": 1\n}\n"};
+                          .scene = "{\n \"flyball\": 1\n}\n",
+                          .hues = {{"ball ω", 3}, {"arm", 11}}};
   const Autosave back = parse_autosave(write_autosave(autosave));
   CHECK(back.file == autosave.file);
   CHECK(back.name == autosave.name);
@@ -231,6 +232,7 @@ TEST_CASE("an autosave reads back as it was") {
   CHECK(back.owner == autosave.owner);
   CHECK(back.made == autosave.made);
   CHECK(back.scene == autosave.scene);
+  CHECK(back.hues == autosave.hues);
   for (const char* text : {"", "{}", "{}\n", "[]\n", "{\"flyball_autosave\": 2}\n",
                            "{\"flyball_autosave\": 1, \"file\": 3}\n", "flyball\n"})
     CHECK_THROWS_AS(parse_autosave(text), SceneError);

@@ -4,6 +4,7 @@
 #include "app/document/create.hpp"
 #include "app/session/quantity.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
+#include "app/ui/keyboard/keyboard.hpp"
 #include "app/ui/panel_list.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/gear_ratio.hpp"
@@ -344,11 +345,11 @@ TEST_CASE("while exploring, the inspector's numbers are solved from the last ans
   CHECK(value(hand.app.session.answer.solution, "slide") != before);
 }
 
-TEST_CASE("a drive gives a torque where that is ticked, and its speed is found") {
+TEST_CASE("a drive prescribes a torque where that is chosen, and its speed is found") {
   Hand hand;
   hand.choose(PartKind::joint, "spin");
   const auto drive = [&] { return *hand.joint("spin").coordinates[0].drive; };
-  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/torque"); });
   REQUIRE(drive().torque);
   CHECK(drive().load == 0.);
   CHECK(drive().speed == 11.0174); // where the search begins
@@ -370,16 +371,17 @@ TEST_CASE("a drive gives a torque where that is ticked, and its speed is found")
   CHECK(coordinate(hand.app.session.answer.solution, "spin").speed.value() == Approx(10.29396051997144));
   set_mode(hand.app.session, Mode::build);
   hand.frames(2);
-  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/speed"); });
+  CHECK(hand.last_step() == "Prescribe the speed of spin");
   CHECK_FALSE(drive().torque);
   CHECK(hand.joint("spin").formulas.empty());
 }
 
-TEST_CASE("a drive is left to itself where that is ticked, and its speed is found") {
+TEST_CASE("a drive keeps its momentum where that is chosen, and its speed is found") {
   Hand hand;
   hand.choose(PartKind::joint, "spin");
   const auto drive = [&] { return *hand.joint("spin").coordinates[0].drive; };
-  hand.one_step([&] { hand.press_widget("inspector/drive/keeps"); });
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/momentum"); });
   CHECK(drive().keeps == DriveKeeps::momentum);
   CHECK(find_mistakes(hand.mechanism()).empty());
   set_mode(hand.app.session, Mode::explore);
@@ -392,8 +394,39 @@ TEST_CASE("a drive is left to itself where that is ticked, and its speed is foun
   // A damper would take the momentum.
   hand.press_widget("inspector/damper");
   CHECK(hand.joint("spin").coordinates[0].damping == 0);
-  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/torque"); });
   CHECK(drive().keeps == DriveKeeps::speed);
+  CHECK(drive().torque == 0.);
+  // One step from each of the three to each other.
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/momentum"); });
+  CHECK(drive().keeps == DriveKeeps::momentum);
+  CHECK_FALSE(drive().torque);
+  CHECK_FALSE(drive().load);
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/speed"); });
+  CHECK(drive() == Drive{.speed = 11.0174});
+  // What is so already is no step.
+  const std::size_t position = hand.app.session.document.position();
+  hand.press_widget("inspector/drive/prescribes/speed");
+  CHECK(hand.app.session.document.position() == position);
+}
+
+TEST_CASE("what a drive prescribes is chosen by keys, and Tab stops at the choice once") {
+  Hand hand;
+  imgui_compat::map_key(ImGuiKey_RightArrow, 262);
+  hand.choose(PartKind::joint, "spin");
+  const auto at = [&] { return hand.app.ui.keyboard.at; };
+  focus_widget(hand.app.ui, "inspector/drive");
+  hand.frames(2);
+  for (int i = 0; i < 6 && !at().starts_with("inspector/drive/"); ++i)
+    hand.key(key_tab);
+  REQUIRE(at() == "inspector/drive/prescribes/speed");
+  hand.key(262);
+  REQUIRE(at() == "inspector/drive/prescribes/torque");
+  hand.one_step([&] { hand.key(key_enter); });
+  CHECK(hand.joint("spin").coordinates[0].drive->torque == 0.);
+  CHECK(at() == "inspector/drive/prescribes/torque");
+  hand.key(key_tab);
+  CHECK(at() == "inspector/drive/torque");
 }
 
 TEST_CASE("a driven joint has friction where that is ticked, which no momentum bears") {
@@ -405,7 +438,7 @@ TEST_CASE("a driven joint has friction where that is ticked, which no momentum b
   REQUIRE(spin().friction);
   CHECK_FALSE(hand.app.ui.widgets.contains("inspector/friction/share")); // all of it loads the drive
   CHECK(find_mistakes(hand.mechanism()).empty());
-  hand.press_widget("inspector/drive/keeps");
+  hand.press_widget("inspector/drive/prescribes/momentum");
   CHECK(spin().drive->keeps == DriveKeeps::speed);
   set_mode(hand.app.session, Mode::explore);
   hand.frames(3);
@@ -413,7 +446,7 @@ TEST_CASE("a driven joint has friction where that is ticked, which no momentum b
   CHECK(hand.app.session.answer.solution.drive_torques[0].value == Approx(2));
   set_mode(hand.app.session, Mode::build);
   hand.frames(2);
-  hand.one_step([&] { hand.press_widget("inspector/drive/by_torque"); });
+  hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/torque"); });
   REQUIRE(spin().drive->torque);
   hand.frames(2);
   CHECK(hand.app.ui.widgets.contains("inspector/friction/share"));

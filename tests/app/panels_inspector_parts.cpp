@@ -28,6 +28,8 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   CHECK(hand.joint("slide").coordinates[0].damping == 40);
   hand.one_step([&] { hand.press_widget("inspector/stop"); });
   REQUIRE(hand.joint("slide").coordinates[0].stop);
+  CHECK(*hand.joint("slide").coordinates[0].stop->lower == Approx(0.0744 - 0.1));
+  CHECK(*hand.joint("slide").coordinates[0].stop->upper == Approx(0.0744 + 0.1));
   hand.one_step([&] { hand.fill("inspector/stop/lower", "50 mm"); });
   CHECK(hand.joint("slide").coordinates[0].stop->lower == Approx(0.05));
   hand.one_step([&] { hand.press_widget("inspector/stop/upper/reset"); });
@@ -38,6 +40,32 @@ TEST_CASE("drive, spring, damper and stop are ticked onto a joint") {
   CHECK(hand.joint("slide").coordinates[0].drawn == Approx(0.0744));
   CHECK(find_mistakes(hand.mechanism()).empty());
 
+  SECTION("stops of an angle are whole degrees about where it is drawn") {
+    hand.choose(PartKind::joint, "arm1");
+    hand.one_step([&] { hand.press_widget("inspector/stop"); });
+    const Coordinate arm = hand.joint("arm1").coordinates[0];
+    CHECK(*arm.stop->lower == Approx(arm.drawn - std::numbers::pi / 6));
+    CHECK(*arm.stop->upper == Approx(arm.drawn + std::numbers::pi / 6));
+  }
+  SECTION("in a mechanism of another size stops of a length are as far in proportion") {
+    hand.press_widget("inspector/stop");
+    for (const double size : {0.01, 100.}) {
+      CAPTURE(size);
+      edit(hand.app.session, "Scale", [&](Mechanism& m, Selection&) {
+        for (Body& body : m.bodies)
+          body.position *= size;
+        for (Joint& joint : m.joints)
+          joint.at *= size;
+      });
+      hand.frames(2);
+      hand.one_step([&] { hand.press_widget("inspector/stop"); });
+      const Stop stop = *hand.joint("slide").coordinates[0].stop;
+      CHECK(*stop.upper - *stop.lower == Approx(0.2 * size));
+      hand.press_widget("inspector/stop");
+      undo(hand.app.session), undo(hand.app.session), undo(hand.app.session);
+      hand.frames(2);
+    }
+  }
   SECTION("a drive is refused beside a spring") {
     hand.press_widget("inspector/drive");
     CHECK_FALSE(hand.joint("slide").coordinates[0].drive);
@@ -430,6 +458,26 @@ TEST_CASE("several joints are edited as one, with a word where they differ") {
   CHECK(of("slide_a").spring->free == 0.01);
   CHECK(of("slide_b").spring->free == 0.02);
 
+  SECTION("what their drives prescribe is lit where it is the same") {
+    const auto lit = [&] {
+      std::string names;
+      for (const KeyStop& stop : hand.app.ui.widgets.stops)
+        if (stop.chosen && stop.name.starts_with("inspector/drive/prescribes/"))
+          names += stop.name.substr(stop.name.rfind('/') + 1);
+      return names;
+    };
+    hand.one_step([&] { hand.press_widget("inspector/spring"); });
+    hand.one_step([&] { hand.press_widget("inspector/drive"); });
+    CHECK(lit() == "speed");
+    pick({"slide_a"});
+    hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/torque"); });
+    pick({"slide_a", "slide_b"});
+    CHECK(lit().empty());
+    hand.one_step([&] { hand.press_widget("inspector/drive/prescribes/momentum"); });
+    CHECK(lit() == "momentum");
+    for (const char* name : {"slide_a", "slide_b"})
+      CHECK(*of(name).drive == Drive{.speed = 0.1, .keeps = DriveKeeps::momentum});
+  }
   SECTION("a field of various numbers is empty, and left so changes nothing") {
     hand.press_widget("inspector/spring/free");
     CHECK(hand.app.ui.fields.typing.text.empty());
@@ -464,11 +512,11 @@ TEST_CASE("several joints are edited as one, with a word where they differ") {
     hand.one_step([&] { hand.press_widget("inspector/friction"); });
     hand.one_step([&] { hand.fill("inspector/friction/limit", "2"); });
     hand.one_step([&] { hand.press_widget("inspector/stop"); });
-    hand.one_step([&] { hand.fill("inspector/stop/upper", "10 mm"); });
+    hand.one_step([&] { hand.fill("inspector/stop/upper", "12 mm"); });
     for (const char* name : {"slide_a", "slide_b", "slide_c"}) {
       CHECK(of(name).spring->stiffness == 300);
       CHECK(of(name).friction->limit == 2.);
-      CHECK(of(name).stop->upper == 0.01);
+      CHECK(of(name).stop->upper == 0.012);
     }
     hand.one_step([&] { hand.press_widget("inspector/spring"); });
     for (const char* name : {"slide_a", "slide_b", "slide_c"})

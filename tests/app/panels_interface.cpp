@@ -1,6 +1,8 @@
 // What a person does at the window, done by a robot off-screen.
 #include "robot.hpp"
+#include "temporary_folder.hpp"
 
+#include "app/platform/access.hpp"
 #include "app/ui/panel_list.hpp"
 #include "app/ui/snapshot.hpp"
 #include "engine/mechanism/address.hpp"
@@ -220,6 +222,25 @@ TEST_CASE("a picture that was cancelled leaves nothing in the next dialog, one t
   REQUIRE(again);
   CHECK(again->width == 1280);
   CHECK(again->panels);
+}
+
+TEST_CASE("a dialog stays open, and says why, where nothing can be written into the folder") {
+  const TemporaryFolder folder;
+  const std::filesystem::path sealed = folder / "sealed";
+  std::filesystem::create_directory(sealed);
+  std::filesystem::permissions(sealed,
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  if (!write_refusal(sealed)) return; // nothing is refused to who may do all
+  Robot robot;
+  robot.key('E', true);
+  robot.frames(2);
+  robot.click("export/720p");
+  robot.app.panels->picture.query().path = (sealed / "picture.png").string();
+  robot.click("export/save");
+  robot.frames(2);
+  CHECK_FALSE(robot.app.export_request);
+  CHECK(robot.app.dialog.showing);
+  CHECK_THAT(robot.app.panels->picture.query().message, ContainsSubstring("written into"));
 }
 
 TEST_CASE("a picture is exported with and without the panels") {

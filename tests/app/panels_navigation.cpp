@@ -5,6 +5,8 @@
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
 
+#include <imgui_internal.h>
+
 #include <cmath>
 
 using namespace flyball;
@@ -101,6 +103,27 @@ TEST_CASE("zooming keeps what is under the pointer where it is") {
   CHECK(app.view.camera.distance > distance);
 }
 
+TEST_CASE("the wheel zooms over cards that lie in the view, too") {
+  Robot robot({1000, 760});
+  const auto zooms_over = [&](const char* widget) {
+    INFO(widget);
+    const double before = robot.app.view.camera.distance;
+    robot.wheel(widget, 2);
+    robot.frames(2);
+    return robot.app.view.camera.distance < 0.9 * before;
+  };
+  CHECK(zooms_over("legend"));
+  robot.key('N', true);
+  robot.frames(3);
+  CHECK(zooms_over("welcome/insert.rod"));
+  CHECK(zooms_over("view"));
+  // Not beside the view, and not behind what is open.
+  CHECK_FALSE(zooms_over("toolbar/play"));
+  robot.key('P', true);
+  robot.frames(3);
+  CHECK_FALSE(zooms_over("view"));
+}
+
 TEST_CASE("the habits are kept, and the sheet of shortcuts tells them") {
   const TemporaryFolder folder;
   {
@@ -169,6 +192,31 @@ TEST_CASE("what is fitted into the view while building does not lie behind the t
     CHECK(std::abs(off) < 1);
   else
     CHECK(off == Approx((tools.to.x - view.from.x) / 2).margin(4));
+}
+
+TEST_CASE("what is recovered over a mechanism that was explored does not lie behind the tools") {
+  Robot robot({1280, 720});
+  REQUIRE(robot.app.session.mode == Mode::explore); // without tools
+  Mechanism wide;
+  add_body(wide, {.form = BodyForm::rod, .radius = 0.05, .from = {-1.5, 0, 0}, .to = {1.5, 0, 0}});
+  wide.view.camera.reset();
+  replace_document(robot.app.session, Document(), {});
+  replace_mechanism(robot.app.session, "Recover", std::move(wide));
+  robot.frames(80);
+  REQUIRE(robot.app.session.mode == Mode::build);
+  CHECK(robot.pixel({-1.5, 0, 0}).x > robot.widget("tool strip").to.x);
+}
+
+TEST_CASE("the first steps lie beside the tools") {
+  Robot robot({GENERATE(1150, 1440, 820), 560});
+  CAPTURE(robot.size.width);
+  robot.key('N', true);
+  robot.frames(3);
+  const ImGuiWindow* card = ImGui::FindWindowByName("welcome");
+  REQUIRE(card);
+  const WidgetRect tools = robot.widget("tool strip"), view = robot.widget("view");
+  CHECK(card->Pos.x > tools.to.x);
+  CHECK(card->Pos.x + card->Size.x < view.to.x);
 }
 
 TEST_CASE("where the tools take all of the view's width what is fitted stands below them") {

@@ -132,6 +132,15 @@ TEST_CASE("a spring that only damps is called a damper") {
   CHECK(robot.entry().about.starts_with("damper:"));
 }
 
+TEST_CASE("the speed that a torque is searched from is found as what it is") {
+  Finder robot;
+  open_document(robot.app.session, Document(shipped("governor_engine")));
+  robot.frames(2);
+  robot.find("guessed speed");
+  CHECK(robot.entry().title == "guessed speed of spin");
+  CHECK(robot.entry().address == spin_speed);
+}
+
 TEST_CASE("in another document its own parts and numbers are found") {
   Finder robot;
   App& app = robot.app;

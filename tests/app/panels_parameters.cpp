@@ -596,3 +596,11 @@ TEST_CASE("the slider, the choice and the axis of a kept momentum say that the s
   d.frames(2);
   CHECK(slider(spin).what == "speed");
 }
+
+TEST_CASE("the speed that a drive by torque is searched from is not told as the speed that it has") {
+  Desk d("governor_engine");
+  const std::string spin = "joints.spin.drive.speed";
+  CHECK(number_phrase(d.m(), spin) == "guessed speed of spin");
+  CHECK(number_control(d.m(), d.m(), spin, {})->what == "guessed speed");
+  CHECK(number_phrase(d.m(), "joints.spin.drive.load") == "load on spin");
+}

@@ -165,6 +165,42 @@ TEST_CASE("recovering over a file that has changed since, or is gone") {
     CHECK(robot.speed_now() == 8);
 }
 
+TEST_CASE("bodies have the colours that they had before the crash") {
+  const TemporaryFolder folder;
+  const bool titled = GENERATE(false, true);
+  CAPTURE(titled);
+  const fs::path file = titled ? governor_in(folder) : fs::path();
+  std::map<std::string, int> before;
+  const auto colours = [](const Document& document) {
+    std::map<std::string, int> named;
+    for (std::size_t i = 0; i < document.hues().size(); ++i)
+      named[document.stored().bodies[i].name] = document.hues()[i];
+    return named;
+  };
+  {
+    FileRobot robot(folder, crashed);
+    if (titled) robot.open(file);
+    robot.frames(2);
+    if (!titled) robot.key('N', true);
+    // In another order than they stand in, and with other names than they came with.
+    for (const char* name : {"one", "two", "three", "four"})
+      edit(robot.app.session, "Add",
+           [&](Mechanism& m, Selection&) { m.bodies.insert(m.bodies.begin(), test::body(name)); });
+    for (const char* name : {"four", "two"})
+      edit(robot.app.session, "Rename", [&](Mechanism& m, Selection&) {
+        m.bodies[static_cast<std::size_t>(body_index(m, name))].name = std::string("the ") + name;
+      });
+    robot.pass(2);
+    before = colours(robot.app.session.document);
+    REQUIRE(choose_hues(robot.app.session.document.stored()) != robot.app.session.document.hues());
+  }
+  FileRobot robot(folder);
+  if (titled) robot.open(file);
+  robot.click("recover/recover");
+  REQUIRE(robot.app.session.mechanism().bodies.size() >= 4);
+  CHECK(colours(robot.app.session.document) == before);
+}
+
 TEST_CASE("untitled work that a crash has left is offered at the next start") {
   const TemporaryFolder folder;
   for (const char* name : {"ball", "block"}) {

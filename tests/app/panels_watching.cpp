@@ -109,6 +109,30 @@ TEST_CASE_METHOD(OpenGovernor, "a file that changes on disk while there are unsa
       robot.key('Z', true);
       CHECK(robot.speed_now() == 5); // nothing is lost
     }
+    SECTION("beside the tools") {
+      set_mode(app.session, Mode::build);
+      robot.frames(3);
+      CHECK(banner->Pos.x >= robot.widget("tool strip").to.x);
+      CHECK(banner->Pos.x + banner->Size.x <= robot.widget("legend frame").from.x);
+    }
+    SECTION("gone meanwhile: there is nothing to be taken, and saving writes it anew") {
+      robot.key('S', true);
+      fs::remove(file);
+      robot.pass(3);
+      CHECK_FALSE(robot.shows("banner/reload"));
+      CHECK_THAT(app.session.notice, ContainsSubstring("no longer on disk"));
+      SECTION("as it does") {
+        robot.key('S', true);
+        CHECK(speed_in(file) == 5);
+      }
+      SECTION("and back: asked about again, and told to be gone no longer") {
+        write_bytes(file, "{ half a scene");
+        robot.pass(3);
+        CHECK(robot.shows("banner/reload"));
+        CHECK(app.session.notice.empty());
+        CHECK(robot.speed_now() == 5);
+      }
+    }
     SECTION("changed once more") {
       robot.click("banner/keep");
       set_speed_in(file, 7);

@@ -1,18 +1,21 @@
 // What acts on each coordinate of a joint: drive, spring, damper, stop, friction; and where it settles.
+#include "app/document/drawn_size.hpp"
 #include "app/session/state_words.hpp"
 #include "app/session/units.hpp"
 #include "app/ui/assembly_edits.hpp"
 #include "app/ui/inspector/coordinate_drive.hpp"
+#include "app/ui/inspector/coordinate_rows.hpp"
 #include "app/ui/inspector/inspector_parts.hpp"
 #include "app/ui/inspector/inspector_rows.hpp"
 #include "app/ui/widgets/widgets.hpp"
+#include "app/viewport/snapping.hpp"
 #include "engine/mechanism/damped.hpp"
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/frictions.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flyball {
 
@@ -20,68 +23,14 @@ namespace {
 
 // What a new spring, damper, stop or friction begins with, to be changed at once.
 struct Beginning {
-  double stiffness, damping, stop_reach, stop_stiffness, friction;
+  double stiffness, damping, stop_stiffness, friction;
 };
-constexpr Beginning of_angle{10, 1, 0.5, 1000, 0.1}, of_length{1000, 10, 0.1, 1e5, 1};
+constexpr Beginning of_angle{10, 1, 1000, 0.1}, of_length{1000, 10, 1e5, 1};
 constexpr double usual_mu = 0.1, usual_radius = 0.01; // m
 
-// One coordinate and how it is called in addresses and widgets.
-struct CoordinateRows {
-  Session& session;
-  Ui& ui;
-  const Joint& joint;
-  int i;
-  std::vector<const Joint*> others{}; // that are edited with it
-
-  // Of how many of them it is so: of all, or of some.
-  bool all_have(bool (*has)(const Coordinate&)) const {
-    return has(coordinate()) && std::ranges::all_of(others, [&](const Joint* each) {
-             return has(each->coordinates[static_cast<std::size_t>(i)]);
-           });
-  }
-  bool some_have(bool (*has)(const Coordinate&)) const {
-    return has(coordinate()) || std::ranges::any_of(others, [&](const Joint* each) {
-             return has(each->coordinates[static_cast<std::size_t>(i)]);
-           });
-  }
-  // Why the first of them that cannot be given something cannot.
-  const char* refused_of_any(const char* (CoordinateRows::*refused)() const) const {
-    const char* why = (this->*refused)();
-    for (auto other = others.begin(); !why && other != others.end(); ++other)
-      why = (CoordinateRows{session, ui, **other, i}.*refused)();
-    return why;
-  }
-
-  const Coordinate& coordinate() const { return joint.coordinates[static_cast<std::size_t>(i)]; }
-  bool angle() const { return is_angle(joint.type, i); }
+// The rows of a coordinate from the top down.
+struct CoordinateSection : CoordinateRows {
   const Beginning& beginning() const { return angle() ? of_angle : of_length; }
-  std::string value_unit() const { return angle() ? "rad" : "m"; }
-  std::string stiffness_unit() const { return angle() ? "N m/rad" : "N/m"; }
-  std::string damping_unit() const { return angle() ? "N m s/rad" : "N s/m"; }
-  std::string force_unit() const { return angle() ? "N m" : "N"; }
-  // "spring.1" where there are several coordinates.
-  std::string key(const std::string& word) const {
-    return joint.coordinates.size() > 1 ? word + "." + std::to_string(i) : word;
-  }
-
-  // Of a widget for the number or thing at this address.
-  static std::string widget(std::string address) {
-    std::ranges::replace(address, '.', '/');
-    return "inspector/" + address;
-  }
-
-  const CoordinateSolution* solution() const {
-    if (!converged(session)) return nullptr;
-    for (const CoordinateSolution& found : session.answer.solution.coordinates)
-      if (found.joint == joint.name && found.index == i) return &found;
-    return nullptr;
-  }
-
-  void change(const std::string& step, const std::function<void(Coordinate&)>& edit) const {
-    edit_joint(session, ui, step, joint.name, [edit, i = static_cast<std::size_t>(i)](Joint& same) {
-      if (i < same.coordinates.size()) edit(same.coordinates[i]);
-    });
-  }
 
   // Beside the one before, where there is room for it; else closer below than another row would be.
   void beside_last(const char* label) const {
@@ -96,7 +45,7 @@ struct CoordinateRows {
 
   // A tick; `removed` and `added` edit the coordinate. Where some have it, all are given it.
   void tick(const std::string& word, const char* label, const char* what, bool (*has)(const Coordinate&),
-            const char* help, const char* (CoordinateRows::*refused)() const,
+            const char* help, const char* (*refused)(const CoordinateRows&),
             const std::function<void(Coordinate&)>& removed,
             const std::function<void(Coordinate&)>& added) const {
     const bool on = all_have(has);
@@ -111,41 +60,6 @@ struct CoordinateRows {
       else if (!has(c))
         added(c);
     });
-  }
-
-  void number(const std::string& label, const std::string& address, double value, const std::string& unit,
-              const char* help, Least least = Least::any, const std::function<void()>& reset = {}) const {
-    number(label, address, value, unit, help, {}, least, reset);
-  }
-  // `law`: see QuantityField.
-  void number(const std::string& label, const std::string& address, double value, const std::string& unit,
-              const char* help, const std::string& law, Least least = Least::any,
-              const std::function<void()>& reset = {}) const {
-    number_row(session, ui, label,
-               {.name = widget(address),
-                .value = value,
-                .unit = unit,
-                .help = help,
-                .least = least,
-                .address = "joints." + joint.name + "." + address,
-                .law = law},
-               reset);
-  }
-  // Of an expression of the state the value that it has there, where that is known; else the expression
-  // stands in its place.
-  void number_or_law(const std::string& label, const std::string& address, const Formula* law,
-                     const std::optional<double>& in_state, double value, const std::string& unit,
-                     const char* help) const {
-    number(label, address, law && in_state ? *in_state : value, unit, help,
-           law && !in_state ? law->text : std::string());
-  }
-
-  // What the drive gives in the steady state that is shown.
-  std::optional<DriveTorque::Given> given() const {
-    if (!converged(session)) return std::nullopt;
-    for (const DriveTorque& each : session.answer.solution.drive_torques)
-      if (each.joint == joint.name && each.index == i) return told_torque(session.answer.solution, each);
-    return std::nullopt;
   }
 
   // Always in its place, so that nothing below it moves with what is ticked there or found meanwhile.
@@ -205,70 +119,11 @@ struct CoordinateRows {
 
   void drive() const {
     const bool on = all_have(is_driven);
-    if (check_row(ui, widget(key("drive")), "Drive", on, "Moves the coordinate at a constant speed.",
-                  on ? nullptr : refused_of_any(&CoordinateRows::no_drive), !on && some_have(is_driven)))
+    if (check_row(ui, widget(key("drive")), "Drive", on,
+                  "Moves the coordinate: at a speed that is prescribed, by a torque or force, or with its "
+                  "momentum kept.",
+                  on ? nullptr : refused_of_any(no_drive), !on && some_have(is_driven)))
       set_driven(session, ui, joint.name, i, !on);
-  }
-
-  void drive_numbers() const {
-    if (!all_have(is_driven)) return;
-    const Drive& drive = *coordinate().drive;
-    by_torque(drive.torque.has_value());
-    if (!drive.torque) left_to_itself(drive.keeps == DriveKeeps::momentum);
-    const std::string unit = angle() ? "N m" : "N";
-    if (drive.torque) {
-      const std::optional<DriveTorque::Given> now = given();
-      number_or_law(
-          angle() ? "Torque" : "Force", key("drive") + ".torque",
-          drive_law(session.mechanism(), joint, i, "torque"), now ? std::optional(now->torque) : std::nullopt,
-          *drive.torque, unit,
-          "What the drive gives along the coordinate: a number, or an expression of the state such as "
-          "=7500 N*(coordinate(slide) - 0.15 m) or =20 N m - 2 N m s*rate(spin), of which the value in "
-          "the steady state is shown.");
-      number_or_law("Load", key("drive") + ".load", drive_law(session.mechanism(), joint, i, "load"),
-                    now ? std::optional(now->load) : std::nullopt, drive.load.value_or(0), unit,
-                    "What acts against it; likewise.");
-    }
-    number(drive.torque         ? "Search from"
-           : finds_speed(drive) ? "Drawn speed"
-                                : "Speed",
-           key("drive") + ".speed", drive.speed, value_unit() + "/s",
-           drive.torque ? "Where the search for the steady speed begins."
-           : finds_speed(drive)
-               ? "Makes, in the drawn pose, the momentum that is kept; the steady speed is found."
-               : "The constant speed of the coordinate; right-handed about or along the axis.");
-  }
-
-  // Whether the drive gives a torque rather than a speed.
-  void by_torque(bool on) const {
-    if (!check_row(ui, widget(key("drive") + ".by_torque"), angle() ? "By torque" : "By force", on,
-                   angle() ? "The drive gives a torque, and the speed is found."
-                           : "The drive gives a force, and the speed is found.",
-                   nullptr))
-      return;
-    change((on ? "Prescribe the speed of " : "Find the speed of ") + joint.name, [on](Coordinate& c) {
-      if (!c.drive || c.drive->torque.has_value() != on) return;
-      c.drive->torque = on ? std::nullopt : std::optional(0.);
-      c.drive->load = c.drive->torque;
-      c.drive->keeps = DriveKeeps::speed;
-      if (on && c.friction) c.friction->share = 0;
-    });
-  }
-
-  // Whether the drive keeps its momentum rather than its speed.
-  void left_to_itself(bool on) const {
-    if (!check_row(
-            ui, widget(key("drive") + ".keeps"), "Keeps momentum", on,
-            "Nothing drives it any more: it keeps the momentum that the speed makes in the drawn pose, "
-            "and the steady speed is found.",
-            on                        ? nullptr
-            : is_damped(coordinate()) ? "Not beside a damper, which would take the momentum."
-            : some_have(has_friction) ? "Not beside friction, which would take the momentum."
-                                      : nullptr))
-      return;
-    change((on ? "Prescribe the speed of " : "Keep the momentum of ") + joint.name, [on](Coordinate& c) {
-      if (c.drive) c.drive->keeps = on ? DriveKeeps::speed : DriveKeeps::momentum;
-    });
   }
 
   // Why nothing that has to settle may act on it; null where it may.
@@ -277,10 +132,11 @@ struct CoordinateRows {
   static bool has_stop(const Coordinate& c) { return c.stop.has_value(); }
   static bool has_friction(const Coordinate& c) { return c.friction.has_value(); }
 
-  const char* no_drive() const { return drive_refused(joint, i); }
-  const char* driven() const {
-    if (coordinate().drive) return "Not on a driven coordinate: its torque or force would never settle.";
-    const CoordinateSolution* found = solution();
+  static const char* no_drive(const CoordinateRows& rows) { return drive_refused(rows.joint, rows.i); }
+  static const char* driven(const CoordinateRows& rows) {
+    if (is_driven(rows.coordinate()))
+      return "Not on a driven coordinate: its torque or force would never settle.";
+    const CoordinateSolution* found = rows.solution();
     if (!found || !found->driven) return nullptr;
     return found->speed
                ? "Not on a coordinate that goes on at a constant rate: its torque or force would never "
@@ -290,7 +146,7 @@ struct CoordinateRows {
 
   void spring() const {
     tick(
-        "spring", "Spring", "spring", has_spring, "Pulls the coordinate to a value.", &CoordinateRows::driven,
+        "spring", "Spring", "spring", has_spring, "Pulls the coordinate to a value.", driven,
         [](Coordinate& c) { c.spring.reset(); },
         [stiffness = beginning().stiffness](Coordinate& c) {
           c.spring.emplace();
@@ -321,16 +177,16 @@ struct CoordinateRows {
                         : "The coordinate's value at which the spring exerts nothing.");
   }
 
-  const char* no_damper() const {
-    return coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum
-               ? "Not on what keeps its momentum: it would take it."
-               : nullptr;
+  static const char* no_damper(const CoordinateRows& rows) {
+    const std::optional<Drive>& drive = rows.coordinate().drive;
+    return drive && drive->keeps == DriveKeeps::momentum ? "Not on what keeps its momentum: it would take it."
+                                                         : nullptr;
   }
 
   void damper() const {
     tick(
         "damper", "Damper", "damper", [](const Coordinate& c) { return is_damped(c); },
-        "Resists the coordinate's motion; the steady state is the same.", &CoordinateRows::no_damper,
+        "Resists the coordinate's motion; the steady state is the same.", no_damper,
         [](Coordinate& c) {
           c.damping = 0;
           c.damping_force.reset();
@@ -378,35 +234,43 @@ struct CoordinateRows {
     help_on_hover("A limit on this side too.");
   }
 
+  // How far from the drawn value a new limit is: a quarter of the mechanism, or about 30 degrees, and round
+  // as it is shown.
+  double stop_reach() const {
+    if (angle()) return session.units.angle == AngleUnit::degree ? std::numbers::pi / 6 : 0.5;
+    const ShownUnit unit = shown_unit("m", session.units);
+    return unit.si(nearest_step(unit.shown(drawn_size(session.mechanism()) / 4)));
+  }
+
   void stop() const {
-    const Beginning& b = beginning();
     tick(
-        "stop", "Stop", "stop", has_stop, "A stiff one-sided spring that acts beyond a limit.",
-        &CoordinateRows::driven, [](Coordinate& c) { c.stop.reset(); },
-        [b](Coordinate& c) {
+        "stop", "Stop", "stop", has_stop, "A stiff one-sided spring that acts beyond a limit.", driven,
+        [](Coordinate& c) { c.stop.reset(); },
+        [reach = stop_reach(), stiffness = beginning().stop_stiffness](Coordinate& c) {
           c.stop.emplace();
-          c.stop->lower = c.drawn - b.stop_reach;
-          c.stop->upper = c.drawn + b.stop_reach;
-          c.stop->stiffness = b.stop_stiffness;
+          c.stop->lower = c.drawn - reach;
+          c.stop->upper = c.drawn + reach;
+          c.stop->stiffness = stiffness;
         });
   }
 
   void stop_numbers() const {
     if (!all_have(has_stop)) return;
-    const Beginning& b = beginning();
-    limit("Stop from", "lower", coordinate().stop->lower, &Stop::lower, -b.stop_reach);
-    limit("Stop to", "upper", coordinate().stop->upper, &Stop::upper, b.stop_reach);
+    limit("Stop from", "lower", coordinate().stop->lower, &Stop::lower, -stop_reach());
+    limit("Stop to", "upper", coordinate().stop->upper, &Stop::upper, stop_reach());
     number("Stop stiffness", key("stop") + ".stiffness", coordinate().stop->stiffness, stiffness_unit(),
            "How hard the stop pushes back beyond its limits.", Least::above_zero);
   }
 
   // Why this coordinate can have none; null where it may.
-  const char* friction_refused() const {
-    if (coordinate().drive && coordinate().drive->keeps == DriveKeeps::momentum)
+  static const char* friction_refused(const CoordinateRows& rows) {
+    const std::optional<Drive>& drive = rows.coordinate().drive;
+    const JointType type = rows.joint.type;
+    if (drive && drive->keeps == DriveKeeps::momentum)
       return "Not where momentum is kept: friction takes it away.";
-    if (is_rotation_vector(joint.type, i) || joint.type == JointType::free)
+    if (is_rotation_vector(type, rows.i) || type == JointType::free)
       return "Its coordinates do not slip one by one; use revolute and prismatic joints.";
-    if (joint.type == JointType::planar && !angle())
+    if (type == JointType::planar && !rows.angle())
       return "In a plane friction acts against the direction of slip, not along x and y each.";
     return nullptr;
   }
@@ -416,7 +280,7 @@ struct CoordinateRows {
         "friction", "Friction", "friction", has_friction,
         "Dry friction: holds the coordinate at rest up to a limit, so that the steady state is a band; at a "
         "given speed it loads the drive.",
-        &CoordinateRows::friction_refused, [](Coordinate& c) { c.friction.reset(); },
+        friction_refused, [](Coordinate& c) { c.friction.reset(); },
         [limit = beginning().friction](Coordinate& c) { c.friction.emplace().limit = limit; });
   }
 
@@ -480,7 +344,7 @@ struct CoordinateRows {
     stop();
     beside_last("Friction");
     friction();
-    drive_numbers();
+    if (all_have(is_driven)) drive_rows(*this);
     spring_numbers();
     damper_numbers();
     stop_numbers();
@@ -503,7 +367,7 @@ void coordinate_sections(Session& session, Ui& ui, const Joint& joint) {
           others, [&](const Joint* each) { return each->coordinates.size() != joint.coordinates.size(); }))
     return;
   for (int i = 0; i < count; ++i) {
-    const CoordinateRows rows{session, ui, joint, i, others};
+    const CoordinateSection rows{{session, ui, joint, i, others}};
     const std::string section = "inspector/coordinate " + std::to_string(i);
     if (inspector_section(session, ui, section, coordinate_title(joint.type, i),
                           count <= 2 || rows.acted_on()))

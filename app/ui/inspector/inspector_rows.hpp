@@ -57,6 +57,15 @@ void text_row(Session& session, Ui& ui, const std::string& name, const std::stri
 std::optional<std::size_t> choice_row(Ui& ui, const std::string& name, const std::string& label,
                                       std::span<const std::string_view> options, std::size_t chosen,
                                       const char* help, bool various = false);
+// One of a few words that stand side by side; the new one where another was chosen. None is lit where
+// the parts have various ones.
+struct SideOption {
+  const char *name, *title, *help; // `name` of the widget, after the row's
+  const char* refused = nullptr;   // why it cannot be chosen
+};
+std::optional<std::size_t> side_by_side_row(Ui& ui, const std::string& name, const std::string& label,
+                                            std::span<const SideOption> options,
+                                            std::optional<std::size_t> chosen, const char* help);
 // One of many names, searchable where there are very many.
 std::optional<std::string> name_choice_row(Ui& ui, const std::string& name, const std::string& label,
                                            std::span<const std::string> options, const std::string& chosen,

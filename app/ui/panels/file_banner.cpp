@@ -73,14 +73,18 @@ void file_banner(Session& session, Ui& ui, DialogState& dialog, ReportExport& re
   const bool writing = writing_report(report) && report.task->seconds() > patience;
   if (dialog.showing || (!both_changed && !writing && session.files.aside.empty())) return;
   const float s = ui.scale;
-  // Beside the legend where that leaves room enough: words take lines, a bar and its button do not.
+  // Beside the legend and the tools where they leave room enough: words take lines, a bar and its button do
+  // not.
   const float room = (both_changed ? 240 : 470) * s;
-  float right = view.x + view.width;
+  float left = view.x, right = view.x + view.width;
   if (const auto legend = ui.widgets.find("legend frame");
-      legend != ui.widgets.end() && legend->second.from.x > view.x + room)
+      legend != ui.widgets.end() && legend->second.from.x > left + room)
     right = legend->second.from.x + 4 * s;
-  ImGui::SetNextWindowPos({std::round((view.x + right) / 2), view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
-  if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, right - view.x - 24 * s), 0});
+  if (const auto tools = ui.widgets.find("tool strip");
+      tools != ui.widgets.end() && tools->second.to.x + room < right)
+    left = tools->second.to.x - 4 * s;
+  ImGui::SetNextWindowPos({std::round((left + right) / 2), view.y + 12 * s}, ImGuiCond_Always, {0.5f, 0});
+  if (both_changed) ImGui::SetNextWindowSize({std::min(460 * s, right - left - 24 * s), 0});
   begin_card("file banner", s, ImGui::GetStyle().WindowPadding, ImGuiWindowFlags_NoFocusOnAppearing);
   if (both_changed)
     conflict(session, ui, commands);

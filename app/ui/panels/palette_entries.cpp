@@ -59,7 +59,7 @@ void read_mechanism(const Session& session, PaletteIndex& index) {
   for (const std::string& address : parameter_addresses(mechanism)) {
     PaletteEntry entry;
     entry.name = "number/" + address;
-    entry.title = parameter_phrase(address);
+    entry.title = number_phrase(mechanism, address);
     entry.more = words_of_address(address);
     entry.address = address;
     index.entries.push_back(std::move(entry));

@@ -189,8 +189,15 @@ void parameter(Session& session, Ui& ui, ShownRates& rates, const ParameterContr
   }
   ImGui::SetCursorPosX(start + value_at);
   std::string help = "Click to type a number, with a unit if you like.";
-  if (is_drawn_speed(session.mechanism(), control.address))
+  switch (speed_kind(session.mechanism(), control.address)) {
+  case SpeedKind::prescribed: break;
+  case SpeedKind::drawn:
     help = "In the drawn pose it makes the momentum that is kept; the steady speed is found. " + help;
+    break;
+  case SpeedKind::guessed:
+    help = "Where the search for the steady speed begins, which the torque determines. " + help;
+    break;
+  }
   quantity_field(session, ui,
                  {.name = value_name,
                   .value = control.value,

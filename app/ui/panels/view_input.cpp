@@ -3,6 +3,7 @@
 #include "app/ui/camera_glide.hpp"
 #include "app/ui/tools/tools.hpp"
 #include "app/ui/view_state.hpp"
+#include "app/ui/widgets/card.hpp"
 
 #include <cmath>
 
@@ -48,6 +49,12 @@ void drag_camera(ViewState& view, const ViewInput& input, CameraDrag drag, Vec2 
   if (drag == CameraDrag::zoom) camera.zoom(std::pow(zoom_by_pixel, -by.y() / input.point), from, input.size);
 }
 
+// What lies over the view and has nothing to scroll leaves the wheel to it.
+bool on_still_card(const ViewInput& input) {
+  return input.cursor.x() >= 0 && input.cursor.x() < input.size.width && input.cursor.y() >= 0 &&
+         input.cursor.y() < input.size.height && points_at_still_card();
+}
+
 } // namespace
 
 void steer(const ToolState& tool, ViewState& view, const ViewInput& input) {
@@ -67,11 +74,11 @@ void steer(const ToolState& tool, ViewState& view, const ViewInput& input) {
       break;
     }
   }
-  if (!input.hovered) return;
-  if (io.MouseWheel != 0 && !tool.pull) {
+  if (io.MouseWheel != 0 && !tool.pull && (input.hovered || on_still_card(input))) {
     stop_glide(view);
     view.camera.zoom(std::pow(zoom_step, static_cast<double>(io.MouseWheel)), input.cursor, input.size);
   }
+  if (!input.hovered) return;
   const bool on_handle = tool.hovered != Handle::none || tool.hovered_point || !tool.hovered_name.empty();
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && view.hovered.kind == PartKind::none &&
       !on_handle && !places(tool.tool) &&

@@ -55,8 +55,10 @@ void welcome(const Session& session, Ui& ui, const ToolState& tool, const Dialog
     ImGui::SetNextWindowPos({left, middle}, ImGuiCond_Always, {0, 0.5f});
     ImGui::SetNextWindowSize({right - left, 0});
   } else {
-    ImGui::SetNextWindowPos({view.x + view.width / 2, middle}, ImGuiCond_Always, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize({std::min(430 * s, view.width - 90 * s), 0});
+    const float width = std::min({430 * s, view.width - 90 * s, right - left});
+    ImGui::SetNextWindowPos({std::max(view.x + (view.width - width) / 2, left), middle}, ImGuiCond_Always,
+                            {0, 0.5f});
+    ImGui::SetNextWindowSize({width, 0});
   }
   begin_card("welcome", s, narrow ? ImVec2(12 * s, 10 * s) : ImVec2(20 * s, 16 * s));
   heading(ui, "Build a mechanism");

@@ -35,21 +35,6 @@ constexpr std::array types{
     TypeChoice{JointType::free, "Free", "Holds nothing: places the child beside the parent."},
 };
 
-// A word of several, of which one is lit.
-bool choice(Ui& ui, const std::string& name, const char* text, bool on, const char* help, float width = 0) {
-  const UiColors& colors = colors_of(ui);
-  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
-  ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
-  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
-  ImGui::PushID(name.c_str());
-  const bool pressed = ImGui::Button(text, {width, 0});
-  ImGui::PopID();
-  ImGui::PopStyleColor(3);
-  note_widget(ui.widgets, name);
-  help_on_hover(help);
-  return pressed;
-}
-
 // The next button beside the last one, or below it where there is no room.
 void wrap(float width) {
   const float room = ImGui::GetWindowContentRegionMax().x + ImGui::GetWindowPos().x;
@@ -149,7 +134,7 @@ void type_rows(const Session& session, Ui& ui, ToolState& tool, const ViewInput&
     if (i % 2) ImGui::SameLine(0, gap);
     const TypeChoice& type = types[i];
     const std::string name = "tools/type/" + std::string(type_name(type.type));
-    if (!choice(ui, name, type.title, tool.joint_type == type.type, type.help, width)) continue;
+    if (!option_button(ui, name, type.title, tool.joint_type == type.type, type.help, width)) continue;
     tool.joint_type = type.type;
     tool.type_aside.reset();
     offer_axis(session, tool, input);
@@ -162,7 +147,7 @@ void axis_rows(Session& session, Ui& ui, ToolState& tool, const ViewInput& input
   const auto offer = [&](const std::string& id, const std::string& label, const Vec3& axis,
                          const char* help) {
     const bool on = !draft.picking_axis && same_direction(axis, draft.axis);
-    if (choice(ui, "tools/axis/" + id, label.c_str(), on, help)) set_axis(tool, axis);
+    if (option_button(ui, "tools/axis/" + id, label.c_str(), on, help)) set_axis(tool, axis);
   };
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4 * ui.scale, 4 * ui.scale});
   ImGui::AlignTextToFramePadding();
@@ -181,8 +166,8 @@ void axis_rows(Session& session, Ui& ui, ToolState& tool, const ViewInput& input
   }
   constexpr const char* two_points = "Two points…";
   wrap(button_width(two_points));
-  if (choice(ui, "tools/axis/points", two_points, draft.picking_axis,
-             "Click two points that it goes through.")) {
+  if (option_button(ui, "tools/axis/points", two_points, draft.picking_axis,
+                    "Click two points that it goes through.")) {
     draft.picking_axis = !draft.picking_axis;
     draft.axis_from.reset();
   }
@@ -205,8 +190,9 @@ void second_axis_row(Ui& ui, ToolState& tool) {
     const Vec3 across = (unit - draft.axis * draft.axis.dot(unit) / draft.axis.squaredNorm()).normalized();
     const auto k = static_cast<std::size_t>(i);
     ImGui::SameLine(0, 4 * ui.scale);
-    if (!choice(ui, std::string("tools/axis2/") + ids[k], letters[k], same_direction(across, draft.axis2),
-                "As near to the world axis as it can be, across the first."))
+    if (!option_button(ui, std::string("tools/axis2/") + ids[k], letters[k],
+                       same_direction(across, draft.axis2),
+                       "As near to the world axis as it can be, across the first."))
       continue;
     draft.axis2 = across;
     draft.axis2_chosen = true;
@@ -285,6 +271,10 @@ void place_card(const ViewContext& context, const ViewInput& input, ImVec2 size)
   for (const ImVec2 place : {below, ImVec2(other, from.y), ImVec2(std::max(least, most), foot),
                              ImVec2(std::max(least, most), top), ImVec2(least, foot), ImVec2(least, top)})
     if (hidden(place) < 0.8f * hidden(from)) from = place;
+  // Where a small view leaves the point no place: rather over the panel beside it.
+  const float ring = 8 * s, farthest = ImGui::GetIO().DisplaySize.x - size.x - edge;
+  const PanelRect drawn{at.x - ring, at.y - ring, 2 * ring, 2 * ring};
+  if (common_area(drawn, from, size) > 0 && right <= farthest) from = {right, from.y};
   ImGui::SetNextWindowPos({std::round(from.x), std::round(from.y)});
 }
 

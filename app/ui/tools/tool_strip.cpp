@@ -88,7 +88,7 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
   ImGui::SetNextWindowPos({std::round(view.x + 10 * s), std::round(view.y + top * s)});
   begin_chip("tools", s, 6, {strip_pad * s, strip_pad * s});
   const ImVec2 origin = ImGui::GetCursorScreenPos();
-  float x = 0, y = 0;
+  float x = 0, y = 0, tallest = 0;
   const auto place = [&](bool separated) {
     const float gap = separated && y > 0 ? group_gap : 0;
     if (y + gap + button_side + 2 * strip_pad > room) {
@@ -103,6 +103,7 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
     }
     ImGui::SetCursorScreenPos({origin.x + x * s, origin.y + y * s});
     y += button_side;
+    tallest = std::max(tallest, y);
   };
   for (const ToolButton& button : buttons) {
     place(button.separated);
@@ -116,8 +117,10 @@ void tool_strip(Session& session, Ui& ui, ToolState& tool, const PanelRect& view
   place(true);
   if (glyph_button(ui, "tools/snap", tool.snap, draw_magnet_glyph)) tool.snap = !tool.snap;
   tell(ui, "view.snap");
-  const ImVec2 from = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-  ui.widgets["tool strip"] = {from, {from.x + size.x, from.y + size.y}};
+  // In its first frame the window is not yet as large as what is in it.
+  const float pad = strip_pad * s;
+  ui.widgets["tool strip"] = {ImGui::GetWindowPos(),
+                              {origin.x + (x + button_side) * s + pad, origin.y + tallest * s + pad}};
   ImGui::End();
 }
 

@@ -200,6 +200,15 @@ const char* asked_before_writing(Ui& ui, const FileQuery& query, const fs::path&
 bool may_write_to(const Session& session, FileQuery& query, const fs::path& file) {
   std::error_code failed;
   const bool asked = file == query.asked, folder = is_folder(file.parent_path());
+  if (folder && file != session.document.file()) {
+    const fs::path target = fs::weakly_canonical(file, failed); // through links
+    if (const std::error_code refusal = write_refusal((failed ? file : target).parent_path())) {
+      query.message =
+          "Nothing can be written into " + file.parent_path().string() + ": " + refusal.message() + ".";
+      query.asked.clear();
+      return false;
+    }
+  }
   if (folder && (asked || !fs::exists(file, failed) || file == session.document.file())) return true;
   if (!asked) {
     query.asked = file;

@@ -83,6 +83,21 @@ bool text_button(Ui& ui, const std::string& name, const char* text, bool primary
   return pressed;
 }
 
+bool option_button(Ui& ui, const std::string& name, const char* text, bool on, const char* help, float width,
+                   KeyUse use) {
+  const UiColors& colors = colors_of(ui);
+  ImGui::PushStyleColor(ImGuiCol_Text, on ? colors.on_accent : colors.text);
+  ImGui::PushStyleColor(ImGuiCol_Button, on ? colors.accent : colors.raised);
+  ImGui::PushStyleColor(ImGuiCol_ButtonHovered, on ? colors.accent : colors.border);
+  ImGui::PushID(name.c_str());
+  const bool pressed = ImGui::Button(text, {width, 0});
+  ImGui::PopID();
+  ImGui::PopStyleColor(3);
+  note_widget(ui.widgets, name, use);
+  help_on_hover(help);
+  return pressed;
+}
+
 void heading(Ui& ui, const char* text) {
   ImGui::Dummy({0, 2 * ui.scale});
   text_in(ui.fonts.strong, colors_of(ui).text, text);

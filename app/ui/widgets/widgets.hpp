@@ -22,6 +22,9 @@ inline ImU32 packed(const ImVec4& color) {
 bool icon_button(Ui& ui, const std::string& name, const char* icon, const char* help, bool on = false);
 // A button of words; `primary` is the one that Enter means.
 bool text_button(Ui& ui, const std::string& name, const char* text, bool primary = false);
+// A word of several, of which one is lit; 0: as wide as the word needs.
+bool option_button(Ui& ui, const std::string& name, const char* text, bool on, const char* help,
+                   float width = 0, KeyUse use = KeyUse::press);
 
 // What a panel's part is called.
 void heading(Ui& ui, const char* text);

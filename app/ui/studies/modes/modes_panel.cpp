@@ -201,7 +201,7 @@ std::string largest_movement(const Session& session, const VibrationMode& mode) 
 std::string slowing_words(const VibrationMode& mode) {
   const std::optional<double> slower = shown_slower(mode);
   if (!slower) return "Shown swaying: no swing";
-  if (*slower == 1) return "As fast as it is";
+  if (*slower == 1) return "In real time";
   return "Shown " + short_text(*slower > 1 ? *slower : 1 / *slower, 3) +
          (*slower > 1 ? "× slower" : "× faster");
 }

@@ -338,14 +338,14 @@ void solution_row(Session& session, Ui& ui, const DesignRequest& of, const Share
   const char* kind = !s.at.stable ? "undecided" : *s.at.stable ? "stable" : "unstable";
   const ImVec4& color = !s.at.stable ? colors.dim : *s.at.stable ? colors.good : colors.warn;
   const std::string words =
-      shared.poses == 1 ? kind : std::to_string(shared.poses) + " poses, " + std::string(kind);
+      shared.poses == 1 ? kind : std::string(kind) + " in " + std::to_string(shared.poses) + " poses";
   list.AddText({from.x + width - 8 * s1 - ImGui::CalcTextSize(words.c_str()).x, y}, packed(color),
                words.c_str());
   list.PopClipRect();
-  std::string help = shared.poses == 1
-                         ? "Click to go there."
-                         : "Several poses, mirrored ones for instance, have it: a click goes to the one that "
-                           "is nearest to the present one.";
+  std::string help =
+      shared.poses == 1 ? "Click to go there."
+                        : "So many poses of the mechanism, mirrored ones for instance, are as wanted at this "
+                          "number: a click goes to the one that is nearest to the present one.";
   help += "\nError estimate " + magnitude_text(s.parameter_error * parameter.factor, numbers) + " " + unit +
           ", " + std::to_string(s.iterations) + " iterations.";
   if (s.rate) {

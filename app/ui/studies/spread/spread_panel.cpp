@@ -136,6 +136,14 @@ void samples_field(Session& session, Ui& ui) {
                  width);
 }
 
+void copy_samples_button(Session& session, Ui& ui, const char* text, bool stale) {
+  if (!text_button(ui, "spread/copy", text)) return;
+  const auto& found = *session.study.spread.samples.found;
+  ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
+  session.notice = stale ? "The samples, which are out of date, are on the clipboard, as CSV."
+                         : "The samples are on the clipboard, as CSV.";
+}
+
 // What is done with the samples, or how far they are, or that they are of other numbers by now: on top, in
 // sight however many tolerances there are.
 void spread_samples_line(Session& session, Ui& ui) {
@@ -155,13 +163,12 @@ void spread_samples_line(Session& session, Ui& ui) {
       ImGui::AlignTextToFramePadding();
       ImGui::TextColored(colors_of(ui).warn, "Out of date");
       note_widget(ui.widgets, "spread/stale", KeyUse::none);
+      ImGui::SameLine();
+      copy_samples_button(session, ui, "Copy", true);
+      help_on_hover("Copies the samples as they are, of the numbers that stood when they were made.");
     }
   } else if (state.samples.found) {
-    if (text_button(ui, "spread/copy", "Copy the samples")) {
-      const auto& found = *state.samples.found;
-      ImGui::SetClipboardText(spread_csv(found.result, found.of.tolerances, found.of.seed).c_str());
-      session.notice = "The samples are on the clipboard, as CSV.";
-    }
+    copy_samples_button(session, ui, "Copy the samples", false);
     ImGui::SameLine();
     if (text_button(ui, "spread/band", "Band on the response"))
       later(ui, [&session] {
