@@ -112,8 +112,11 @@ class BandAbout {
         return band;
       }
     if (FrictionBand placed = by_places(box); placed.found) return placed;
-    return no_band("Within the limits of friction the balance folds: beyond that the band" +
-                   std::string(shares_.size() > 1 ? " of several joints" : "") + " is not followed.");
+    FrictionBand none =
+        no_band("Within the limits of friction the balance folds: beyond that the band" +
+                std::string(shares_.size() > 1 ? " of several joints" : "") + " is not followed.");
+    none.whole = false;
+    return none;
   }
 
  private:

@@ -51,8 +51,9 @@ FrictionBand tell(const Mechanism& mechanism, const std::vector<std::string>& na
   band.whole = false;
   band.folds = true;
   band.message = "It is the band by where the joints with friction stand";
+  band.at_least = several && !ends.all_explored();
   if (several) band.message += "; each extent is an extremum nearby";
-  if (several && !ends.all_explored()) band.message += ", and it may go farther";
+  if (band.at_least) band.message += ", and it may go farther";
   band.message += ".";
   if (!round.empty())
     band.message += " Friction holds it at any angle: " + word_list(round, "and") + " can go round.";
