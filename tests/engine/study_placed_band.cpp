@@ -346,7 +346,7 @@ TEST_CASE("what torques give against each other on brakes that gears tie is held
       {"name": "bob", "mass": 1, "position": [0.1, -0.5, 0]}],
     "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
         "drive": {"torque": "=2 N m + )json" +
-                                 number_text(20 + left * 60) +
+                                 number_text(20 - left * 60) +
                                  R"json( N m/rad*coordinate(swing) - 0.4 N m s*rate(spin)", "speed": 5},
         "friction": {"limit": 1.2}},
       {"name": "pc", "type": "revolute", "bodies": ["ground", "c"], "at": [0.3, 0, 0], "axis": [0, 1, 0],
