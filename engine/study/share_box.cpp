@@ -99,8 +99,14 @@ ShareBox::Place ShareBox::climb(Index output, double sense, double& left) {
   left = 0;
   if (first().state.p.size() == 1) return highest_along(output, sense);
   Place at = best_known(output, sense);
-  // What rises to one corner may be higher beside another, so that one sweep is made from each.
+  // What rises to one corner may be higher beside another, so that one sweep is made from each from which
+  // rates lead higher.
   for (Place other : std::vector<Place>(posts_)) {
+    double led = sense * other.state.values[output];
+    for (Index j = 0; j < other.state.p.size(); ++j)
+      if (const double rate = sense * other.rates(output, j); rate != 0)
+        led += std::abs(rate) * ((rate > 0 ? 1 : -1) - other.state.p[j]) * (rate > 0 ? 1 : -1);
+    if (!(led > sense * at.state.values[output])) continue;
     sweep(output, sense, other);
     if (sense * (other.state.values[output] - at.state.values[output]) > 0) at = std::move(other);
   }
