@@ -143,7 +143,8 @@ const ShareBox::Way& ShareBox::go(const Place& from, const VectorXd& p) {
 
 // Ways that lead to other states of the same shares have a fold between them.
 void ShareBox::add(const Place& place) {
-  const auto known = std::ranges::find(places_, place.state.p, [](const Place& at) { return at.state.p; });
+  const auto known =
+      std::ranges::find_if(places_, [&](const Place& at) { return at.state.p == place.state.p; });
   if (known == places_.end())
     places_.push_back(place);
   else if (differ(*known, place))

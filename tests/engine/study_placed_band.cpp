@@ -135,9 +135,11 @@ TEST_CASE(
   CHECK_THAT(extent_in(both, "h").high, WithinAbs(0.101, 1e-12));
   CHECK_THAT(extent_in(both, "k").low, WithinAbs(-0.206, 1e-12));
   // Without friction of its own it stands anywhere, whatever friction does elsewhere.
-  const FrictionBand loose = band_of(two_hinges(rubs(0.1), plays(0.1, 100), 0));
-  CHECK_FALSE(loose.found);
-  CHECK(loose.message == "No band is told: nothing resists k, whatever friction does.");
+  for (const std::string& none : {std::string(), rubs(0)}) {
+    const FrictionBand loose = band_of(two_hinges(rubs(0.1), plays(0.1, 100) + none, 0));
+    CHECK_FALSE(loose.found);
+    CHECK(loose.message == "No band is told: nothing resists k, whatever friction does.");
+  }
 }
 
 TEST_CASE("random hinges with springs and play have the band that places tell", "[placed-band]") {
