@@ -103,8 +103,11 @@ Json diagram_json(const ResponseDiagram& d, const Ribbons& ribbons, const HopfPo
     Json points = Json::array();
     for (const ResponsePoint& p : b.points)
       points.push_back(point_json(p));
-    for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i)
+    for (std::size_t i = 0; k < ribbons.size() && i < ribbons[k].size(); ++i) {
       points[i]["band"] = band_json(ribbons[k][i]);
+      if (ribbons[k][i].extents.empty() && !ribbons[k][i].message.empty())
+        points[i]["band_message"] = ribbons[k][i].message;
+    }
     if (k < ribbons.size()) add_slow_changes(ribbons[k], points);
     out["branches"].push_back(
         {{"points", std::move(points)}, {"connected", b.connected}, {"begin", b.begin}, {"end", b.end}});

@@ -16,8 +16,8 @@ namespace flyball::cli {
 // Of each branch, where there is friction.
 using Ribbons = std::vector<std::vector<RibbonPoint>>;
 
-// Without its run time. With ribbons points have a "band": {name: [low, high]}; special points of which
-// `hunting` tells have that as "hunting".
+// Without its run time. With ribbons points have a "band": {name: [low, high]}, and where there is none a
+// "band_message"; special points of which `hunting` tells have that as "hunting".
 nlohmann::ordered_json diagram_json(const ResponseDiagram& diagram, const Ribbons& ribbons,
                                     const HopfPoints& hunting);
 // Of each the points from beside a fold outwards: {`parameter`, `band`}.

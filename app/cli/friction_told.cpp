@@ -39,6 +39,7 @@ Json to_json(const FrictionBand& band) {
     out["band_error_estimate"][extent.name] = or_null(extent.error);
   out["band_whole"] = band.whole;
   out["band_folds"] = band.folds;
+  out["band_at_least"] = band.at_least;
   out["band_message"] = band.message;
   return out;
 }
@@ -66,8 +67,8 @@ Json to_json(const FrictionReport& f) {
 std::string band_lines(const FrictionBand& band) {
   std::string out;
   for (const BandExtent& extent : band.extents)
-    out += fmt::format("\n   friction holds {} from {} to {} {}", printable(extent.name), bound(extent.low),
-                       bound(extent.high), extent.unit);
+    out += fmt::format("\n   friction holds {} {}from {} to {} {}", printable(extent.name),
+                       band.at_least ? "at least " : "", bound(extent.low), bound(extent.high), extent.unit);
   if (!band.message.empty())
     out += (band.found ? "\n   " : "\n   its band of friction is not found: ") + printable(band.message);
   return out;
@@ -79,7 +80,8 @@ std::string to_text(const FrictionReport& f) {
     width = std::max(width, extent.name.size());
   for (const HeldJoint& joint : f.drawn.joints)
     width = std::max(width, coordinate_label(joint).size());
-  std::string out = "\nband within which friction holds it\n";
+  std::string out =
+      "\nband within which friction holds it" + std::string(f.band.at_least ? ", at least" : "") + "\n";
   for (const BandExtent& extent : f.band.extents)
     out += fmt::format("  {:{}}  {:>18} to {:<18} {}{}\n", printable(extent.name), width, bound(extent.low),
                        bound(extent.high), extent.unit,

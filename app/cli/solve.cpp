@@ -36,7 +36,7 @@ std::vector<std::optional<FrictionBand>> bands_of(const Mechanism& mechanism, co
     report_progress(progress, "friction", static_cast<double>(i) / static_cast<double>(out.size()));
     const Solution& state = all.equilibria[i];
     if (state.frictions.empty())
-      out[i] = find_friction_band(mechanism, {.start = start_values(state.coordinates), .past_folds = false});
+      out[i] = find_friction_band(mechanism, {.start = start_values(state.coordinates)});
   }
   return out;
 }

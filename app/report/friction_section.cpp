@@ -27,7 +27,8 @@ Html band_table(const FrictionBand& band) {
   }
   return heading_of("The band within which it stands") +
          paragraph_of("At rest friction gives whatever holds, up to its limits: the steady state may stand "
-                      "anywhere between these values.") +
+                      "anywhere between these values" +
+                      std::string(band.at_least ? ", and perhaps beyond." : ".")) +
          table.html();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace flyball {
@@ -27,7 +28,13 @@ void Simulator::State::settle_frictions(double t, Eigen::VectorXd u, Turned turn
     else
       u[v] = 0;
   }
-  for (std::size_t tries = 0; tries <= 3 * frictions.size(); ++tries) {
+  // Which of those at rest begin to slip is a linear complementarity problem: one is changed at a time, of
+  // one that takes more than its limit or that would go against the way it slips. By the least number, after
+  // others, it comes to an end (Murty's principal pivoting).
+  std::vector<bool> begins(frictions.size(), false);
+  const std::size_t most_tries = 12 * frictions.size();
+  for (std::size_t tries = 0;; ++tries) {
+    if (tries > most_tries) throw SceneError("", "which joints with friction begin to slip is not found");
     FrictionModes modes = with_modes(*free, frictions, slips, q, coming, rate_scale);
     undecided = std::move(modes.at_dead_points);
     equations.reset();
@@ -39,21 +46,32 @@ void Simulator::State::settle_frictions(double t, Eigen::VectorXd u, Turned turn
       throw SceneError("", "the equations of motion have no solution where friction sticks: " +
                                equations->unsolved());
     if (leave_dead_points(t)) continue;
+    const bool in_order = tries > 3 * frictions.size();
     const FrictionHold* worst = nullptr;
     double most = slipping_by;
     for (const FrictionHold& hold : holds) {
       const double force = force_of(hold);
       const double part = force > 0 ? force / hold.most : force < 0 ? force / hold.least : 0;
-      if (part > most || std::isinf(part)) {
-        most = part;
-        worst = &hold;
-      }
+      if (!(part > (in_order ? slipping_by : most)) && !std::isinf(part)) continue;
+      if (in_order && worst && worst->element < hold.element) continue;
+      most = part;
+      worst = &hold;
     }
-    if (!worst) break;
+    const std::optional<std::size_t> against = goes_against_slip(begins);
+    if (!worst && !against) break;
+    if (against && (!worst || (in_order && *against < worst->element))) {
+      slips[*against] = 0;
+      begins[*against] = false;
+      continue;
+    }
+    const auto release = [&](std::size_t element, int way) {
+      slips[element] = way;
+      begins[element] = true;
+    };
     const int way = force_of(*worst) > 0 ? -1 : 1;
-    slips[worst->element] = way;
+    release(worst->element, way);
     for (const FrictionHold::Tied& tied : worst->tied)
-      slips[tied.element] = tied.rate > 0 ? way : -way;
+      release(tied.element, tied.rate > 0 ? way : -way);
   }
   for (std::size_t i = 0; i < frictions.size() && !before.empty(); ++i)
     if (slips[i] != before[i]) {
@@ -61,6 +79,20 @@ void Simulator::State::settle_frictions(double t, Eigen::VectorXd u, Turned turn
       recorder->name(frictions[i], run.frictions.back());
     }
   if (recorder) recorder->follow(model, *equations);
+}
+
+std::optional<std::size_t> Simulator::State::goes_against_slip(const std::vector<bool>& begins) const {
+  constexpr double seen = 1e-9; // of the largest acceleration
+  const Eigen::VectorXd &rate = equations->velocity(), &acceleration = equations->acceleration();
+  const Eigen::VectorXd& column = model->scaling.column;
+  const double least = seen * acceleration.cwiseQuotient(column).lpNorm<Eigen::Infinity>();
+  for (std::size_t i = 0; i < frictions.size(); ++i) {
+    if (!begins[i]) continue;
+    const int v = v_of(frictions[i]);
+    const bool moves = std::abs(rate[v]) > still * column[v] * rate_scale; // at once, as what has no mass
+    if (moves ? slips[i] * rate[v] < 0 : slips[i] * acceleration[v] / column[v] < -least) return i;
+  }
+  return std::nullopt;
 }
 
 bool Simulator::State::leave_dead_points(double t) {

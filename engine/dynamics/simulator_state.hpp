@@ -45,6 +45,8 @@ struct Simulator::State {
   // stick, unless that takes more than their limits. The one that it takes most of gives way, with what loops
   // tie to it, again and again. Leaves model, equations and s.
   void settle_frictions(double t, Eigen::VectorXd u, Turned turned_back = Turned::stopped);
+  // The first of those that begin to slip, at rest still, whose acceleration is against the way they do.
+  std::optional<std::size_t> goes_against_slip(const std::vector<bool>& begins) const;
   // Which way coordinates go on from dead points, where their friction does nothing: as they bend away from
   // there, with the rates of the evaluated state or, where these do not move them, with what they become by
   // its accelerations. True where one is found.

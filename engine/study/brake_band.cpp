@@ -144,7 +144,7 @@ class BandBesideBrakes {
         none.message = "No band is told: what holding " + label(i) + " takes over it is not determined.";
         return none;
       }
-      if (parts_[i] != Part::none) beside.measures.push_back(part_measure(i));
+      if (parts_[i] != Part::none) beside.measures.push_back(part_measure(still, i));
     }
     if (find_frictions(beside).empty()) {
       none.message = "No other joint has friction that would make a band " + meanwhile() + ".";
@@ -156,8 +156,12 @@ class BandBesideBrakes {
       band.message = "No band is found " + meanwhile() + ": " + band.message;
       return band;
     }
+    if (band.at_least) {
+      none.message = "No band is told: whether it holds " + meanwhile() + " all over it was not found out.";
+      return none;
+    }
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (const std::string why = leaving(still, band, i); !why.empty()) {
+      if (const std::string why = leaving(band, i); !why.empty()) {
         none.message = "No band is told: " + why;
         return none;
       }
@@ -182,14 +186,34 @@ class BandBesideBrakes {
 
   static std::string measure_name(std::size_t i) { return "friction_part_" + std::to_string(i); }
 
-  // Its rate where it slips, or what drives it at rest.
-  NamedMeasure part_measure(std::size_t i) const {
-    const bool slips = is_slipping(parts_[i]);
-    const bool angle = is_angle(joint_of(mechanism_, frictions_[i]).type, frictions_[i].coordinate);
-    return {.name = measure_name(i),
-            .description = {},
-            .text = (slips ? "rate(" : "torque(") + coordinate_argument(label(i)) + ")",
-            .unit = slips ? (angle ? "rad/s" : "m/s") : (angle ? "N m" : "N")};
+  // Its rate where it slips, or what holds all that gears tie to it, along it (N m or N): one measure, as
+  // what torques give on several of these may cancel.
+  NamedMeasure part_measure(const Standstill& still, std::size_t i) const {
+    const auto unit = [&](CoordinateReference at, const char* angle, const char* length) {
+      return std::string(is_angle(joint_of(mechanism_, at).type, at.coordinate) ? angle : length);
+    };
+    if (is_slipping(parts_[i]))
+      return {.name = measure_name(i),
+              .description = {},
+              .text = "rate(" + coordinate_argument(label(i)) + ")",
+              .unit = unit(frictions_[i], "rad/s", "m/s")};
+    std::string sum = "0";
+    for (const GearedCoordinate& geared : gear_train(mechanism_, frictions_[i])) {
+      const auto found = std::ranges::find(frictions_, geared.at);
+      if (found == frictions_.end()) continue;
+      const auto add = [&](double ratio, CoordinateReference of, const std::string& text) {
+        sum += "+(" + number_text(geared.ratio * ratio) + ")*(" + text + ")/(1 " + unit(of, "N m", "N") + ")";
+      };
+      add(1, geared.at,
+          "torque(" + coordinate_argument(label(static_cast<std::size_t>(found - frictions_.begin()))) + ")");
+      for (const TorqueAtRest& torque : still.carried)
+        for (const std::size_t k : {0u, 1u})
+          if (torque.held == geared.at)
+            add(k == 0 ? -torque.ratio : torque.ratio, torque.at,
+                torque.measure[k].empty() ? number_text(torque.value[k]) + " " + unit(torque.at, "N m", "N")
+                                          : torque.measure[k]);
+    }
+    return {.name = measure_name(i), .description = {}, .text = sum, .unit = {}};
   }
 
   static std::optional<Extent> extent_of(const FrictionBand& band, const std::string& name) {
@@ -199,54 +223,21 @@ class BandBesideBrakes {
   }
 
   // Why it does not play its part all over the band; empty where it does.
-  std::string leaving(const Standstill& still, const FrictionBand& band, std::size_t i) const {
+  std::string leaving(const FrictionBand& band, std::size_t i) const {
     if (parts_[i] == Part::none) return {};
     const std::optional<Extent> extent = extent_of(band, measure_name(i));
     if (is_slipping(parts_[i])) {
       const bool goes = extent && (parts_[i] == Part::slips_forwards ? extent->low > 0 : extent->high < 0);
       return goes ? "" : label(i) + " comes to rest within it.";
     }
+    if (!extent) return "what holding " + label(i) + " takes over it is not determined.";
     // Gears make all that have friction in a train hold together.
-    Extent sum;
     double limit = 0;
-    for (const GearedCoordinate& geared : gear_train(mechanism_, frictions_[i])) {
-      const auto found = std::ranges::find(frictions_, geared.at);
-      if (found == frictions_.end()) continue;
-      const std::optional<Extent> own =
-          held_extent(still, band, static_cast<std::size_t>(found - frictions_.begin()));
-      if (!own) return "what holding " + label(i) + " takes over it is not determined.";
-      sum.low += geared.ratio * (geared.ratio > 0 ? own->low : own->high);
-      sum.high += geared.ratio * (geared.ratio > 0 ? own->high : own->low);
-      limit += std::abs(geared.ratio) * friction_limit(friction_at(mechanism_, geared.at));
-    }
-    const bool holds = sum.high <= limit && sum.low >= -limit;
+    for (const GearedCoordinate& geared : gear_train(mechanism_, frictions_[i]))
+      if (std::ranges::find(frictions_, geared.at) != frictions_.end())
+        limit += std::abs(geared.ratio) * friction_limit(friction_at(mechanism_, geared.at));
+    const bool holds = extent->high <= limit && extent->low >= -limit;
     return holds ? "" : "within it " + label(i) + " may have to hold more than its limit, and slip.";
-  }
-
-  // Of what it would take to hold one alone.
-  std::optional<Extent> held_extent(const Standstill& still, const FrictionBand& band, std::size_t i) const {
-    const std::optional<Extent> drive = extent_of(band, measure_name(i)),
-                                carried = carried_extent(still, band, frictions_[i]);
-    if (!drive || !carried) return std::nullopt;
-    return Extent{drive->low - carried->high, drive->high - carried->low};
-  }
-
-  // Of what torques give along what is held.
-  std::optional<Extent> carried_extent(const Standstill& still, const FrictionBand& band,
-                                       CoordinateReference held) const {
-    Extent sum;
-    for (const TorqueAtRest& torque : still.carried) {
-      if (torque.held != held) continue;
-      for (const std::size_t k : {0u, 1u}) {
-        std::optional<Extent> value = Extent{torque.value[k], torque.value[k]};
-        if (!torque.measure[k].empty()) value = extent_of(band, torque.measure[k]);
-        if (!value) return std::nullopt;
-        const double factor = k == 0 ? torque.ratio : -torque.ratio;
-        sum.low += factor * (factor > 0 ? value->low : value->high);
-        sum.high += factor * (factor > 0 ? value->high : value->low);
-      }
-    }
-    return sum;
   }
 
   const Mechanism& mechanism_;

@@ -31,10 +31,11 @@ struct BandExtent {
 struct FrictionBand {
   bool found = false;
   std::vector<BandExtent> extents; // free coordinates, speeds that are found, then measures
-  bool whole = true;               // reached all corners of the box that were asked for
+  bool whole = true;               // nothing folds within the box
   bool folds = false;              // followed through folds, where the balance without friction is unstable,
                                    // or by where the joints stand (placed_band.hpp)
   std::string message;             // a sentence or more
+  bool at_least = false;           // not all ways were gone: extents may go farther
 };
 
 struct FrictionBandOptions {
@@ -42,7 +43,7 @@ struct FrictionBandOptions {
   std::vector<std::pair<std::string, double>> start{};
   bool errors = true; // of the extents, two solves each
   const std::atomic<bool>* cancel = nullptr;
-  // Bands of several joints past folds, by where these stand: up to some seconds.
+  // Bands of several joints past folds, by where these stand: up to some seconds. Else there is none.
   bool past_folds = true;
 };
 

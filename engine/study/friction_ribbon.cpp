@@ -48,11 +48,6 @@ RibbonPoint ribbon_point(const Mechanism& mechanism, const std::string& address,
   FrictionBand band = find_friction_band(with_parameter(mechanism, address, place.number), options);
   point.message = std::move(band.message);
   if (!band.found) return point;
-  if (!band.whole && !band.folds) {
-    point.message = "Within the limits of friction the balance folds: beyond that the band of several joints "
-                    "is not followed.";
-    return point;
-  }
   point.extents = std::move(band.extents);
   point.folds = band.folds;
   return point;

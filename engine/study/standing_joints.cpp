@@ -46,11 +46,12 @@ void remove_formulas(Joint& joint, const std::string& key) {
   std::erase_if(joint.formulas, [&](const Formula& each) { return each.key.starts_with(key); });
 }
 
-double value_in(const Solution& state, const Joint& joint, int index) {
+// Nothing where the state does not tell of it.
+std::optional<double> value_in(const Solution& state, const Joint& joint, int index) {
   const auto found = std::ranges::find_if(state.coordinates, [&](const CoordinateSolution& c) {
     return c.joint == joint.name && c.index == index;
   });
-  return found->value;
+  return found == state.coordinates.end() ? std::nullopt : std::optional(found->value);
 }
 
 // Its own spring goes on beside the one that pulls it to the place.
@@ -119,15 +120,15 @@ std::optional<StandingJoints> stand_on_springs(const Mechanism& mechanism, const
     const std::string address = share_address(mechanism, frictions[i]);
     const Friction& friction = friction_at(mechanism, frictions[i]);
     if (!(friction_limit(friction) > 0)) continue;
-    if (std::ranges::find(independent, i) == independent.end())
-      out.joints.push_back({{address, -1, 1},
-                            {},
-                            coordinate_name(joint_of(mechanism, frictions[i]), frictions[i].coordinate),
-                            address});
-    else
-      out.joints.push_back(pull(out.mechanism, frictions[i], i,
-                                value_in(state, joint_of(mechanism, frictions[i]), frictions[i].coordinate),
-                                friction.share, reach, give));
+    const Joint& joint = joint_of(mechanism, frictions[i]);
+    const int index = frictions[i].coordinate;
+    if (std::ranges::find(independent, i) == independent.end()) {
+      out.joints.push_back({{address, -1, 1}, {}, coordinate_name(joint, index), address});
+      continue;
+    }
+    const std::optional<double> value = value_in(state, joint, index);
+    if (!value) return std::nullopt;
+    out.joints.push_back(pull(out.mechanism, frictions[i], i, *value, friction.share, reach, give));
   }
   return out;
 }

@@ -30,6 +30,8 @@ namespace flyball {
 constexpr double longest_correction = 0.25; // where it was predicted: more has left the branch
 constexpr double longest_way = 0.3;         // in one step
 constexpr int most_halvings = 12;           // of steps that the state does not follow
+constexpr double led_within = 0.6;          // of both rates' steps: of a kink less than half
+constexpr double led_rounding = 1e-6;       // of coordinates, scaled
 
 Solution steady_state_near(const Mechanism& mechanism,
                            const std::vector<std::pair<std::string, double>>& start,
@@ -292,10 +294,20 @@ std::optional<SteadyMap::State> SteadyMap::step_to(const State& from, const Eige
   return to;
 }
 
+// Whether rates at both ends lead from one state to the other. Past two folds, as where a spring's force
+// falls and rises again, the inertia of the balance is as before.
+bool SteadyMap::goes_on(const State& from, const Eigen::MatrixXd& state_rates, const State& to) const {
+  if (system_.nv == 0 || from.turned || to.turned) return true;
+  const Eigen::VectorXd step = to.p - from.p;
+  const Eigen::ArrayXd a = (state_rates * step).cwiseQuotient(rated_scale_).array(),
+                       b = (state_rates_ * step).cwiseQuotient(rated_scale_).array();
+  const Eigen::ArrayXd change = scaled_difference(problem(), from.z.q, to.z.q).array();
+  return ((change - (a + b) / 2).abs() <= led_within * (a.abs() + b.abs()).maxCoeff() + led_rounding).all();
+}
+
 // Measures that rates at both ends do not lead from one value to the other.
-void SteadyMap::look_for_jumps(const State& from, const State& to) {
+void SteadyMap::look_for_jumps(const State& from, const Eigen::MatrixXd& before, const State& to) {
   jumps_.resize(wanted_.size(), false);
-  const Eigen::MatrixXd before = rates_;
   if (!find_rates(to)) return;
   const Eigen::MatrixXd after = rates_;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -312,8 +324,7 @@ bool SteadyMap::may_jump(std::size_t wanted, const State& from, const Eigen::Vec
   const double a = rate_from.dot(step), b = rate_to.dot(step), change = to.values[k] - from.values[k];
   if (!std::isfinite(a + b + change)) return false;
   const double rounding = 1e-9 * (std::abs(to.values[k]) + std::abs(from.values[k]));
-  return std::abs(change - (a + b) / 2) >
-         0.6 * (std::abs(a) + std::abs(b)) + rounding; // of a kink less than half
+  return std::abs(change - (a + b) / 2) > led_within * (std::abs(a) + std::abs(b)) + rounding;
 }
 
 // By halving: what is steep is smooth near by.
@@ -348,8 +359,10 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
     const double step = std::min(part, there > longest_way ? longest_way / there : 1);
     const Eigen::VectorXd to = step == 1 ? p : (state.p + step * (p - state.p)).eval();
     if (to == state.p) return false; // the state runs away at numbers that are told apart no more
-    if (std::optional<State> next = step_to(state, to)) {
-      if (counts_turns_ && measures_wanted()) look_for_jumps(state, *next);
+    const Eigen::MatrixXd rates = rates_, state_rates = state_rates_;
+    std::optional<State> next = step_to(state, to);
+    if (next && (!find_rates(*next) || goes_on(state, state_rates, *next))) {
+      if (counts_turns_ && measures_wanted()) look_for_jumps(state, rates, *next);
       state = std::move(*next);
       part = std::min(1., 2 * part);
     } else {

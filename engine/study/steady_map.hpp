@@ -106,7 +106,8 @@ class SteadyMap {
   // The same of a state to which a step leads from the one whose rates were found last.
   void find_values(State& state, const State& from);
   bool correct(Unknowns& z);
-  void look_for_jumps(const State& from, const State& to);
+  bool goes_on(const State& from, const Eigen::MatrixXd& state_rates, const State& to) const;
+  void look_for_jumps(const State& from, const Eigen::MatrixXd& before, const State& to);
   bool may_jump(std::size_t wanted, const State& from, const Eigen::VectorXd& rate_from, const State& to,
                 const Eigen::VectorXd& rate_to) const;
   bool is_jump(std::size_t wanted, State from, State to);

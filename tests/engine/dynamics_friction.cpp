@@ -69,6 +69,25 @@ TEST_CASE("what is held stays where it is, exactly") {
     CHECK(value == 0.1);
 }
 
+TEST_CASE("of two joints that both take too much the one that the other's slip relieves stays") {
+  // 11 N on 5.5 N, and on the second slide 16 N on 9 N: once that goes, what it carries along pulls the first
+  // one forwards by its mass, which leaves less than 5.5 N to hold.
+  const double first = 0.6, second = 1.4, pull = 16, holds = 9;
+  const Mechanism m = read_scene(R"({"flyball": 2, "name": "Two slides", "gravity": [0, 0, 0],
+    "bodies": [{"name": "a", "mass": 0.6, "position": [0, 0, 0]}, {"name": "b", "mass": 1.4, "position": [0, 0, 0]}],
+    "joints": [{"name": "p", "type": "prismatic", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [1, 0, 0],
+        "spring": {"force": 11}, "friction": {"limit": 5.5}},
+      {"name": "q", "type": "prismatic", "bodies": ["a", "b"], "at": [0, 0, 0], "axis": [1, 0, 0],
+        "spring": {"force": 16}, "friction": {"limit": 9}}]})");
+  REQUIRE(11 - (pull - holds) < 5.5);
+  REQUIRE((11 - 5.5) / (first + second) * second < pull - holds);
+  SimulationOptions options;
+  options.duration = 0.5;
+  const Run run = run_of(m, options);
+  CHECK(run.coordinates[0].value.back() == 0);
+  CHECK_THAT(run.coordinates[1].value.back(), WithinRel(-(pull - holds) / second * 0.25 / 2, 1e-9));
+}
+
 TEST_CASE("a pendulum comes to rest within the band of steady states") {
   SimulationOptions options;
   options.duration = 20;

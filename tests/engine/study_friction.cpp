@@ -3,6 +3,7 @@
 #include "engine/dynamics/simulator.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/study/compare.hpp"
 #include "engine/study/friction_report.hpp"
 #include "engine/study/friction_ribbon.hpp"
@@ -137,6 +138,33 @@ TEST_CASE("friction in the guide of a slider-crank holds it at any angle of the 
     CHECK(extent(band, "a").low == -std::numeric_limits<double>::infinity());
     CHECK(extent(band, "a").high == std::numeric_limits<double>::infinity());
   }
+}
+
+TEST_CASE("a spring's table that falls within friction's limits ends the band of what stands beyond") {
+  // The force falls from 13.9 N at 0.42 m to -5.35 N at 0.6 m. At 0.77 m, where it is zero on its way up
+  // again, friction holds it from where the table has fallen to the limit on. States that are held far on the
+  // near side, where the force is beyond -5.35 N, too, are no part of that.
+  const double limit = GENERATE(7., 10., 10.474);
+  const auto scene = [](double most) {
+    return read_scene(R"json({"flyball": 2, "name": "Table", "gravity": [0, 0, 0],
+      "bodies": [{"name": "b", "mass": 1, "position": [0, 0, 0]}],
+      "joints": [{"name": "q", "type": "prismatic", "bodies": ["ground", "b"], "at": [0, 0, 0],
+        "axis": [1, 0, 0], "spring": {"force": "=table(deflection, [-0.9894 m, -22.9157 N], )json"
+                      "[0.3534 m, 6.9918 N], [0.4208 m, 13.897 N], [0.5978 m, -5.3508 N], "
+                      "[0.9178 m, 19.6816 N])\"}, \"friction\": {\"limit\": " +
+                      number_text(most) + "}}]}");
+  };
+  const FrictionBand band = find_friction_band(scene(limit), {.start = {{"q", 0.77}}});
+  const BandExtent& q = extent(band, "q");
+  CAPTURE(limit, band.message, q.low, q.high);
+  CHECK(band.folds);
+  CHECK(q.low > 0.4208);
+  CHECK(q.high > 0.77);
+  // Friction is just at its limit at either end.
+  for (const double end : {q.low, q.high})
+    CHECK_THAT(find_holding(scene(limit), {{"q", end}}).takes.value(), WithinRel(1, 1e-6));
+  // More than the peak holds it on both sides.
+  CHECK(extent(find_friction_band(scene(15), {.start = {{"q", 0.77}}}), "q").low < 0);
 }
 
 TEST_CASE("what depends on the band's coordinates has its extremes inside, too") {

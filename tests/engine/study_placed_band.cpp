@@ -5,6 +5,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/friction_report.hpp"
+#include "engine/study/friction_ribbon.hpp"
 #include "tests/catch.hpp"
 
 #include <cmath>
@@ -62,27 +63,27 @@ const BandExtent& extent_in(const FrictionBand& band, std::string_view name) {
   return *found;
 }
 
-// The extents in two angles of the places that hang together with zero, by steps of 0.02 rad.
+// The extents in two angles of the places that hang together with one, by steps of 0.02 rad.
 struct Flood {
   std::array<double, 2> low{}, high{};
 };
 constexpr double flood_step = 0.02, flood_range = 9;
-Flood flood(const std::function<bool(double, double)>& holds) {
+Flood flood(const std::function<bool(double, double)>& holds, double step = flood_step) {
   Flood out;
   std::set<std::pair<int, int>> seen{{0, 0}};
   std::deque<std::pair<int, int>> next{{0, 0}};
   while (!next.empty()) {
     const auto [a, b] = next.front();
     next.pop_front();
-    const std::array<double, 2> at{a * flood_step, b * flood_step};
+    const std::array<double, 2> at{a * step, b * step};
     for (const std::size_t i : {0u, 1u}) {
       out.low[i] = std::min(out.low[i], at[i]);
       out.high[i] = std::max(out.high[i], at[i]);
     }
     for (int x = a - 1; x <= a + 1; ++x)
       for (int y = b - 1; y <= b + 1; ++y)
-        if (std::max(std::abs(x), std::abs(y)) * flood_step <= flood_range && seen.insert({x, y}).second &&
-            holds(x * flood_step, y * flood_step))
+        if (std::max(std::abs(x), std::abs(y)) * step <= flood_range && seen.insert({x, y}).second &&
+            holds(x * step, y * step))
           next.emplace_back(x, y);
   }
   return out;
@@ -134,9 +135,11 @@ TEST_CASE(
   CHECK_THAT(extent_in(both, "h").high, WithinAbs(0.101, 1e-12));
   CHECK_THAT(extent_in(both, "k").low, WithinAbs(-0.206, 1e-12));
   // Without friction of its own it stands anywhere, whatever friction does elsewhere.
-  const FrictionBand loose = band_of(two_hinges(rubs(0.1), plays(0.1, 100), 0));
-  CHECK_FALSE(loose.found);
-  CHECK(loose.message == "No band is told: nothing resists k, whatever friction does.");
+  for (const std::string& none : {std::string(), rubs(0)}) {
+    const FrictionBand loose = band_of(two_hinges(rubs(0.1), plays(0.1, 100) + none, 0));
+    CHECK_FALSE(loose.found);
+    CHECK(loose.message == "No band is told: nothing resists k, whatever friction does.");
+  }
 }
 
 TEST_CASE("random hinges with springs and play have the band that places tell", "[placed-band]") {
@@ -188,6 +191,101 @@ TEST_CASE("random hinges with springs and play have the band that places tell", 
   CHECK(round > 6);
 }
 
+namespace {
+
+// Two links in a plane that turns about the upright through their hinge: masses at their ends.
+struct TurningLinks {
+  double speed = 0;
+  std::array<double, 2> mass{}, length{};
+  double slant = 0;                                               // of the first, from the upright as drawn
+  double spring = 0, lower = -endless, upper = endless, stop = 0; // of the second; of the first
+  std::array<double, 2> limit{};
+
+  Mechanism scene() const {
+    const double x = length[0] * std::sin(slant), y = -length[0] * std::cos(slant);
+    std::string first = rubs(limit[0]);
+    if (stop > 0)
+      first += R"(, "stop": {"lower": )" + number_text(lower) + R"(, "upper": )" + number_text(upper) +
+               R"(, "stiffness": )" + number_text(stop) + "}";
+    const std::string second = rubs(limit[1]) + (spring > 0 ? sprung(spring, 0) : "");
+    const auto at = [](double px, double py) {
+      return "[" + number_text(px) + ", " + number_text(py) + ", 0]";
+    };
+    return read_scene(R"({"flyball": 2, "name": "Turning links", "gravity": [0, "=-g", 0],
+      "parameters": {"g": {"value": 10, "unit": "m/s^2"}},
+      "bodies": [{"name": "shaft", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]},
+        {"name": "a", "mass": )" +
+                      number_text(mass[0]) + R"(, "position": )" + at(x, y) + R"(},
+        {"name": "b", "mass": )" +
+                      number_text(mass[1]) + R"(, "position": )" + at(x, y - length[1]) + R"(}],
+      "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0],
+          "axis": [0, 1, 0], "drive": {"speed": )" +
+                      number_text(speed) + R"(}},
+        {"name": "h", "type": "revolute", "bodies": ["shaft", "a"], "at": [0, 0, 0], "axis": [0, 0, 1])" +
+                      first + R"(},
+        {"name": "k", "type": "revolute", "bodies": ["a", "b"], "axis": [0, 0, 1], "at": )" +
+                      at(x, y) + second + "}]}");
+  }
+
+  // What friction would have to give.
+  std::array<double, 2> loads(double g, double h, double k) const {
+    const double x1 = length[0] * std::sin(h + slant), y1 = -length[0] * std::cos(h + slant);
+    const double x2 = length[1] * std::sin(h + k), y2 = -length[1] * std::cos(h + k);
+    const double n2 = speed * speed;
+    double first = mass[0] * (g * x1 + n2 * x1 * y1) + mass[1] * (g * (x1 + x2) + n2 * (x1 + x2) * (y1 + y2));
+    if (stop > 0) first += stop * (std::min(0., h - lower) + std::max(0., h - upper));
+    return {first, mass[1] * (g * x2 + n2 * (x1 + x2) * y2) + spring * k};
+  }
+};
+
+} // namespace
+
+TEST_CASE("no band along a curve falls short of what places tell", "[placed-band]") {
+  // Of the first one output rises, falls and rises again along an edge of the box of shares, past the kink of
+  // a stop; the others are unstable, and the balance folds between the ways to corners.
+  struct Case {
+    TurningLinks links;
+    double g, h, k;
+    bool told;
+  };
+  const TurningLinks stopped{.speed = 3.887976970119407,
+                             .mass = {0.92845, 1.19486},
+                             .length = {0.503514, 0.234774},
+                             .lower = -0.618933,
+                             .upper = 0.982951,
+                             .stop = 54.08313,
+                             .limit = {10.89367, 2.553943}};
+  const TurningLinks upright{.speed = 5.327550455,
+                             .mass = {1.0858102, 0.5751492},
+                             .length = {0.3832019, 0.205256},
+                             .slant = -0.21672286,
+                             .spring = 1.432808,
+                             .limit = {6.0434687, 0.461335}};
+  const auto each = GENERATE_COPY(Case{stopped, 10, 0, 0, true}, Case{upright, 10.22, -3.0784, 0.7696, false},
+                                  Case{upright, 10.65, -3.0837, 0.8212, false});
+  const RibbonPoint point =
+      friction_ribbon(each.links.scene(), "parameters.g", {{{each.g, {{"h", each.h}, {"k", each.k}}}}})
+          .front();
+  CAPTURE(each.g, point.message);
+  const BandExtent *h = find_extent(point, "h"), *k = find_extent(point, "k");
+  CHECK((h && k) >= each.told);
+  if (!h || !k) {
+    CHECK_THAT(point.message, ContainsSubstring("the balance folds"));
+    return;
+  }
+  constexpr double step = 0.005;
+  const Flood expected = flood(
+      [&](double a, double b) {
+        const std::array<double, 2> load = each.links.loads(each.g, h->value + a, k->value + b);
+        return std::abs(load[0]) <= each.links.limit[0] && std::abs(load[1]) <= each.links.limit[1];
+      },
+      step);
+  CHECK_THAT(h->low - h->value, WithinAbs(expected.low[0], 3 * step));
+  CHECK_THAT(h->high - h->value, WithinAbs(expected.high[0], 3 * step));
+  CHECK_THAT(k->low - k->value, WithinAbs(expected.low[1], 3 * step));
+  CHECK_THAT(k->high - k->value, WithinAbs(expected.high[1], 3 * step));
+}
+
 TEST_CASE("of a measure that jumps within a band no extent is told", "[placed-band]") {
   const double limit = GENERATE(3., 12.);
   const auto upwards = [](const char* name, const char* factor) {
@@ -236,5 +334,35 @@ TEST_CASE("brakes that gears tie hold by the sum of their limits, and others hav
     CHECK(band.message == "It is the band while spin stands and pc stands.");
   } else {
     CHECK_THAT(extent_in(band, "spin.speed").high, WithinRel((2 - 1.2 - 2 * 0.39) / 0.4, 1e-9));
+  }
+}
+
+TEST_CASE("what torques give against each other on brakes that gears tie is held as their sum",
+          "[placed-band]") {
+  // 2 N m at rest against 1.2 N m and, through a gear of -2, 0.5 N m. Where the bob stands, within asin(0.3 /
+  // 5), torques of both shafts are others: they cancel, or do so but for 6 N m/rad.
+  const double left = GENERATE(0., 0.1);
+  const Mechanism m = read_scene(R"json({"flyball": 2, "name": "Two brakes", "gravity": [0, -10, 0],
+    "bodies": [{"name": "a", "mass": 1, "position": [0, 0, 0], "inertia": [0.1, 0.15, 0.1]},
+      {"name": "c", "mass": 1, "position": [0.3, 0, 0], "inertia": [0.1, 0.15, 0.1]},
+      {"name": "bob", "mass": 1, "position": [0.1, -0.5, 0]}],
+    "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "a"], "at": [0, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=2 N m + )json" +
+                                 number_text(20 - left * 60) +
+                                 R"json( N m/rad*coordinate(swing) - 0.4 N m s*rate(spin)", "speed": 5},
+        "friction": {"limit": 1.2}},
+      {"name": "pc", "type": "revolute", "bodies": ["ground", "c"], "at": [0.3, 0, 0], "axis": [0, 1, 0],
+        "drive": {"torque": "=10 N m/rad*coordinate(swing)", "speed": 1}, "friction": {"limit": 0.5}},
+      {"name": "g", "type": "gear", "joints": ["spin", "pc"], "ratio": -2},
+      {"name": "swing", "type": "revolute", "bodies": ["a", "bob"], "at": [0.1, 0, 0], "axis": [0, 0, 1],
+        "friction": {"limit": 0.3}}]})json");
+  const FrictionBand band = band_of(m);
+  CAPTURE(band.message);
+  if (left == 0) {
+    CHECK_THAT(extent_in(band, "swing").high, WithinAbs(std::asin(0.3 / 5), 1e-12));
+    CHECK(band.message == "It is the band while spin stands and pc stands.");
+  } else { // 6 N m/rad at 0.06 rad are more than 0.2 N m
+    CHECK_FALSE(band.found);
+    CHECK_THAT(band.message, ContainsSubstring("may have to hold more than its limit"));
   }
 }
