@@ -422,22 +422,8 @@ std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked
   return {};
 }
 
-std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options) {
-  SolveOptions plain = options;
-  plain.start.clear();
-  std::vector<Solution> out;
-  std::vector<FrictionParts> found;
-  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel)) {
-    if (std::ranges::any_of(found, [&](const FrictionParts& other) { return holds_more(other, parts); }))
-      continue; // in the band of that
-    if (auto state = solve_with_parts(mechanism, parts, plain); state && state->goes) {
-      out.push_back(std::move(state->solution));
-      found.push_back(parts);
-    }
-  }
-  if (!out.empty() || that_may_slip(mechanism, find_frictions(mechanism)).size() <= most_tried) return out;
-  if (auto state = find_friction_state(mechanism, plain)) out.push_back(std::move(state->solution));
-  return out;
+bool tries_all_parts(const Mechanism& mechanism) {
+  return that_may_slip(mechanism, find_frictions(mechanism)).size() <= most_tried;
 }
 
 std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {

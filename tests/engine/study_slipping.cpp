@@ -298,6 +298,37 @@ TEST_CASE("all steady states: what slips is listed, and bands tell of what frict
     CHECK(s.frictions.empty());
 }
 
+TEST_CASE("of what slips at several speeds, or turns at several beside what is held, all are listed") {
+  // A brake of 0.5 N m: it slips where the torque is that.
+  Mechanism m;
+  m.bodies = {body("disc", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  const std::string three = "0.01 N m s^3 * (2 rad/s - rate(A)) * (5 rad/s - rate(A)) * (9 rad/s - rate(A))";
+  m.joints = {torque_driven(revolute("A", "ground", "disc", {0, 0, 0}, {0, 1, 0}), 1, "0.5 N m + " + three)};
+  m.joints[0].coordinates[0].friction = Friction{.limit = 0.5};
+  validate(m);
+  const AllSolutions one = Analysis(m).solve_all();
+  std::vector<std::pair<double, std::optional<bool>>> found;
+  for (const Solution& s : one.equilibria) {
+    CHECK(s.frictions.at(0).slips);
+    found.emplace_back(std::round(speed(s, "A") * 1e9) / 1e9, s.stable);
+  }
+  std::ranges::sort(found);
+  CHECK(found == decltype(found){{2, true}, {5, false}, {9, true}});
+
+  // It turns another with a brake of 0.6 N m, by 0.1 N m s of its speed.
+  m.joints[0] = torque_driven(revolute("A", "ground", "disc", {0, 0, 0}, {0, 1, 0}), 1, three);
+  m.bodies.push_back(body("other", 1, {1, 0, 0}, {0.1, 0.1, 0.1}));
+  m.joints.push_back(torque_driven(revolute("B", "ground", "other", {1, 0, 0}, {0, 1, 0}), 1,
+                                   "0.1 N m s * (rate(A) - rate(B))"));
+  m.joints[1].coordinates[0].friction = Friction{.limit = 0.6};
+  validate(m);
+  std::vector<std::pair<double, double>> speeds;
+  for (const Solution& s : Analysis(m).solve_all().equilibria)
+    speeds.emplace_back(std::round(speed(s, "A") * 1e9) / 1e9, std::round(speed(s, "B") * 1e9) / 1e9);
+  std::ranges::sort(speeds);
+  CHECK(speeds == decltype(speeds){{2, 0}, {5, 0}, {9, 3}});
+}
+
 TEST_CASE("four shafts, each with friction in its bearing, slip on and on") {
   Mechanism m;
   m.name = "Four";
