@@ -220,6 +220,17 @@ TEST_CASE("an engine's governor by torques, and the shaft's angle where it is as
   CHECK(whole.states.size() == 4);
   CHECK_FALSE(whole.gain);
   CHECK(std::abs(whole.poles.front()) < 1e-9);
+  for (const LinearModel* of : {&model, &whole}) // outputs that are states
+    for (const Eigen::MatrixXd& c : {of->descriptor.c, of->explicit_form->c})
+      for (Eigen::Index i = 0; i < c.rows(); ++i) {
+        const std::string& name = of->outputs[static_cast<std::size_t>(i)].name;
+        for (Eigen::Index s = 0; s < c.cols(); ++s) {
+          const std::string& state = of->states[static_cast<std::size_t>(s)].name;
+          CHECK(c(i, s) == (state == (name == "slide"        ? "slide"
+                                      : name == "rate(spin)" ? "spin.rate"
+                                                             : "spin")));
+        }
+      }
   const auto h = transfer(*whole.explicit_form, {0, 1.3});
   CHECK(std::abs((*h)(0, 0) - (*h)(1, 0) * Complex(0, 1.3)) < 1e-12 * std::abs((*h)(0, 0)));
   CHECK(std::abs((*h)(0, 0) - (*transfer(*model.explicit_form, {0, 1.3}))(0, 0)) <
