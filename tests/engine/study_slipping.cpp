@@ -329,6 +329,32 @@ TEST_CASE("of what slips at several speeds, or turns at several beside what is h
   CHECK(speeds == decltype(speeds){{2, 0}, {5, 0}, {9, 3}});
 }
 
+TEST_CASE("a clutch slips the way that its shafts turn at one of several speeds") {
+  // Beyond 3 N m of the second shaft's torque, which its speed lets jump at 11 rad/s, Newton-Raphson comes to
+  // speeds at which the clutch would slip the other way.
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 1, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {
+      torque_driven(revolute("A", "ground", "a", {0, 0, 0}, {0, 1, 0}), 15, "-0.3 N m - 0.3 N m s * rate(A)"),
+      torque_driven(revolute("B", "ground", "b", {0, 1, 0}, {0, 1, 0}), 15,
+                    "-2 N m + 3 N m * tanh((rate(B) - 11 rad/s) / (2 rad/s)) - 0.06 N m s * rate(B)"),
+      revolute("clutch", "a", "b", {0, 0.5, 0}, {0, 1, 0})};
+  m.joints[2].coordinates[0].friction = Friction{.limit = 2.7};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 1);
+  for (const Solution& slipping : {s, all.equilibria[0]}) {
+    CHECK_THAT(speed(slipping, "A"), WithinRel(-10, 1e-12));
+    CHECK_THAT(speed(slipping, "B"), WithinRel(-2.3 / 0.06, 1e-12));
+    CHECK(slipping.frictions.at(0).slips);
+    CHECK(slipping.stable == true);
+  }
+  expect_same_motion(m, s, "B", 60, 1);
+}
+
 TEST_CASE("four shafts, each with friction in its bearing, slip on and on") {
   Mechanism m;
   m.name = "Four";
