@@ -332,7 +332,7 @@ namespace {
 std::optional<StateOnFriction> search_parts(const Mechanism& mechanism, const std::vector<FrictionParts>& all,
                                             const SolveOptions& options) {
   SolveOptions search = options;
-  search.search_time = std::max(balance_search, options.search / static_cast<double>(all.size()));
+  search.search_time = options.search; // of each
   std::optional<StateOnFriction> unstable;
   for (const FrictionParts& parts : all) {
     if (!(options.search > 0) || is_cancelled(options.cancel)) break;
