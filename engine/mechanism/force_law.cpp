@@ -157,14 +157,4 @@ void check_drag_law(const Mechanism& mechanism, const Formula& law, const std::s
   check_coefficient(mechanism, law, true, where);
 }
 
-bool resists_at_rest(const Formula& damper_law) {
-  const ForceLaw law(damper_law.text, damper_variable);
-  if (!law.names().empty()) return false;
-  constexpr double near = 1e-9; // before and after a kink
-  const auto before = law({}, {-near, 1}), at_rest = law({}, {0, 1}), beyond = law({}, {near, 1});
-  // What is steep between these has its slope at rest, and beyond acts the same way.
-  return before.rate >= 0 && !(at_rest.rate < 0) && beyond.rate >= 0 && before.value <= 0 &&
-         beyond.value >= 0;
-}
-
 } // namespace flyball

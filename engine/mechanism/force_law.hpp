@@ -61,8 +61,4 @@ void check_damper_law(const Mechanism& mechanism, const Formula& law, bool angle
 void check_lift_law(const Mechanism& mechanism, const Formula& law, const std::string& where);
 void check_drag_law(const Mechanism& mechanism, const Formula& law, const std::string& where);
 
-// Whether a damper by this law takes up energy where it hardly moves, whatever the numbers of the mechanism:
-// its slope at rest is not below zero, and no parameter decides that.
-bool resists_at_rest(const Formula& damper_law);
-
 } // namespace flyball

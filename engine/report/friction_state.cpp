@@ -1,12 +1,13 @@
 #include "engine/report/friction_state.hpp"
 
-#include "engine/mechanism/body_groups.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
+#include "engine/report/friction_implied.hpp"
+#include "engine/report/friction_search.hpp"
 #include "engine/report/messages.hpp"
 
 #include <algorithm>
@@ -24,7 +25,6 @@ using Part = FrictionPart;
 constexpr double balance_search = 0.02; // s, for what rests in balance beside what is held: see SolveOptions
 constexpr std::size_t most_tried = 3;   // joints that may slip: each forwards, backwards or not at all
 constexpr int most_attempts = 2000;     // where more may: random clutches and brakes, six, took up to 1400
-constexpr std::size_t most_implied = 6; // of what slips in loops: which rates the drives give, all ways
 
 std::size_t place(int i) {
   return static_cast<std::size_t>(i);
@@ -41,16 +41,6 @@ std::vector<std::size_t> that_may_slip(const Mechanism& mechanism,
 
 bool any_slips(const FrictionParts& parts) {
   return std::ranges::any_of(parts, is_slipping);
-}
-
-// Whether its two bodies hang together without it.
-bool closes_a_loop(const Mechanism& mechanism, int joint) {
-  const BodyNumbers numbers(mechanism);
-  BodyGroups groups(numbers);
-  for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
-    if (const Joint& other = mechanism.joints[j]; other.type != JointType::gear && j != place(joint))
-      groups.join(other.bodies);
-  return !groups.join(mechanism.joints[place(joint)].bodies);
 }
 
 std::string names_of(const std::vector<FrictionForce>& frictions, bool slipping) {
@@ -118,21 +108,16 @@ std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
                                         const std::vector<CoordinateReference>& frictions,
                                         const FrictionParts& parts, const SolveOptions& options,
                                         bool loose = false, int* attempts = nullptr) {
-  std::vector<std::size_t> may_close;
-  for (std::size_t i = 0; i < parts.size() && may_close.size() < most_implied; ++i)
-    if (is_slipping(parts[i]) && closes_a_loop(mechanism, frictions[i].joint)) may_close.push_back(i);
+  const std::vector<std::vector<bool>> ways = implied_ways(mechanism, frictions, parts);
   std::optional<StateOnFriction> first;
   for (const bool newton_only : {true, false}) {
-    if (newton_only && may_close.empty()) continue;
-    if (!newton_only && options.newton_only && !may_close.empty()) break; // that has been
+    if (newton_only && ways.size() == 1) continue;
+    if (!newton_only && options.newton_only && ways.size() > 1) break; // that has been
     SolveOptions now = options;
     now.newton_only = newton_only || options.newton_only;
-    for (std::size_t set = 0; set < std::size_t(1) << may_close.size(); ++set) {
+    for (const std::vector<bool>& implied : ways) {
       if (is_cancelled(options.cancel)) return first;
-      std::vector<bool> implied(parts.size(), false);
-      for (std::size_t k = 0; k < may_close.size(); ++k)
-        implied[may_close[k]] = (set >> k & 1) != 0;
-      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, std::move(implied), loose);
+      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, implied, loose);
       if (attempts) ++*attempts;
       if (state && (state->goes || !first)) first = std::move(state);
       if (first && first->goes) return first;
@@ -340,6 +325,27 @@ std::optional<StateOnFriction> solve_with_parts(const Mechanism& mechanism, cons
   return state;
 }
 
+namespace {
+
+// Where Newton-Raphson comes to no state that goes with the parts it has: of all that a search finds one that
+// is not unstable, else the first.
+std::optional<StateOnFriction> search_parts(const Mechanism& mechanism, const std::vector<FrictionParts>& all,
+                                            const SolveOptions& options) {
+  SolveOptions search = options;
+  search.search_time = options.search; // of each
+  std::optional<StateOnFriction> unstable;
+  for (const FrictionParts& parts : all) {
+    if (!(options.search > 0) || is_cancelled(options.cancel)) break;
+    for (StateOnFriction& state : find_states_with(mechanism, parts, search)) {
+      if (state.solution.stable != false) return std::move(state);
+      if (!unstable) unstable = std::move(state);
+    }
+  }
+  return unstable;
+}
+
+} // namespace
+
 std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, const SolveOptions& options) {
   // Joints that it holds stand as drawn.
   for (const auto& [name, value] : options.start) {
@@ -390,7 +396,9 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
       if (!newton_only && !unstable) unstable = std::move(state);
     }
   }
-  if (unstable || that_may_slip(mechanism, frictions).size() <= most_tried) return unstable;
+  if (unstable) return unstable;
+  if (that_may_slip(mechanism, frictions).size() <= most_tried)
+    return options.newton_only ? std::nullopt : search_parts(mechanism, all, options);
   std::optional<StateOnFriction> found;
   PartsSearch(mechanism, frictions, options).find([&](const FrictionParts& parts) {
     SolveOptions inner = options;
@@ -422,22 +430,8 @@ std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked
   return {};
 }
 
-std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options) {
-  SolveOptions plain = options;
-  plain.start.clear();
-  std::vector<Solution> out;
-  std::vector<FrictionParts> found;
-  for (const FrictionParts& parts : friction_parts(mechanism, options.cancel)) {
-    if (std::ranges::any_of(found, [&](const FrictionParts& other) { return holds_more(other, parts); }))
-      continue; // in the band of that
-    if (auto state = solve_with_parts(mechanism, parts, plain); state && state->goes) {
-      out.push_back(std::move(state->solution));
-      found.push_back(parts);
-    }
-  }
-  if (!out.empty() || that_may_slip(mechanism, find_frictions(mechanism)).size() <= most_tried) return out;
-  if (auto state = find_friction_state(mechanism, plain)) out.push_back(std::move(state->solution));
-  return out;
+bool tries_all_parts(const Mechanism& mechanism) {
+  return that_may_slip(mechanism, find_frictions(mechanism)).size() <= most_tried;
 }
 
 std::vector<std::string> slipping_coordinates(const Mechanism& mechanism) {

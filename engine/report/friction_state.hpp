@@ -62,7 +62,11 @@ std::optional<StateOnFriction> find_friction_state(const Mechanism& mechanism, c
 std::string asked_of_friction(const Mechanism& mechanism, std::string_view asked,
                               const std::atomic<bool>* cancel);
 
-// All of them, what is held as drawn first; of `options` the starts do not count.
+// Whether friction_parts() are all that there are, as of up to three joints that may slip.
+bool tries_all_parts(const Mechanism& mechanism);
+
+// All of them, what is held as drawn first; of `options` the starts do not count. Of what torques drive there
+// may be several with the same parts, which a bounded search finds (SolveOptions::search_time for all parts).
 std::vector<Solution> find_friction_states(const Mechanism& mechanism, const SolveOptions& options);
 
 // Names, as of coordinate_label(), of coordinates that stand, but may go on at constant rates where friction

@@ -167,13 +167,16 @@ std::string message(const Found& found, const Problem& problem) {
     return first + "; a search all over the coordinates' ranges found this steady state" +
            (found.candidates > 1 ? ", the nearest of " + std::to_string(found.candidates) + "." : ".");
   };
+  const bool drives = problem.parameters.dampers_drive;
+  const std::string below = drives ? "a minimum of the potential" : "a stable one";
   switch (found.remark) {
   case Remark::none: return "";
   case Remark::cancelled: return "The solve was cancelled.";
   case Remark::left_unstable_start:
-    return "The start is an unstable equilibrium; stepped off it and went downhill to a stable one.";
+    return "The start is an unstable equilibrium; stepped off it and went downhill to " + below + ".";
   case Remark::left_unstable_equilibrium:
-    return "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to a stable one.";
+    return "Newton-Raphson arrived at an unstable equilibrium; went downhill from the start to " + below +
+           ".";
   case Remark::unstable: return "No stable state was found downhill from here.";
   case Remark::unstable_and_unbounded: return "The" + falls + "; no stable state was found.";
   case Remark::left_unstable_speeds:
@@ -182,7 +185,9 @@ std::string message(const Found& found, const Problem& problem) {
                found.fallback == Fallback::search
                    ? "this is the nearest that a search all over the ranges found and that is not unstable."
                    : "the motion from the start, or from beside that state, leads to this one.");
-  case Remark::basin_uncertain: return "A stable state, but the start may lie in the basin of another.";
+  case Remark::basin_uncertain:
+    return std::string(drives ? "A minimum of the potential" : "A stable state") +
+           ", but the start may lie in the basin of another.";
   case Remark::first_does_not_hold:
     return searched("The equilibrium found first holds at one phase of the drives only");
   case Remark::first_not_found:

@@ -252,21 +252,28 @@ class EquilibriumSearch {
     if (p_.symmetric()) {
       potential_ = true;
       KktSystem& kkt = w_.kkt(p_);
-      found_.minimum = kkt.positive_definite() && kkt.inertia_is_certain(p_, w_);
-      unstable_ = !found_.minimum && !only_null_directions();
+      set_minimum(kkt.positive_definite() && kkt.inertia_is_certain(p_, w_));
+      unstable_ = !least_ && !only_null_directions();
       return;
     }
     if (large_) {
-      found_.minimum = p_.symmetric_at_speeds() && w_.speeds.keeps_minimum();
+      set_minimum(p_.symmetric_at_speeds() && w_.speeds.keeps_minimum());
       return;
     }
     potential_ = !nearest_ && has_potential(p_, found_.z, w_.dense.stiffness(), w_.elsewhere());
-    found_.minimum = unstable_ = false;
+    set_minimum(false);
+    unstable_ = false;
     if (!potential_) return;
     ReducedHessian energy;
     energy.factor(w_.dense.reduced(), w_.dense.noise(), true);
-    found_.minimum = energy.positive_definite();
-    unstable_ = !found_.minimum && !only_null_directions(energy);
+    set_minimum(energy.positive_definite());
+    unstable_ = !least_ && !only_null_directions(energy);
+  }
+
+  // Whether the potential is least here; a damper that drives may make that unstable all the same.
+  void set_minimum(bool least) {
+    least_ = least;
+    found_.minimum = least && !p_.parameters.dampers_drive;
   }
 
   static bool only_null_directions(const ReducedHessian& hessian) {
@@ -452,7 +459,8 @@ class EquilibriumSearch {
   std::optional<Fallback> candidate_fallback_;
   bool arrived_ = false;           // some solver converged, at an admissible state or not
   bool potential_ = false;         // what was found last has one
-  bool unstable_ = false;          // and is no minimum of it
+  bool least_ = false;             // and is a strict minimum of it
+  bool unstable_ = false;          // or falls from there
   bool unbounded_ = false;         // the last descent found no bottom
   bool starts_indefinite_ = false; // says Newton-Raphson, which leaves the balance linearised there
 };

@@ -42,7 +42,7 @@ struct Found {
   Unknowns z;
   NewtonOutcome newton;
   std::optional<Fallback> fallback; // that found it where plain Newton-Raphson did not
-  bool minimum = false;             // a strict minimum of the amended potential on the constraints
+  bool minimum = false; // a strict minimum of the amended potential on the constraints, and stable
   int iterations = 0;
   bool descended = false; // the descent of the potential was among the methods
   bool unbounded = false; // it went on for hundreds of reaches before this was settled for

@@ -156,8 +156,8 @@ void SteadyState::find_once(const Problem& problem, const Eigen::VectorXd& from,
   find_equilibrium(problem, start, options.nearest, options.warm, balance_, history, found,
                    options.newton_only);
   // A neighbour's answer that had to be left goes back to the definition: what the drawn pose reaches.
-  const bool left =
-      found.status != Status::converged || found.fallback || (problem.symmetric() && !found.minimum);
+  const bool left = found.status != Status::converged || found.fallback ||
+                    (problem.symmetric() && !found.minimum && !problem.parameters.dampers_drive);
   if (options.warm && left && !problem.cancelled()) {
     start = drawn;
     find_equilibrium(problem, start, options.nearest, false, balance_, history, found, options.newton_only);
@@ -367,7 +367,8 @@ void SteadyState::put_back(Answer answer) {
 bool SteadyState::take_if_stable(const Problem& problem, const Eigen::VectorXd& drawn, Found candidate) {
   Answer before = replace(problem, std::move(candidate));
   if (holds && is_known(problem, found.z.q, drawn, error.solution)) {
-    found.minimum = found.minimum || (problem.symmetric_at_speeds() && balance_.speeds.keeps_minimum());
+    found.minimum = found.minimum || (problem.symmetric_at_speeds() && balance_.speeds.keeps_minimum() &&
+                                      !problem.parameters.dampers_drive);
     if (!found.minimum || !phases.empty()) judge(problem);
     if (!unstable_ || (found.minimum && phases.empty())) return true;
   }

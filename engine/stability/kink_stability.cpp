@@ -23,9 +23,10 @@ Stability common_stability(const FactoredState& at, const std::vector<Kink>& kin
   const Stability softer = on_side(KinkSide::softer);
   if (softer.reason == StabilityReason::minimum) return softer;
   Stability common = on_side(KinkSide::stiffer);
+  const Parameters& p = at.problem.parameters;
   const bool proven =
       softer.reason == StabilityReason::neutral ||
-      (softer.reason == StabilityReason::unstable && at.problem.symmetric() && !at.problem.parameters.moving);
+      (softer.reason == StabilityReason::unstable && at.problem.symmetric() && !p.moving && !p.dampers_drive);
   if (proven && softer.reason == common.reason && softer.neutral == common.neutral) return common;
   common.stable.reset();
   common.reason = StabilityReason::marginal;

@@ -270,6 +270,8 @@ StabilityEvidence stability_evidence(const FactoredState& at) {
     out.reason =
         "There is no potential here (drag, a bearing, a damper between parts that turn against each other, a "
         "drive that gives a torque, or drives that ride on moving parts): the eigenvalues alone judge.";
+  } else if (at.problem.parameters.dampers_drive) {
+    out.reason = "Some damper gives energy where it hardly moves: the eigenvalues alone judge.";
   } else if (out.downhill > 0 && out.growing > 0) {
     out.reason = "Both say unstable: the amended potential falls in " + directions(out.downhill) + ", and " +
                  (out.growing == 1 ? std::string("one eigenvalue grows.")

@@ -107,7 +107,8 @@ Stability find_pivot_stability(const FactoredState& at) {
     out.floquet_failure = FloquetFailure::unresolved;
     return out;
   }
-  if (!problem.symmetric() || !kkt.inertia_is_certain(problem, at.w)) return out;
+  if (!problem.symmetric() || problem.parameters.dampers_drive || !kkt.inertia_is_certain(problem, at.w))
+    return out;
   if (kkt.shift() > 0) return of_shifted_directions(at);
   const int negative = kkt.negative_count();
   if (kkt.positive_definite()) {

@@ -92,12 +92,13 @@ bool growth_is_open(const Problem& problem, const Unknowns& z, double away, Work
 
 bool verdict_is_open(const Problem& problem, const Unknowns& z, double away, const Stability& stability,
                      Workspace& w) {
-  if (problem.symmetric())
+  if (problem.symmetric() && !problem.parameters.dampers_drive)
     return stiffness_is_open(problem, z, away, stability.reason == StabilityReason::minimum, w);
   const bool decided = stability.reason == StabilityReason::asymptotic ||
                        stability.reason == StabilityReason::unstable ||
                        stability.reason == StabilityReason::minimum;
-  return decided && !problem.system.torques.empty() && !problem.system.conserves &&
+  return decided && !problem.system.torques.empty() &&
+         (!problem.system.conserves || problem.parameters.dampers_drive) &&
          growth_is_open(problem, z, away, w);
 }
 

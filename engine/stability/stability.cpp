@@ -111,23 +111,25 @@ Stability find_smooth_stability(const FactoredState& at, bool with_eigenvalues) 
   // The first certificate that is not open is the reason. Of few coordinates eigenvalues cost little, and
   // tell more than an energy that falls.
   constexpr int few = 8;
+  const bool keeps = !problem.parameters.dampers_drive; // a motion does not gain energy
   const bool energy_first = system.conserves || system.nv > few;
   Verdict& verdict = out;
-  if (potential && hessian.positive_definite()) verdict = {true, StabilityReason::minimum};
+  if (potential && keeps && hessian.positive_definite()) verdict = {true, StabilityReason::minimum};
   if (verdict.stable && !with_eigenvalues) return out;
   auto motion = steady_motion(problem, at.z, w);
   if (!motion) return out;
   if (potential) motion->stiffness = (reduced + reduced.transpose()) / 2;
-  if (!verdict.stable && energy_first) verdict = by_energy(system, *motion);
+  if (!verdict.stable && keeps && energy_first) verdict = by_energy(system, *motion);
   if (verdict.stable && !with_eigenvalues) return out;
   out.eigenvalues = eigenvalues_of(problem, *motion, with_eigenvalues ? nullptr : &out.few_digits);
   if (verdict.stable || !out.eigenvalues) return out;
   BalanceShape balance{{}, static_cast<int>(null_space.cols()), neutral.count};
   out.null_eigenvalues =
       system.torques.empty() ? count_null_eigenvalues(at, *motion, hessian, potential) : 2 * balance.null;
-  if (potential) balance.falls = hessian.decompose() && hessian.eigenvalues()[0] < -ReducedHessian::zero;
+  if (potential && keeps)
+    balance.falls = hessian.decompose() && hessian.eigenvalues()[0] < -ReducedHessian::zero;
   verdict = by_spectrum(at, *motion, *out.eigenvalues, out.null_eigenvalues, balance);
-  if (!verdict.stable && !energy_first)
+  if (!verdict.stable && keeps && !energy_first)
     if (const Verdict energy = by_energy(system, *motion); energy.stable) verdict = energy;
   return out;
 }

@@ -24,6 +24,17 @@ std::optional<bool> stable_by(const LinearModel& model) {
   return {};
 }
 
+// Of an output that is a state no difference leaves rounding in C.
+void set_states_as_outputs(const std::vector<std::string>& as_states, LinearModel& out) {
+  for (std::size_t i = 0; i < as_states.size(); ++i) {
+    const auto state = std::ranges::find(out.states, as_states[i], &LinearModel::State::name);
+    if (as_states[i].empty() || state == out.states.end()) continue;
+    auto row = out.descriptor.c.row(static_cast<Eigen::Index>(i));
+    row.setZero();
+    row[state - out.states.begin()] = 1;
+  }
+}
+
 } // namespace
 
 void add_forms(const LinearPlace& place, const LinearMatrices& m, bool massless, const LinearSignals& signals,
@@ -60,8 +71,6 @@ void add_forms(const LinearPlace& place, const LinearMatrices& m, bool massless,
     direct.b.row(i) = m.shift.row(p);
     x.c.col(i) = m.c_position.col(p);
   }
-  direct.c = x.c;
-  if (!massless && !(m.lost > most_lost)) out.explicit_form = std::move(direct);
   for (const bool rate : {false, true})
     for (Eigen::Index i = 0; i < k; ++i) {
       const int v = place.chosen.entries[static_cast<std::size_t>(i)];
@@ -79,6 +88,9 @@ void add_forms(const LinearPlace& place, const LinearMatrices& m, bool massless,
       state.less_input = rate && inputs > 0 && !m.shift.row(i).isZero(0);
       out.states.push_back(std::move(state));
     }
+  set_states_as_outputs(signals.as_states, out);
+  direct.c = x.c;
+  if (!massless && !(m.lost > most_lost)) out.explicit_form = std::move(direct);
   out.inputs.assign(signals.inputs.begin(), signals.inputs.end());
   out.outputs = signals.outputs;
   out.output_error = m.error;

@@ -357,7 +357,7 @@ class Builder {
         throw Refusal{"The output " + output(i) +
                       " has no slope in the steady state, where it stands on a kink, as the size of a vector "
                       "does that vanishes there. Its components may have one."};
-    refuse_rates(motion, effects, h, rate, out.most);
+    refuse_rates(motion, effects, directions.positions, h, rate, out.most);
     refuse_open_shares(motion, h);
     out.normalised = normalised;
     out.sizes = sizes;
@@ -381,8 +381,9 @@ class Builder {
   std::string output(Eigen::Index i) const { return signals_.outputs[static_cast<std::size_t>(i)].name; }
 
   // What an output may not feel: the rates of inputs, and angles that speeds add up to.
-  void refuse_rates(const MotionAt& motion, const std::vector<InputEffect>& effects, MotionOutputs& h,
-                    double rate, const Eigen::VectorXd& most) {
+  void refuse_rates(const MotionAt& motion, const std::vector<InputEffect>& effects,
+                    const Eigen::MatrixXd& positions, MotionOutputs& h, double rate,
+                    const Eigen::VectorXd& most) {
     const int n = place_->model.system.nv;
     const auto zero = [&] { return Eigen::VectorXd(Eigen::VectorXd::Zero(place_->model.released.nv)); };
     const auto refuse = [&](const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& a,
@@ -423,7 +424,7 @@ class Builder {
     for (std::size_t i = 0; i < place_->chosen.entries.size(); ++i) {
       if (!place_->chosen.phase[i]) continue;
       Eigen::VectorXd q = zero();
-      q[place_->chosen.entries[i]] = 1;
+      q.head(n) = positions.col(static_cast<Eigen::Index>(i)); // with what loops and gears move along
       refuse(q, zero(), zero(), [&](const std::string& name) {
         return "The output " + name + " depends on the angle of " +
                name_state(place_->model, place_->chosen.entries[i], false).name +

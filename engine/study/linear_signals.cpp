@@ -1,6 +1,7 @@
 #include "engine/study/linear_signals.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/measure_plan.hpp"
@@ -99,6 +100,19 @@ NamedMeasure read_output(const std::string& text, const Mechanism& m, std::size_
   return measure;
 }
 
+std::string as_state(const Mechanism& m, const std::string& output) {
+  const Expression read(output, Expression::Results::allowed);
+  if (read.results().size() != 1) return {};
+  const ResultCall& call = read.results().front();
+  if (call.begin != 0 || (call.result != Result::coordinate && call.result != Result::rate)) return {};
+  const ResultCall::Argument& of = call.arguments.front();
+  if (output.find(')', of.begin + of.length) + 1 != output.size()) return {};
+  const CoordinateReference at = find_coordinate(m, call);
+  if (at.joint < 0) return {};
+  return coordinate_name(m.joints[place(at.joint)], at.coordinate) +
+         (call.result == Result::rate ? ".rate" : "");
+}
+
 template <class Signal>
 void refuse_twice(const std::vector<Signal>& signals, const char* what, const std::string& name) {
   if (std::ranges::find(signals, name, &Signal::name) != signals.end())
@@ -109,7 +123,7 @@ void refuse_twice(const std::vector<Signal>& signals, const char* what, const st
 
 LinearSignals read_signals(const Mechanism& mechanism, std::span<const std::string> inputs,
                            std::span<const std::string> outputs) {
-  LinearSignals out{mechanism, {}, {}};
+  LinearSignals out{mechanism, {}, {}, {}};
   out.mechanism.sliders.clear(); // nobody asks for rates along them
   for (const std::string& text : inputs) {
     refuse_twice(out.inputs, "input", text);
@@ -125,6 +139,7 @@ LinearSignals read_signals(const Mechanism& mechanism, std::span<const std::stri
     } catch (const SceneError& error) { // the measure is the program's own, and not to be named
       throw SceneError("output " + text, error.expected());
     }
+    out.as_states.push_back(as_state(mechanism, out.mechanism.measures.back().text));
   }
   return out;
 }

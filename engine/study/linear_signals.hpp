@@ -26,6 +26,9 @@ struct LinearSignals {
   Mechanism mechanism;
   std::vector<LinearInput> inputs;
   std::vector<LinearSignal> outputs; // the last of the measures; no values yet
+  // By output: the name of the state (LinearModel::states) that it is by itself where that is one, as
+  // "slide.rate" of "rate(slide)"; else empty.
+  std::vector<std::string> as_states;
 };
 
 // Inputs: the address of a number; `torque(JOINT)`, a torque or force added along a coordinate, positive

@@ -38,6 +38,8 @@ class BoundLaw {
   double slope(double x) const { return (*this)(Dual(x, 1)).rate; }
   // The integral from 0 to x (J).
   double energy(double x) const;
+  // Of a damper's law, by its rate: whether it takes up energy where it hardly moves.
+  bool resists_at_rest() const;
 
  private:
   std::shared_ptr<const ForceLaw> law_;

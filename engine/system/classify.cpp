@@ -1,23 +1,9 @@
 #include "engine/system/classify.hpp"
 
-#include "engine/mechanism/damped.hpp"
-
 #include <algorithm>
 
 namespace flyball {
 namespace {
-
-// Whether damping may be negative, so that a minimum of the potential need not be stable.
-bool some_damper_may_drive(const Mechanism& m) {
-  const auto drives = [&](const Formula* law) { return law && !resists_at_rest(*law); };
-  return std::ranges::any_of(m.joints,
-                             [&](const Joint& x) {
-                               for (int i = 0; i < static_cast<int>(x.coordinates.size()); ++i)
-                                 if (drives(damper_law(x, i))) return true;
-                               return false;
-                             }) ||
-         std::ranges::any_of(m.forces, [&](const Force& x) { return drives(damper_law(x)); });
-}
 
 // See BodyForceElement::constant, of what is no force of the air.
 bool is_constant(const System& s, int body_link, const Force& f) {
@@ -61,8 +47,6 @@ void find_potential(const Mechanism& m, System& s) {
     if (move_against_each_other(e.ends)) s.conservative = false;
   // A bearing's matrices may be symmetric, but the next number may change that.
   s.conservative = s.conservative && s.bearings.empty();
-  if (!s.coordinate_laws.empty() || !s.spring_laws.empty() || !s.cut_damper_laws.empty())
-    s.conservative = s.conservative && !some_damper_may_drive(m);
   s.conservative_at_speeds = s.conservative;
   s.conserves = s.conservative && std::ranges::all_of(s.torques, &DriveTorqueElement::keeps_momentum);
   s.conservative = s.conservative && s.torques.empty();

@@ -30,6 +30,7 @@ class Binder {
 
   void run() {
     p_.gravity = read_(m_.gravity);
+    p_.dampers_drive = false;
     p_.origin = s_.tree_joints.empty() ? Vector(Vector::Zero()) : joint_point(s_.tree_joints.front());
     p_.links.resize(s_.links.size());
     for (std::size_t l = 0; l < s_.links.size(); ++l)
@@ -140,9 +141,14 @@ class Binder {
     if (e.has_damper) {
       laws.damper = bind_law(m_, e.damper, c.damping_force, read_);
       f.damping = laws.damper.slope(0);
+      note_damper(laws.damper);
     }
     f.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     out.elastic = out.elastic || e.has_spring;
+  }
+
+  void note_damper(const BoundLaw& law) const {
+    p_.dampers_drive = p_.dampers_drive || !law.resists_at_rest();
   }
 
   N limit_of(const Friction& x) const { // see friction_limit
@@ -254,6 +260,7 @@ class Binder {
       if (e.has_damper) {
         laws.damper = bind_law(m_, e.damper, f.damping_force, read_);
         out.damping = laws.damper.slope(0);
+        note_damper(laws.damper);
       }
       out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     }
@@ -286,6 +293,7 @@ class Binder {
           m_, e.damper,
           joint(damper.joint).coordinates[static_cast<std::size_t>(damper.coordinate)].damping_force, read_);
       out.damping = laws.damper.slope(0);
+      note_damper(laws.damper);
       out.laws = std::make_shared<const BasicForceLaws<N>>(std::move(laws));
     }
     p_.torques.resize(s_.torques.size());

@@ -229,6 +229,9 @@ struct BasicParameters {
   // The whole balance is the same at every phase of the drives, by the shape of the mechanism alone: one
   // frame turns about an axis along gravity and nothing acts between it and the ground.
   bool phase_free = false;
+  // Some damper's law gives energy where it hardly moves. The balance of a steady state does not know it, but
+  // a minimum of the potential need not be stable.
+  bool dampers_drive = false;
 };
 
 using CoordinateForce = BasicCoordinateForce<double>;

@@ -1,5 +1,6 @@
 // Linear models against closed forms and against `solve`; and what has none.
 #include "engine/mechanism/error.hpp"
+#include "engine/mechanism/validate.hpp"
 #include "engine/report/analysis.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/coupled_shafts.hpp"
@@ -220,11 +221,26 @@ TEST_CASE("an engine's governor by torques, and the shaft's angle where it is as
   CHECK(whole.states.size() == 4);
   CHECK_FALSE(whole.gain);
   CHECK(std::abs(whole.poles.front()) < 1e-9);
+  // Outputs that are states are exactly so.
+  const auto expect_state = [](const LinearModel& of, Eigen::Index output, const std::string& name) {
+    for (const Eigen::MatrixXd& c : {of.descriptor.c, of.explicit_form->c})
+      for (Eigen::Index s = 0; s < c.cols(); ++s)
+        CHECK(c(output, s) == (of.states[static_cast<std::size_t>(s)].name == name ? 1 : 0));
+  };
+  expect_state(model, 0, "spin.rate");
+  expect_state(whole, 0, "spin.rate");
+  expect_state(whole, 1, "spin");
   const auto h = transfer(*whole.explicit_form, {0, 1.3});
   CHECK(std::abs((*h)(0, 0) - (*h)(1, 0) * Complex(0, 1.3)) < 1e-12 * std::abs((*h)(0, 0)));
   CHECK(std::abs((*h)(0, 0) - (*transfer(*model.explicit_form, {0, 1.3}))(0, 0)) <
         1e-12 * std::abs((*h)(0, 0)));
   CHECK_THAT(refusal(m, {"torque(spin)"}, {"coordinate(spin)"}), ContainsSubstring("without end"));
+  Mechanism geared = m; // and what turns with it
+  geared.bodies.push_back(body("fan", 1, {1, 0, 0}, {0.1, 0.1, 0.1}));
+  geared.joints.push_back(revolute("fan", "ground", "fan", {1, 0, 0}, {0, 1, 0}));
+  geared.joints.push_back(gear("belt", "spin", "fan", 2));
+  validate(geared);
+  CHECK_THAT(refusal(geared, {"torque(spin)"}, {"coordinate(fan)"}), ContainsSubstring("without end"));
 }
 
 TEST_CASE("what has no linear model is refused with the reason", "[linear-model]") {

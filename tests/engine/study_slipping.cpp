@@ -298,6 +298,63 @@ TEST_CASE("all steady states: what slips is listed, and bands tell of what frict
     CHECK(s.frictions.empty());
 }
 
+TEST_CASE("of what slips at several speeds, or turns at several beside what is held, all are listed") {
+  // A brake of 0.5 N m: it slips where the torque is that.
+  Mechanism m;
+  m.bodies = {body("disc", 1, {0, 0, 0}, {0.1, 0.1, 0.1})};
+  const std::string three = "0.01 N m s^3 * (2 rad/s - rate(A)) * (5 rad/s - rate(A)) * (9 rad/s - rate(A))";
+  m.joints = {torque_driven(revolute("A", "ground", "disc", {0, 0, 0}, {0, 1, 0}), 1, "0.5 N m + " + three)};
+  m.joints[0].coordinates[0].friction = Friction{.limit = 0.5};
+  validate(m);
+  const AllSolutions one = Analysis(m).solve_all();
+  std::vector<std::pair<double, std::optional<bool>>> found;
+  for (const Solution& s : one.equilibria) {
+    CHECK(s.frictions.at(0).slips);
+    found.emplace_back(std::round(speed(s, "A") * 1e9) / 1e9, s.stable);
+  }
+  std::ranges::sort(found);
+  CHECK(found == decltype(found){{2, true}, {5, false}, {9, true}});
+
+  // It turns another with a brake of 0.6 N m, by 0.1 N m s of its speed.
+  m.joints[0] = torque_driven(revolute("A", "ground", "disc", {0, 0, 0}, {0, 1, 0}), 1, three);
+  m.bodies.push_back(body("other", 1, {1, 0, 0}, {0.1, 0.1, 0.1}));
+  m.joints.push_back(torque_driven(revolute("B", "ground", "other", {1, 0, 0}, {0, 1, 0}), 1,
+                                   "0.1 N m s * (rate(A) - rate(B))"));
+  m.joints[1].coordinates[0].friction = Friction{.limit = 0.6};
+  validate(m);
+  std::vector<std::pair<double, double>> speeds;
+  for (const Solution& s : Analysis(m).solve_all().equilibria)
+    speeds.emplace_back(std::round(speed(s, "A") * 1e9) / 1e9, std::round(speed(s, "B") * 1e9) / 1e9);
+  std::ranges::sort(speeds);
+  CHECK(speeds == decltype(speeds){{2, 0}, {5, 0}, {9, 3}});
+}
+
+TEST_CASE("a clutch slips the way that its shafts turn at one of several speeds") {
+  // Beyond 3 N m of the second shaft's torque, which its speed lets jump at 11 rad/s, Newton-Raphson comes to
+  // speeds at which the clutch would slip the other way.
+  Mechanism m;
+  m.bodies = {body("a", 1, {0, 0, 0}, {0.1, 0.1, 0.1}), body("b", 1, {0, 1, 0}, {0.1, 0.1, 0.1})};
+  m.joints = {
+      torque_driven(revolute("A", "ground", "a", {0, 0, 0}, {0, 1, 0}), 15, "-0.3 N m - 0.3 N m s * rate(A)"),
+      torque_driven(revolute("B", "ground", "b", {0, 1, 0}, {0, 1, 0}), 15,
+                    "-2 N m + 3 N m * tanh((rate(B) - 11 rad/s) / (2 rad/s)) - 0.06 N m s * rate(B)"),
+      revolute("clutch", "a", "b", {0, 0.5, 0}, {0, 1, 0})};
+  m.joints[2].coordinates[0].friction = Friction{.limit = 2.7};
+  validate(m);
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  const AllSolutions all = Analysis(m).solve_all();
+  REQUIRE(all.equilibria.size() == 1);
+  for (const Solution& slipping : {s, all.equilibria[0]}) {
+    CHECK_THAT(speed(slipping, "A"), WithinRel(-10, 1e-12));
+    CHECK_THAT(speed(slipping, "B"), WithinRel(-2.3 / 0.06, 1e-12));
+    CHECK(slipping.frictions.at(0).slips);
+    CHECK(slipping.stable == true);
+  }
+  expect_same_motion(m, s, "B", 60, 1);
+}
+
 TEST_CASE("four shafts, each with friction in its bearing, slip on and on") {
   Mechanism m;
   m.name = "Four";
