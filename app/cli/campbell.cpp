@@ -10,6 +10,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/file.hpp"
+#include "engine/study/drive_speed.hpp"
 #include "engine/study/friction_branches.hpp"
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,7 @@
 #include "app/plot/campbell_plot.hpp"
 
 #include "engine/mechanism/address.hpp"
+#include "engine/study/drive_speed.hpp"
 
 #include <fmt/format.h>
 

@@ -64,25 +64,6 @@ std::vector<int> modes_on_lines(const ResponseBranch& followed, const CampbellBr
 // unbalance stands.
 bool unbalance_excites(const CriticalSpeed& critical);
 
-// The drive whose turns orders count along the number at `address`: one that turns with this as its speed,
-// else one whose speed an expression makes of it, and perhaps of others.
-class DriveSpeed {
- public:
-  DriveSpeed(const Mechanism& mechanism, std::string address);
-
-  const std::string& joint() const { return joint_; } // empty: there is no such drive
-  bool is_number() const { return !varied_; }         // the number itself is the speed
-  // rad/s, where the number has that value. NaN where expressions make nothing of it.
-  double at(double value);
-  double rate(double value); // d at / d value; likewise
-
- private:
-  bool set(double value);
-
-  std::string address_, joint_, speed_, formula_; // the last two, the drive's, where it is not the number
-  std::optional<Mechanism> varied_;               // where there is a formula
-};
-
 // A sentence or two on the points of a branch that have no modes because its loops are singular there; empty
 // where there are none. `speed_text` writes a speed as a number of `unit`.
 std::string left_out(const ResponseBranch& branch, const std::function<std::string(double)>& speed_text,

@@ -6,6 +6,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
 #include "engine/study/campbell.hpp"
+#include "engine/study/drive_speed.hpp"
 
 #include <algorithm>
 #include <numbers>

@@ -5,6 +5,7 @@
 #include "app/ui/studies/modes/critical_speeds.hpp"
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/study/drive_speed.hpp"
 
 #include <algorithm>
 #include <numbers>
