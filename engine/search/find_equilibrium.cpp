@@ -56,7 +56,7 @@ class EquilibriumSearch {
     found_.open_cut = -1;
     found_.candidates = 0;
     found_.minimum = found_.unbounded = false;
-    found_.descended = descends_;
+    found_.descended = descends_ && !at_speeds_;
     history_.clear();
   }
 
@@ -68,7 +68,7 @@ class EquilibriumSearch {
     if (!close_loops()) return false;
     if (against_stops()) return true;
     if (large_ && downhill()) return true;
-    if (at_speeds_ && newton_anyway()) return true;
+    if (at_speeds_ && gives_up_ && newton_anyway()) return true;
     if (damped_newton() || from_rest() || slow_motion()) return true;
     if (!large_ && downhill()) return true;
     return settle_for_unstable();
@@ -87,11 +87,11 @@ class EquilibriumSearch {
     plain.impatient = large_;
     plain.trusting = warm_;
     // Where the descent comes next it leads to a minimum with fewer steps.
-    plain.to_minimum = descends_ && large_ && !warm_ && !(at_speeds_ && newton_only_);
+    plain.to_minimum = gives_up_ = descends_ && large_ && !warm_ && !(at_speeds_ && newton_only_);
     return attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });
   }
 
-  // From the start all the way, where it was given up for a descent at given speeds that led nowhere.
+  // From the start all the way, where it was given up for a descent at given speeds that led to no answer.
   bool newton_anyway() {
     NewtonSettings plain;
     plain.impatient = true;
@@ -396,13 +396,13 @@ class EquilibriumSearch {
       outcome = solve_from_bottom(descent.factored);
     else if (descent.end != DescentEnd::near)
       return false;
-    // Speeds that are found may take what stands at others along a long way.
     if (!outcome.converged || (outcome.largest_step > 0.2 && !unbounded_ && !at_speeds_) ||
         !same_assembly_mode(p_, w_.kinematics) || (unbounded_ && !below_assembled()))
       return false;
     found_.unbounded = unbounded_;
     unbounded_ = false;
     found_.newton = outcome;
+    if (at_speeds_) return stays_by_descent(outcome);
     const bool left_unstable = arrived_ && unstable_;
     classify(w_.kkt(p_).shift() == 0 && still_factored(outcome));
     if (potential_ && unstable_) return false;
@@ -414,6 +414,16 @@ class EquilibriumSearch {
     if (left_unstable)
       found_.remark =
           same(candidate_.q, w_.assembled) ? Remark::left_unstable_start : Remark::left_unstable_equilibrium;
+    found_.status = Status::converged;
+    return true;
+  }
+
+  // What Newton-Raphson makes of the bottom at the speeds of the start counts where it is stable, the speeds
+  // near these, and the rest not far from the bottom.
+  bool stays_by_descent(const NewtonOutcome& outcome) {
+    constexpr double near = 0.5; // scaled
+    classify(w_.kkt(p_).shift() == 0 && still_factored(outcome));
+    if (!found_.minimum || outcome.largest_step > near || count_turned_round(found_.z.q) > 0) return false;
     found_.status = Status::converged;
     return true;
   }
@@ -457,6 +467,7 @@ class EquilibriumSearch {
   Unknowns candidate_;
   NewtonOutcome candidate_outcome_;
   std::optional<Fallback> candidate_fallback_;
+  bool gives_up_ = false;          // Newton-Raphson did or would, for the descent
   bool arrived_ = false;           // some solver converged, at an admissible state or not
   bool potential_ = false;         // what was found last has one
   bool least_ = false;             // and is a strict minimum of it

@@ -53,6 +53,7 @@ PlacedWays::PlacedWays(const StandingJoints& standing, const std::vector<std::st
     : standing_(standing), outputs_(static_cast<Index>(outputs.size())), reach_(reach), cancel_(cancel),
       map_(standing.mechanism, numbers(standing), with_shares(standing, outputs), cancel) {
   map_.count_turns();
+  map_.refuse_leaps();
   for (const std::string& name : outputs)
     turns_freely_.push_back(std::ranges::find(turning, name) != turning.end());
   radius_ = VectorXd::Ones(map_.count());

@@ -31,6 +31,7 @@ ShareBox::ShareBox(const Mechanism& mechanism, std::span<const FreeNumber> share
                    std::vector<std::string> outputs, const std::atomic<bool>* cancel)
     : outputs_(static_cast<Index>(outputs.size())), map_(mechanism, shares, std::move(outputs), cancel) {
   map_.count_turns();
+  map_.refuse_leaps();
 }
 
 bool ShareBox::begin(const std::vector<std::pair<std::string, double>>& start) {

@@ -361,7 +361,7 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
     if (to == state.p) return false; // the state runs away at numbers that are told apart no more
     const Eigen::MatrixXd rates = rates_, state_rates = state_rates_;
     std::optional<State> next = step_to(state, to);
-    if (next && (!find_rates(*next) || goes_on(state, state_rates, *next))) {
+    if (next && (!refuses_leaps_ || !find_rates(*next) || goes_on(state, state_rates, *next))) {
       if (counts_turns_ && measures_wanted()) look_for_jumps(state, rates, *next);
       state = std::move(*next);
       part = std::min(1., 2 * part);

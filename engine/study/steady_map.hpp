@@ -60,6 +60,11 @@ class SteadyMap {
   // Whether a measure jumped otherwise on a way that was walked since.
   bool jumps(std::size_t wanted) const { return wanted < jumps_.size() && jumps_[wanted]; }
 
+  // From here on walks refuse steps that rates at both ends do not lead across, as past two folds where a
+  // spring's force falls and rises again: where extents of one branch are told. Where branches cross they
+  // end, too.
+  void refuse_leaps() { refuses_leaps_ = true; }
+
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
   // where the state is singular, or at an end of what mechanisms can be made of. By the balance's exact rates
@@ -123,8 +128,9 @@ class SteadyMap {
   Eigen::VectorXd lower_, upper_, range_, p_;
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
-  std::optional<Analysis> analysis_;  // of states that are told
-  bool counts_turns_ = false;         // see count_turns()
+  std::optional<Analysis> analysis_; // of states that are told
+  bool counts_turns_ = false;        // see count_turns()
+  bool refuses_leaps_ = false;
   std::vector<bool> jumps_;           // see jumps()
   bool across_ = false;               // see follow_across()
   std::vector<bool> open_;            // what of `wanted_` has no value then

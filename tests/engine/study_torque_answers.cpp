@@ -351,6 +351,27 @@ TEST_CASE("a chain that a torque turns leaves the pose it hangs in as at that sp
   CHECK(s.iterations <= 2 * there.iterations);
 }
 
+TEST_CASE("a chain that a torque turns either way goes on the way it is searched for", "[torque]") {
+  const int count = GENERATE(5, 12, 40);
+  const double from = GENERATE(2.5, -2.5);
+  const bool cubic = GENERATE(false, true);
+  CAPTURE(count, from, cubic);
+  Mechanism m = hanging_chain(count, 1);
+  m.joints[0] = torque_driven(m.joints[0], from,
+                              cubic ? "2 N m s * rate(spin) * (25 - (rate(spin) / (1 rad/s))^2)"
+                                    : "5 N m s * rate(spin) - 0.8 N m s^2 * rate(spin) * abs(rate(spin))");
+  for (std::size_t i = 1; i < m.joints.size(); ++i)
+    m.joints[i] = dampened(m.joints[i], 0.01);
+  validate(m);
+  SolveOptions options;
+  options.details = false;
+  options.start = {{"hinge1", 0.2}};
+  const Solution s = Analysis(m).solve(options);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK_THAT(speed(s, "spin"), WithinRel(std::copysign(cubic ? 5 : 6.25, from), 1e-10));
+}
+
 TEST_CASE("what a minimum at given speeds proves needs torques that fall with these alone",
           "[torque][kinks]") {
   SECTION("shafts alone, more than eight") {
