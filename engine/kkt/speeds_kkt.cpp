@@ -3,8 +3,18 @@
 #include "engine/kkt/speed_time.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flyball {
+namespace {
+
+bool is_positive_definite(const Eigen::MatrixXd& a) {
+  ReducedHessian symmetric;
+  symmetric.factor((a + a.transpose()) / 2, Eigen::VectorXd::Zero(a.rows()), true);
+  return symmetric.positive_definite();
+}
+
+} // namespace
 
 void SpeedsKkt::linearize(const Problem& problem, const Unknowns& z, const Evaluation& at) {
   const System& system = problem.system;
@@ -73,6 +83,7 @@ void SpeedsKkt::factor(double shift) {
     border.col(i) -= rest_;
   }
   border_.factor(border, noise, false);
+  schur_complement_ = std::move(border);
   known_ = tree_.known() && border_.known();
   force_free_ = tree_.force_free_count();
   directions_ = tree_.null_directions();
@@ -146,10 +157,11 @@ void SpeedsKkt::direction_of(const NullDirection& direction, Eigen::VectorXd& x)
 }
 
 bool SpeedsKkt::keeps_minimum() const {
-  if (shift_ != 0 || !tree_.positive_definite() || !by_value_.empty()) return false;
-  ReducedHessian resistance;
-  resistance.factor((resists_ + resists_.transpose()) / 2, Eigen::VectorXd::Zero(resists_.rows()), true);
-  return resistance.positive_definite();
+  return shift_ == 0 && tree_.positive_definite() && by_value_.empty() && is_positive_definite(resists_);
+}
+
+bool SpeedsKkt::is_definite() const {
+  return tree_.negative_count() == 0 && is_positive_definite(schur_complement_);
 }
 
 } // namespace flyball

@@ -31,6 +31,10 @@ class SpeedsKkt final : public KktSystem {
   // factored without a shift.
   bool keeps_minimum() const;
 
+  // Whether neither the tree at given speeds nor the speeds' Schur complement, as factored, has a direction
+  // of negative stiffness.
+  bool is_definite() const;
+
   TreeKkt& at_given_speeds() { return tree_; }
 
  private:
@@ -51,7 +55,8 @@ class SpeedsKkt final : public KktSystem {
   double time_ = 1;                        // what a speed gains counts by (speed_time.hpp), s
   Eigen::VectorXd inertia_;                // of each shaft, scaled, times that; empty: not asked for
   Eigen::MatrixXd response_;               // K^-1 b
-  ReducedHessian border_;                  // d - r^T K^-1 b
+  Eigen::MatrixXd schur_complement_;       // d - r^T K^-1 b
+  ReducedHessian border_;                  // that, factored
   Eigen::VectorXd work_, product_, answer_, rest_;
   std::vector<NullDirection> directions_;
 };

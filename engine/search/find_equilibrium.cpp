@@ -68,7 +68,7 @@ class EquilibriumSearch {
     if (!close_loops()) return false;
     if (against_stops()) return true;
     if (large_ && downhill()) return true;
-    if (at_speeds_ && gives_up_ && newton_anyway()) return true;
+    if (at_speeds_ && gives_up_ && plain_newton_raphson()) return true;
     if (damped_newton() || from_rest() || slow_motion()) return true;
     if (!large_ && downhill()) return true;
     return settle_for_unstable();
@@ -92,7 +92,7 @@ class EquilibriumSearch {
   }
 
   // From the start all the way, where it was given up for a descent at given speeds that led to no answer.
-  bool newton_anyway() {
+  bool plain_newton_raphson() {
     NewtonSettings plain;
     plain.impatient = true;
     return !arrived_ && attempt(start_, std::nullopt, [&](Unknowns& z) { return newton_as_begun(z, plain); });

@@ -78,7 +78,7 @@ class SlowMotion {
         1e-12; // scaled: what is not as the model says so near is not to be followed
     for (; time_ > least_time; time_ /= 4) {
       kkt.factor(1 / time_);
-      if (!kkt.known()) continue;
+      if (!kkt.known() || (p_.symmetric_at_speeds() && !w_.speeds.is_definite())) continue;
       newton_step(p_, f, phi, w_, w_.scaled_step, w_.trial.lambda);
       const double size = length(w_.scaled_step);
       if (!(size <= longest)) continue;

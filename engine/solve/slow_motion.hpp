@@ -7,7 +7,8 @@
 // steps of the linearly implicit Euler method, (K + W / h) x = -f, as long as their model holds, and
 // Newton-Raphson at the end. Along a direction of stiffness -k such a step grows until h = 1 / k in the units
 // of W and goes backwards beyond, to the unstable state that the motion leaves: steps stay within half of
-// that, -f^T x >= x^T W x / (2 h).
+// that, -f^T x >= x^T W x / (2 h). Of trees the pivots tell of each direction by itself: K + W / h must have
+// none of negative stiffness.
 //
 // What a speed gains counts by the time of a radian at its unit (kkt/speed_time.hpp), and so do the first
 // step and its bounds: the way is the same in another unit of time.

@@ -14,8 +14,8 @@
 namespace flyball {
 
 enum class DescentEnd {
-  minimum,   // strict, or flat only along directions without stiffness
-  near,      // the quadratic model serves as far as it goes, and that is not far
+  minimum, // strict, or flat only along directions without stiffness; at speeds that will be others, near it
+  near,    // the quadratic model serves as far as it goes, and that is not far
   unbounded, // the potential falls on, hundreds of times the reach away
   stalled,   // no step lowers it: not a potential after all, or rounding
   cancelled,

@@ -202,9 +202,9 @@ bool may_write_to(const Session& session, FileQuery& query, const fs::path& file
   const bool asked = file == query.asked, folder = is_folder(file.parent_path());
   if (folder && file != session.document.file()) {
     const fs::path target = fs::weakly_canonical(file, failed); // through links
-    if (const std::error_code refusal = write_refusal((failed ? file : target).parent_path())) {
-      query.message =
-          "Nothing can be written into " + file.parent_path().string() + ": " + refusal.message() + ".";
+    const fs::path written_to = (failed ? file : target).parent_path();
+    if (const std::error_code refusal = write_refusal(written_to)) {
+      query.message = "Nothing can be written into " + written_to.string() + ": " + refusal.message() + ".";
       query.asked.clear();
       return false;
     }
