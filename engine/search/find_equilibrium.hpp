@@ -3,10 +3,10 @@
 // Newton-Raphson runs first, then from the stops that what hangs loose is pushed to, then damped, then by
 // homotopy from rest, then where torques drive along the slow motion from the start, then downhill on the
 // amended potential; for large mechanisms, where it takes few iterations, downhill comes second. Where there
-// is a potential an answer counts only if it is a minimum that the assembled start can reach without climbing;
-// Newton's habit of stopping at unstable states is met by going on downhill. A drawn pose that is itself a
-// gyroscopically stable state is the answer, too: it is what the mechanism does from there. Without a
-// potential Newton's answer stands, but see steady_state. Where torques drive a tree and the drawn pose is
+// is a potential an answer counts only if it is a minimum that the assembled start can reach without
+// climbing; Newton's habit of stopping at unstable states is met by going on downhill. A drawn pose that is
+// itself a gyroscopically stable state is the answer, too: it is what the mechanism does from there. Without
+// a potential Newton's answer stands, but see steady_state. Where torques drive a tree and the drawn pose is
 // none to stay in, downhill comes second, too, at the speeds of the start: Newton-Raphson goes on from there
 // with the speeds among the unknowns.
 #pragma once

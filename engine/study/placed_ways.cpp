@@ -52,8 +52,7 @@ PlacedWays::PlacedWays(const StandingJoints& standing, const std::vector<std::st
                        const std::vector<std::string>& turning, double reach, const std::atomic<bool>* cancel)
     : standing_(standing), outputs_(static_cast<Index>(outputs.size())), reach_(reach), cancel_(cancel),
       map_(standing.mechanism, numbers(standing), with_shares(standing, outputs), cancel) {
-  map_.count_turns();
-  map_.refuse_leaps();
+  map_.keep_to_branch();
   for (const std::string& name : outputs)
     turns_freely_.push_back(std::ranges::find(turning, name) != turning.end());
   radius_ = VectorXd::Ones(map_.count());

@@ -30,8 +30,7 @@ double size_of(Index output, const ShareBox::Place& at) {
 ShareBox::ShareBox(const Mechanism& mechanism, std::span<const FreeNumber> shares,
                    std::vector<std::string> outputs, const std::atomic<bool>* cancel)
     : outputs_(static_cast<Index>(outputs.size())), map_(mechanism, shares, std::move(outputs), cancel) {
-  map_.count_turns();
-  map_.refuse_leaps();
+  map_.keep_to_branch();
 }
 
 bool ShareBox::begin(const std::vector<std::pair<std::string, double>>& start) {
@@ -84,12 +83,12 @@ void ShareBox::look_around() {
       p[j] = (corner >> j) & 1U ? 1 : -1;
     const Way& way = go(from, p);
     corners.push_back(way.there ? std::optional(way.places.back()) : std::nullopt);
-    if (way.there) posts_.push_back(way.places.back());
+    if (way.there) climb_starts_.push_back(way.places.back());
   }
   for (Index j = 0; j < n; ++j)
     for (const double side : {-1., 1.})
       if (const Way& way = go(from, side * VectorXd::Unit(n, j)); way.there)
-        posts_.push_back(way.places.back());
+        climb_starts_.push_back(way.places.back());
   for (unsigned corner = 0; corner < 1U << n; ++corner)
     for (Index j = 0; j < n && !lost_; ++j)
       if (const unsigned other = corner | (1U << j); other != corner && corners[corner] && corners[other])
@@ -102,7 +101,7 @@ ShareBox::Place ShareBox::climb(Index output, double sense, double& left) {
   Place at = best_known(output, sense);
   // What rises to one corner may be higher beside another, so that one sweep is made from each from which
   // rates lead higher.
-  for (Place other : std::vector<Place>(posts_)) {
+  for (Place other : std::vector<Place>(climb_starts_)) {
     double led = sense * other.state.values[output];
     for (Index j = 0; j < other.state.p.size(); ++j)
       if (const double rate = sense * other.rates(output, j); rate != 0)

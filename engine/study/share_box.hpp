@@ -70,8 +70,8 @@ class ShareBox {
   Eigen::Index outputs_;
   SteadyMap map_;
   std::vector<Place> places_;
-  std::vector<Place> posts_; // corners and middles of faces
-  std::deque<Way> ways_;     // which stay where they are
+  std::vector<Place> climb_starts_; // corners and middles of faces
+  std::deque<Way> ways_;            // which stay where they are
   bool lost_ = false;
 };
 

@@ -116,7 +116,7 @@ void SteadyMap::find_values(State& state) {
 
 void SteadyMap::find_values(State& state, const State& from) {
   find_values(state);
-  if (!counts_turns_) return;
+  if (!keeps_to_branch_) return;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double predicted = from.values[k] + rates_.row(k).dot(state.p - from.p);
@@ -350,6 +350,15 @@ bool SteadyMap::is_jump(std::size_t wanted, State from, State to) {
   return true;
 }
 
+// From the state whose rates were found last; see keep_to_branch().
+std::optional<SteadyMap::State> SteadyMap::step_along_branch(const State& from, const Eigen::VectorXd& p) {
+  const Eigen::MatrixXd rates = rates_, state_rates = state_rates_;
+  std::optional<State> to = step_to(from, p);
+  if (!to || (find_rates(*to) && !goes_on(from, state_rates, *to))) return std::nullopt;
+  if (measures_wanted()) look_for_jumps(from, rates, *to);
+  return to;
+}
+
 bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
   double part = 1;
   for (int halvings = 0; state.p != p && halvings <= most_halvings;) {
@@ -359,10 +368,8 @@ bool SteadyMap::walk_to(State& state, const Eigen::VectorXd& p) {
     const double step = std::min(part, there > longest_way ? longest_way / there : 1);
     const Eigen::VectorXd to = step == 1 ? p : (state.p + step * (p - state.p)).eval();
     if (to == state.p) return false; // the state runs away at numbers that are told apart no more
-    const Eigen::MatrixXd rates = rates_, state_rates = state_rates_;
-    std::optional<State> next = step_to(state, to);
-    if (next && (!refuses_leaps_ || !find_rates(*next) || goes_on(state, state_rates, *next))) {
-      if (counts_turns_ && measures_wanted()) look_for_jumps(state, rates, *next);
+    std::optional<State> next = keeps_to_branch_ ? step_along_branch(state, to) : step_to(state, to);
+    if (next) {
       state = std::move(*next);
       part = std::min(1., 2 * part);
     } else {

@@ -54,16 +54,13 @@ class SteadyMap {
   // Whether what is asked for differs along them.
   bool is_open(std::size_t wanted) const { return wanted < open_.size() && open_[wanted]; }
 
-  // From here on measures of angles, in rad, that jump from pi to -pi go on beyond pi along the states, as
-  // coordinates do.
-  void count_turns() { counts_turns_ = true; }
+  // From here on, where extents of one branch are told, measures of angles, in rad, that jump from pi to -pi
+  // go on beyond pi along the states, as coordinates do; and walks refuse steps that rates at both ends do
+  // not lead across, as past two folds where a spring's force falls and rises again. Where branches cross
+  // they end, too.
+  void keep_to_branch() { keeps_to_branch_ = true; }
   // Whether a measure jumped otherwise on a way that was walked since.
   bool jumps(std::size_t wanted) const { return wanted < jumps_.size() && jumps_[wanted]; }
-
-  // From here on walks refuse steps that rates at both ends do not lead across, as past two folds where a
-  // spring's force falls and rises again: where extents of one branch are told. Where branches cross they
-  // end, too.
-  void refuse_leaps() { refuses_leaps_ = true; }
 
   // At a state that was found: how the coordinates go with the numbers, and rates() of what is asked for
   // ((wanted, numbers)), per unit of the numbers; not numbers in the rows of measures that have none. False
@@ -111,6 +108,7 @@ class SteadyMap {
   // The same of a state to which a step leads from the one whose rates were found last.
   void find_values(State& state, const State& from);
   bool correct(Unknowns& z);
+  std::optional<State> step_along_branch(const State& from, const Eigen::VectorXd& p);
   bool goes_on(const State& from, const Eigen::MatrixXd& state_rates, const State& to) const;
   void look_for_jumps(const State& from, const Eigen::MatrixXd& before, const State& to);
   bool may_jump(std::size_t wanted, const State& from, const Eigen::VectorXd& rate_from, const State& to,
@@ -128,9 +126,8 @@ class SteadyMap {
   Eigen::VectorXd lower_, upper_, range_, p_;
   MeasureSet measures_;
   Eigen::MatrixXd state_rates_, rates_;
-  std::optional<Analysis> analysis_; // of states that are told
-  bool counts_turns_ = false;        // see count_turns()
-  bool refuses_leaps_ = false;
+  std::optional<Analysis> analysis_;  // of states that are told
+  bool keeps_to_branch_ = false;      // see keep_to_branch()
   std::vector<bool> jumps_;           // see jumps()
   bool across_ = false;               // see follow_across()
   std::vector<bool> open_;            // what of `wanted_` has no value then

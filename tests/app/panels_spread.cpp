@@ -137,7 +137,8 @@ TEST_CASE("samples of other numbers than now are said to be so in sight, and mad
   for (const char* name : {"spread/stale", "spread/again"})
     CHECK(robot.widget(name).to.y < robot.widget("spread/output").from.y); // whatever the panel's height
   robot.click("spread/copy");                                              // as they are, and that is told
-  CHECK_THAT(std::string(ImGui::GetClipboardText()), Catch::Matchers::StartsWith("parameters.w,parameters.L,fate,"));
+  CHECK_THAT(std::string(ImGui::GetClipboardText()),
+             Catch::Matchers::StartsWith("parameters.w,parameters.L,fate,"));
   CHECK_THAT(robot.app.session.notice, Catch::Matchers::Contains("out of date"));
   CHECK(robot.state().stale);
   robot.click("spread/again");

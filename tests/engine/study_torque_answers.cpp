@@ -372,6 +372,25 @@ TEST_CASE("a chain that a torque turns either way goes on the way it is searched
   CHECK_THAT(speed(s, "spin"), WithinRel(std::copysign(cubic ? 5 : 6.25, from), 1e-10));
 }
 
+TEST_CASE("a long chain that several speeds balance is found at one that it stays at", "[torque]") {
+  const double from = GENERATE(0.5, 1.);
+  const int count = GENERATE(12, 40);
+  const double tilt = GENERATE(0., 0.01);
+  CAPTURE(from, count, tilt);
+  Mechanism m = resized(hanging_chain(count, 1), 4);
+  m.joints[0] = torque_driven(m.joints[0], from, "0.1 N m * sin(rate(spin) / (1 rad/s))");
+  for (std::size_t i = 1; i < m.joints.size(); ++i)
+    m.joints[i] = dampened(m.joints[i], 0.1);
+  validate(m);
+  SolveOptions options;
+  options.details = false;
+  options.start = {{"hinge1", tilt}};
+  const Solution s = Analysis(m).solve(options);
+  REQUIRE(s.status == Status::converged);
+  CHECK(s.stable == true);
+  CHECK(std::abs(std::remainder(speed(s, "spin") - std::numbers::pi, 2 * std::numbers::pi)) < 1e-10);
+}
+
 TEST_CASE("what a minimum at given speeds proves needs torques that fall with these alone",
           "[torque][kinks]") {
   SECTION("shafts alone, more than eight") {
