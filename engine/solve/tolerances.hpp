@@ -53,7 +53,7 @@ constexpr double neutral_force = 1e-9;       // scaled; less does not push along
 constexpr double converged_step = 1e-8;      // scaled; a minimum
 constexpr double stalled_step = 1e-5;        // scaled; a minimum where rounding allows no step, else stalled
 constexpr double newton_leads_step = 1e-3;   // scaled; Newton-Raphson may take over
-constexpr double speeds_lead_step = 0.1;     // scaled; likewise where speeds will be others
+constexpr double speeds_lead_step = 0.2;     // scaled; likewise where speeds will be others
 constexpr double least_radius = 1e-12;       // of the mechanism's size: no step is taken any more
 
 // Verdicts on states.
