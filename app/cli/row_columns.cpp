@@ -1,9 +1,9 @@
 #include "app/cli/row_columns.hpp"
 
 #include "app/cli/npz.hpp"
+#include "engine/mechanism/decimal.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace flyball::cli {
@@ -47,7 +47,7 @@ bool RowColumns::add(std::size_t column, std::string_view text) {
   case CellKind::number: {
     double value = std::nan("");
     const char* end = text.data() + text.size();
-    if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return false;
+    if (!text.empty() && read_decimal(text.data(), end, value).ptr != end) return false;
     append_item(out, value);
     return true;
   }

@@ -2,12 +2,12 @@
 
 #include "app/cli/report_error.hpp"
 #include "engine/mechanism/address.hpp"
+#include "engine/mechanism/decimal.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/validate.hpp"
 
-#include <charconv>
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <functional>
@@ -17,7 +17,7 @@ namespace flyball::cli {
 double parse_number(std::string_view option, std::string_view text) {
   double value = 0;
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  const auto [rest, error] = read_decimal(text.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value))
     throw SceneError(std::string(option), "expected a finite number in SI units (m, rad, kg, s, N), not \"" +
                                               std::string(text) + "\"");
@@ -28,7 +28,7 @@ CLI::Validator above_zero() {
   return {[](std::string& text) -> std::string {
             double value = 0;
             const char* end = text.data() + text.size();
-            const auto [rest, error] = std::from_chars(text.data(), end, value);
+            const auto [rest, error] = read_decimal(text.data(), end, value);
             if (error == std::errc() && rest == end && std::isfinite(value) && value > 0) return {};
             return "expected a number above zero, not " + text;
           },
@@ -103,7 +103,7 @@ double parse_value(const Mechanism& mechanism, std::string_view option, const st
                    std::string_view text) {
   double value = 0;
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  const auto [rest, error] = read_decimal(text.data(), end, value);
   if (error == std::errc() && rest == end && std::isfinite(value)) return value;
   const std::string unit = parameter_unit(mechanism, address);
   if (text.starts_with('=')) text.remove_prefix(1);

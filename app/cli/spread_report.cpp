@@ -4,13 +4,13 @@
 #include "app/cli/solution_json.hpp"
 #include "app/plot/column_name.hpp"
 #include "app/plot/spread_plot.hpp"
+#include "engine/mechanism/decimal.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace flyball::cli {
@@ -190,7 +190,7 @@ std::optional<SampleFate> read_sample(std::span<const std::string_view> cells, c
   for (const std::string_view text : cells.subspan(before + 1)) {
     double value = std::nan("");
     const char* end = text.data() + text.size();
-    if (!text.empty() && std::from_chars(text.data(), end, value).ptr != end) return {};
+    if (!text.empty() && read_decimal(text.data(), end, value).ptr != end) return {};
     values.push_back(value);
   }
   return static_cast<SampleFate>(fate);

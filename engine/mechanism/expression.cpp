@@ -1,5 +1,6 @@
 #include "engine/mechanism/expression.hpp"
 
+#include "engine/mechanism/decimal.hpp"
 #include "engine/mechanism/expression_functions.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/unset_duals.hpp"
@@ -117,7 +118,7 @@ class ExpressionParser {
   }
   void number() {
     double value = 0;
-    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    const auto [end, error] = read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
     if (error == std::errc::result_out_of_range)
       fail("expected a number of a size between 1e-307 and 1e308, found \"" +
            std::string(text_.substr(at_, static_cast<std::size_t>(end - text_.data()) - at_)) + "\"");

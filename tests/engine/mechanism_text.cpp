@@ -1,3 +1,4 @@
+#include "engine/mechanism/decimal.hpp"
 #include "engine/mechanism/mechanism.hpp"
 #include "engine/mechanism/safe_text.hpp"
 #include "engine/mechanism/text.hpp"
@@ -5,7 +6,10 @@
 #include "tests/catch.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
+#include <string_view>
+#include <tuple>
 
 using namespace flyball;
 
@@ -17,6 +21,28 @@ TEST_CASE("Numbers are as short as they can be and read back exactly") {
   for (const double value : {1.0 / 3, 0.45377171949723577, std::numeric_limits<double>::denorm_min(),
                              std::numeric_limits<double>::max()})
     CHECK(std::stod("0" + number_text(value / 2)) == value / 2);
+}
+
+// Whichever way the library reads them.
+TEST_CASE("A decimal number is read as far as it goes") {
+  const auto read = [](std::string_view text) {
+    double value = 7;
+    const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);
+    return std::tuple(value, end - text.data(), error);
+  };
+  const std::errc none{}, range = std::errc::result_out_of_range, invalid = std::errc::invalid_argument;
+  CHECK(read("-12.5e-3 m") == std::tuple(-0.0125, 8, none));
+  CHECK(read("2.5eV") == std::tuple(2.5, 3, none));
+  CHECK(read("0x10") == std::tuple(0., 1, none));
+  CHECK(read(".5") == std::tuple(0.5, 2, none));
+  CHECK(read("5.") == std::tuple(5., 2, none));
+  CHECK(read("4.9406564584124654e-324") == std::tuple(std::numeric_limits<double>::denorm_min(), 23, none));
+  CHECK(read("0e-999") == std::tuple(0., 6, none));
+  CHECK(read("1e999 m") == std::tuple(7., 5, range));
+  CHECK(read("1e-999") == std::tuple(7., 6, range));
+  for (const std::string_view text : {"", "+1", " 1", ".", "-", "-.e5", "e5"})
+    CHECK(read(text) == std::tuple(7., 0, invalid));
+  CHECK(std::isinf(std::get<double>(read("inf"))));
 }
 
 TEST_CASE("The nearest word is what a person meant") {
