@@ -103,10 +103,27 @@ void fit_whole(const ViewContext& context, ViewSize size) {
   // they were drawn.
   const bool tools_known = context.session.mode != Mode::build || context.ui.widgets.contains("tool strip");
   if (!solving(context.session) && tools_known) context.view.fit = false;
+  context.view.fitted.reset();
+  if (!bounds.empty) context.view.fitted = {camera, size}; // what is drawn by and by leaves the view as it is
+}
+
+// A view of another size, as of a smaller window, is fitted anew while nobody has moved the camera.
+void fit_another_size(ViewState& view, ViewSize size) {
+  if (!view.fitted || view.fitted->size == size || view.fit) return;
+  if (settled_camera(view) == view.fitted->camera)
+    view.fit = true;
+  else
+    view.fitted.reset();
 }
 
 void fit_view(const ViewContext& context, ViewSize size) {
-  if (context.view.fit) fit_whole(context, size);
+  ViewState& view = context.view;
+  fit_another_size(view, size);
+  const bool by_loads = view.loads_fit && settled_camera(view) == (*view.loads_fit)[1];
+  if (view.fit) {
+    fit_whole(context, size);
+    if (by_loads) (*view.loads_fit)[1] = settled_camera(view);
+  }
   if (!fit_loads(context, size)) return;
   fit_whole(context, size);
   (*context.view.loads_fit)[1] = settled_camera(context.view);

@@ -14,6 +14,12 @@
 
 namespace flyball {
 
+// What the camera was fitted to last, by the window and not by hand.
+struct CameraFit {
+  ViewCamera camera;
+  ViewSize size; // pixels, of the view
+};
+
 struct ViewState {
   ViewCamera camera;
   ViewSize size;                    // pixels, of the last update
@@ -39,6 +45,7 @@ struct ViewState {
   unsigned texture = 0;                 // OpenGL's, with the picture of the view
   unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
   float lines_top = 0;                  // pixels of the window: above what is written at the view's foot
+  std::optional<CameraFit> fitted;      // holds as long as nobody moves the camera
 };
 
 } // namespace flyball
