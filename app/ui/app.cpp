@@ -9,6 +9,7 @@
 #include "app/ui/view_frame.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flyball {
 
@@ -29,8 +30,14 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   view.fit_loads = false;
   const ViewCamera camera = settled_camera(view);
   if (!view.loads) {
-    if (view.loads_fit && camera == (*view.loads_fit)[1]) glide_goal(view) = (*view.loads_fit)[0];
-    view.loads_fit.reset();
+    if (const auto was = std::exchange(view.loads_fit, {}); was && camera == was->after) {
+      if (was->fitted && was->fitted->size != size) {
+        fit_all(view);
+      } else {
+        glide_goal(view) = was->before;
+        view.fitted = was->fitted;
+      }
+    }
     return false;
   }
   const bool all_seen = std::ranges::all_of(scene.solid.instances, [&](const Instance& instance) {
@@ -41,8 +48,10 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   });
   if (!all_seen || arrows_seen) return false;
   fit_all(view);
-  const bool again = view.loads_fit && camera == (*view.loads_fit)[1];
-  view.loads_fit = {again ? (*view.loads_fit)[0] : camera, camera};
+  if (!view.loads_fit || camera != view.loads_fit->after) {
+    const bool fitted = view.fitted && camera == view.fitted->camera;
+    view.loads_fit = {camera, camera, fitted ? view.fitted : std::nullopt};
+  }
   return true;
 }
 
@@ -119,14 +128,14 @@ void fit_another_size(ViewState& view, ViewSize size) {
 void fit_view(const ViewContext& context, ViewSize size) {
   ViewState& view = context.view;
   fit_another_size(view, size);
-  const bool by_loads = view.loads_fit && settled_camera(view) == (*view.loads_fit)[1];
+  const bool by_loads = view.loads_fit && settled_camera(view) == view.loads_fit->after;
   if (view.fit) {
     fit_whole(context, size);
-    if (by_loads) (*view.loads_fit)[1] = settled_camera(view);
+    if (by_loads) view.loads_fit->after = settled_camera(view);
   }
   if (!fit_loads(context, size)) return;
   fit_whole(context, size);
-  (*context.view.loads_fit)[1] = settled_camera(context.view);
+  view.loads_fit->after = settled_camera(view);
 }
 
 // Another document is looked at afresh.

@@ -8,7 +8,6 @@
 #include "app/ui/shown_scene.hpp"
 #include "app/viewport/camera.hpp"
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -18,6 +17,12 @@ namespace flyball {
 struct CameraFit {
   ViewCamera camera;
   ViewSize size; // pixels, of the view
+};
+
+// The camera before and after it took the arrows of loads into view.
+struct LoadsFit {
+  ViewCamera before, after;
+  std::optional<CameraFit> fitted; // where `before` was one
 };
 
 struct ViewState {
@@ -36,8 +41,7 @@ struct ViewState {
   int samples = 4;                           // 1: no anti-aliasing
   bool fit = true;                           // wanted at the next update
   bool fit_loads = false;                    // arrows of loads have come or gone: see fit_loads()
-  // The camera before and after it took them into view.
-  std::optional<std::array<ViewCamera, 2>> loads_fit;
+  std::optional<LoadsFit> loads_fit;
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found

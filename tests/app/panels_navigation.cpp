@@ -289,11 +289,22 @@ TEST_CASE("a window made smaller and larger is fitted anew, until a hand moves t
   CHECK(app.view.camera == before);
 
   SECTION("with the loads that were taken into it") {
+    open_scene(app.session, shipped_file("governor"));
+    robot.frames(3);
+    const ViewCamera without = app.view.camera;
     robot.key('A');
     robot.frames(2);
+    REQUIRE(app.view.camera != without);
     robot.size = {860, 800};
     robot.frames(2);
     CHECK(all_in_view(robot));
+    robot.key('A'); // away again: as fitted, to the view as it is now
+    robot.frames(3);
+    CHECK(all_in_view(robot));
+    robot.size = {1280, 800};
+    robot.frames(2);
+    CHECK((app.view.camera.target - without.target).norm() < 1e-9);
+    CHECK(app.view.camera.distance == Approx(without.distance));
   }
   SECTION("by the wheel") {
     robot.wheel("view", 3);
