@@ -132,4 +132,10 @@ const PeriodicState* limit_cycle(const Session& session) {
   return &cycle.found->result;
 }
 
+const PeriodicState* cycle_instead(const Session& session) {
+  if (converged(session) || periodic_motion(session)) return nullptr;
+  const PeriodicState* cycle = limit_cycle(session);
+  return cycle && cycle->status == PeriodicStatus::found ? cycle : nullptr;
+}
+
 } // namespace flyball

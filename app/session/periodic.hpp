@@ -45,5 +45,7 @@ void find_cycle(Session& session, bool wanted);
 // Of the state that is shown, or of the one before while that is looked for; null: not asked. One that is not
 // found says why.
 const PeriodicState* limit_cycle(const Session& session);
+// The same where one was found and no steady state was: it is what the mechanism comes to.
+const PeriodicState* cycle_instead(const Session& session);
 
 } // namespace flyball

@@ -91,12 +91,25 @@ void take_document(Session& session, bool another, bool warm, StartValues start 
   follow_motion(session, another);
 }
 
+// Whether a hand has pulled so far that nothing near stands any more: the answer is none, or unstable where
+// what was shown is not.
+bool runs_away(const Session& session, const LiveAnswer& answer) {
+  if (answer.ticket > session.pulled || !converged(session) || session.answer.solution.stable == false)
+    return false;
+  return answer.error || answer.solution.status != Status::converged || answer.solution.stable == false;
+}
+
 void take_answer(Session& session) {
   if (std::optional<LiveAnswer> answer = session.live.take_answer();
       answer && session.awaited != std::numeric_limits<std::uint64_t>::max() &&
       answer->ticket >= session.opened) {
-    session.answer = std::move(*answer);
-    session.poses = session.answer.poses;
+    session.pulled_too_far = runs_away(session, *answer);
+    if (session.pulled_too_far) { // what was last found stays
+      session.answer.ticket = answer->ticket;
+    } else {
+      session.answer = std::move(*answer);
+      session.poses = session.answer.poses;
+    }
     if (session.answer.left_branch && session.on_branch && session.answer.ticket == session.awaited) {
       session.on_branch = false;
       session.notice = "The branch ends here; this is the state that the drawn pose settles in.";

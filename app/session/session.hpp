@@ -59,6 +59,10 @@ struct Session {
   // Tickets: of the newest request (the largest number where the document is not fit to be solved), of the
   // last that was asked, and of the first since the document was opened.
   std::uint64_t awaited = std::numeric_limits<std::uint64_t>::max(), asked = 0, opened = 0;
+  // Of the last request under a hand that pulls: up to it what no longer stands is no answer (see runs_away()
+  // in session.cpp), and whether the last one was none for that.
+  std::uint64_t pulled = 0;
+  bool pulled_too_far = false;
   double waited = 0;         // s for an answer to it; 0 where there is one
   bool on_branch = false;    // a hand has chosen the equilibrium: sliders follow its branch, stable or not
   std::uint64_t gesture = 1; // of the hand: rises with every press of a button or key

@@ -9,6 +9,7 @@
 #include "app/ui/view_frame.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace flyball {
 
@@ -29,8 +30,14 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   view.fit_loads = false;
   const ViewCamera camera = settled_camera(view);
   if (!view.loads) {
-    if (view.loads_fit && camera == (*view.loads_fit)[1]) glide_goal(view) = (*view.loads_fit)[0];
-    view.loads_fit.reset();
+    if (const auto was = std::exchange(view.loads_fit, {}); was && camera == was->after) {
+      if (was->fitted && was->fitted->size != size) {
+        fit_all(view);
+      } else {
+        glide_goal(view) = was->before;
+        view.fitted = was->fitted;
+      }
+    }
     return false;
   }
   const bool all_seen = std::ranges::all_of(scene.solid.instances, [&](const Instance& instance) {
@@ -41,8 +48,10 @@ bool fit_loads(const ViewContext& context, ViewSize size) {
   });
   if (!all_seen || arrows_seen) return false;
   fit_all(view);
-  const bool again = view.loads_fit && camera == (*view.loads_fit)[1];
-  view.loads_fit = {again ? (*view.loads_fit)[0] : camera, camera};
+  if (!view.loads_fit || camera != view.loads_fit->after) {
+    const bool fitted = view.fitted && camera == view.fitted->camera;
+    view.loads_fit = {camera, camera, fitted ? view.fitted : std::nullopt};
+  }
   return true;
 }
 
@@ -103,13 +112,30 @@ void fit_whole(const ViewContext& context, ViewSize size) {
   // they were drawn.
   const bool tools_known = context.session.mode != Mode::build || context.ui.widgets.contains("tool strip");
   if (!solving(context.session) && tools_known) context.view.fit = false;
+  context.view.fitted.reset();
+  if (!bounds.empty) context.view.fitted = {camera, size}; // what is drawn by and by leaves the view as it is
+}
+
+// A view of another size, as of a smaller window, is fitted anew while nobody has moved the camera.
+void fit_another_size(ViewState& view, ViewSize size) {
+  if (!view.fitted || view.fitted->size == size || view.fit) return;
+  if (settled_camera(view) == view.fitted->camera)
+    view.fit = true;
+  else
+    view.fitted.reset();
 }
 
 void fit_view(const ViewContext& context, ViewSize size) {
-  if (context.view.fit) fit_whole(context, size);
+  ViewState& view = context.view;
+  fit_another_size(view, size);
+  const bool by_loads = view.loads_fit && settled_camera(view) == view.loads_fit->after;
+  if (view.fit) {
+    fit_whole(context, size);
+    if (by_loads) view.loads_fit->after = settled_camera(view);
+  }
   if (!fit_loads(context, size)) return;
   fit_whole(context, size);
-  (*context.view.loads_fit)[1] = settled_camera(context.view);
+  view.loads_fit->after = settled_camera(view);
 }
 
 // Another document is looked at afresh.

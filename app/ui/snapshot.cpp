@@ -2,6 +2,7 @@
 
 #include "app/ui/app.hpp"
 #include "app/ui/camera_glide.hpp"
+#include "app/ui/panel_list.hpp"
 #include "app/ui/plots/plot_picture.hpp"
 #include "app/ui/plots/plot_save.hpp"
 #include "app/ui/view_frame.hpp"
@@ -94,7 +95,11 @@ void export_picture(App& app, PixelSize window) {
     replace_file(request.file, encode_png(image));
     app.session.notice = "Saved " + request.file.string();
   } catch (const std::exception& error) {
-    show_error(app.session, std::string("Not saved: ") + error.what());
+    const std::string why = std::string("Not saved: ") + error.what();
+    if (request.plot)
+      app.panels->plot.refuse(app.dialog, *request.plot, why);
+    else
+      app.panels->picture.refuse(app.dialog, why);
   }
 }
 

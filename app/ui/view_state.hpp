@@ -8,11 +8,22 @@
 #include "app/ui/shown_scene.hpp"
 #include "app/viewport/camera.hpp"
 
-#include <array>
 #include <optional>
 #include <vector>
 
 namespace flyball {
+
+// What the camera was fitted to last, by the window and not by hand.
+struct CameraFit {
+  ViewCamera camera;
+  ViewSize size; // pixels, of the view
+};
+
+// The camera before and after it took the arrows of loads into view.
+struct LoadsFit {
+  ViewCamera before, after;
+  std::optional<CameraFit> fitted; // where `before` was one
+};
 
 struct ViewState {
   ViewCamera camera;
@@ -30,8 +41,7 @@ struct ViewState {
   int samples = 4;                           // 1: no anti-aliasing
   bool fit = true;                           // wanted at the next update
   bool fit_loads = false;                    // arrows of loads have come or gone: see fit_loads()
-  // The camera before and after it took them into view.
-  std::optional<std::array<ViewCamera, 2>> loads_fit;
+  std::optional<LoadsFit> loads_fit;
   bool keep_direction = false; // fit as the camera stands, rather than start as the scene says
   PartId hovered;
   Vec2 pointed_at = Vec2::Constant(-1); // pixel of the view for which `hovered` was found
@@ -39,6 +49,7 @@ struct ViewState {
   unsigned texture = 0;                 // OpenGL's, with the picture of the view
   unsigned texture_beside = 0;          // the same of the motion, where it has a view of its own
   float lines_top = 0;                  // pixels of the window: above what is written at the view's foot
+  std::optional<CameraFit> fitted;      // holds as long as nobody moves the camera
 };
 
 } // namespace flyball

@@ -92,8 +92,12 @@ void ViewCamera::fit(const Bounds& bounds, ViewSize view, double margin) {
     for (const Vec3& corner : corners) {
       const Vec3 d = corner - target;
       const double ahead = orthographic ? 0 : d.dot(z);
-      far_enough = std::max({far_enough, ahead + margin * std::abs(d.dot(x)) / tan_x,
-                             ahead + margin * std::abs(d.dot(y)) / tan_y});
+      // What is long towards the eye, as a shaft seen from its end, is at most so many times as large there
+      // as at the target.
+      constexpr double largest = 2;
+      far_enough =
+          std::max({far_enough, largest / (largest - 1) * ahead, ahead + margin * std::abs(d.dot(x)) / tan_x,
+                    ahead + margin * std::abs(d.dot(y)) / tan_y});
     }
     distance = std::clamp(std::max(far_enough, 1e-3 * radius), nearest_plane, farthest_plane);
     if (orthographic) return;

@@ -458,7 +458,22 @@ class Search {
     }
     out.evaluations = flow_.evaluations();
     out.status = PeriodicStatus::found;
-    out.message = words(c, out, c.periods > 0 && !c.beside.multipliers.empty() && stands(c));
+    out.message =
+        words(c, out, c.periods > 0 && !c.beside.multipliers.empty() && stands(c) && torques_stand(out));
+  }
+
+  // Where little moves, as of a disc that turns fast about its diameter, what drives give may swing all the
+  // same.
+  static bool torques_stand(const PeriodicState& out) {
+    constexpr double noise = 1e-3; // of the largest that a joint bears
+    double largest[2] = {0, 0};    // N, N m
+    for (const PeriodicReaction& r : out.reactions) {
+      largest[0] = std::max(largest[0], r.force.size.most);
+      largest[1] = std::max(largest[1], r.torque.size.most);
+    }
+    return std::ranges::all_of(out.drive_torques, [&](const PeriodicTorque& drive) {
+      return !(drive.range.most - drive.range.least > noise * largest[drive.angle ? 1 : 0]);
+    });
   }
 
   // `stands`: a steady state, though a motion was looked for.

@@ -63,7 +63,7 @@ Mat3 compliance(const FactoredState& at, const TrackedPoint& point) {
   Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(3, system.nv); // by scaled steps
   for (int l = point.link; l >= 0; l = system.links[static_cast<std::size_t>(l)].parent) {
     const Link& link = system.links[static_cast<std::size_t>(l)];
-    if (link.v < 0 || link.drive >= 0) continue;
+    if (link.v < 0 || link.drive >= 0 || finds_speed(link)) continue; // a step of a speed moves nothing
     for (int v = link.v; v < link.v + (link.type == LinkType::spherical ? 3 : 1); ++v)
       moves.col(v) = k.columns[static_cast<std::size_t>(v)].at(p) * at.problem.scaling.column[v];
   }
@@ -96,7 +96,8 @@ Grip find_grip(const Mechanism& mechanism, const Solution& solution, const BodyP
   evaluate_with_multipliers(problem, z, w);
   const FactoredState at = factor_at(problem, z, w);
   Grip out;
-  out.holder = holder_of(system, mechanism, body_index(mechanism, point.body));
+  const int body = body_index(mechanism, point.body);
+  out.holder = holder_of(system, mechanism, body);
   const double usual = usual_stiffness(problem, at.kkt().mass());
   double most = 0; // m/N
   if (system.nv > 0) {
@@ -105,7 +106,11 @@ Grip find_grip(const Mechanism& mechanism, const Solution& solution, const BodyP
     if (eigen.compute((c + c.transpose()) / 2, false)) most = eigen.values().cwiseAbs().maxCoeff();
   }
   const bool gives_way = std::isfinite(most) && share < rigid * usual * most;
-  out.stiffness = gives_way ? std::max(share / most, softest * usual) : usual;
+  // Where nothing gives way a hand that is as strong as the heaviest body would tear at a light one.
+  const double own = mechanism.bodies[static_cast<std::size_t>(body)].mass;
+  out.stiffness = gives_way ? std::max(share / most, softest * usual)
+                  : own > 0 ? usual_stiffness(problem, own)
+                            : usual;
   return out;
 }
 

@@ -12,8 +12,8 @@ struct Grip {
   // the drives turn what nothing else turns with, the pulled body itself perhaps.
   std::string holder;
   // N/m: about that of the mechanism itself at this point, in the direction in which it gives way most, so
-  // that it gives way by the greater part of what the hand moves. Where nothing gives way, what the weights,
-  // speeds and springs suggest.
+  // that it gives way by the greater part of what the hand moves. Where nothing gives way, what the body's
+  // weight, the speeds and springs suggest.
   double stiffness = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "engine/mechanism/address.hpp"
 #include "tests/catch.hpp"
 #include "tests/engine/friction_scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <algorithm>
 #include <set>
@@ -115,4 +116,20 @@ TEST_CASE("a state that slips is in the list of states, with its speed") {
   robot.click("states/row/1");
   robot.frames(3);
   CHECK(shown_state(session) == 0u);
+}
+
+TEST_CASE("a band that may go farther says so in its row") {
+  Robot robot({1280, 1600}); // all rows in sight
+  Session& session = robot.app.session;
+  open_scene(session, shipped_file("governor_friction"));
+  robot.frames(5);
+  const FrictionReport* report = friction_report(session);
+  REQUIRE(report);
+  REQUIRE_FALSE(report->band.extents.empty());
+  const std::string row = "results/friction/" + report->band.extents.front().name;
+  const std::string whole = robot.copied(row);
+  CHECK_THAT(whole, !ContainsSubstring("at least"));
+  session.study.friction.report.found->result.band.at_least = true;
+  robot.frames(2);
+  CHECK(robot.copied(row) == "at least " + whole);
 }

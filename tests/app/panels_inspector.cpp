@@ -14,6 +14,7 @@
 #include "tests/support/solutions.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 using namespace flyball;
 using namespace flyball::test;
@@ -139,6 +140,21 @@ TEST_CASE("mass and inertia follow the size of a uniform solid until they are ty
     hand.one_step([&] { hand.press_widget("inspector/shapes/0/remove"); });
     CHECK(ball().shapes.size() == 1);
     CHECK(ball().shapes[0].type == ShapeType::sphere);
+  }
+}
+
+TEST_CASE("why a name cannot be taken is a sentence, as of a number") {
+  Hand hand;
+  hand.choose(PartKind::body, "ball1");
+  for (const char* name : {"ball2", "ground", "a.b", " "}) {
+    hand.fill("inspector/name", name);
+    const std::string why = hand.app.ui.fields.typing.mistake;
+    CAPTURE(name, why);
+    REQUIRE_FALSE(why.empty());
+    CHECK(std::isupper(static_cast<unsigned char>(why.front())));
+    CHECK(why.back() == '.');
+    hand.click("inspector/title");
+    CHECK_THAT(hand.app.session.notice, ContainsSubstring("was not taken. " + why));
   }
 }
 

@@ -243,6 +243,62 @@ TEST_CASE("a dialog stays open, and says why, where nothing can be written into 
   CHECK_THAT(robot.app.panels->picture.query().message, ContainsSubstring("written into"));
 }
 
+TEST_CASE("a picture that could not be written is asked for again, as it was, and why") {
+  const TemporaryFolder folder;
+  Robot robot;
+  App& app = robot.app;
+  robot.key('E', true);
+  robot.frames(2);
+  robot.click("export/720p");
+  robot.click("export/panels");
+  const std::string name = (folder / (std::string(300, 'a') + ".png")).string(); // longer than names may be
+  app.panels->picture.query().path = name;
+  robot.click("export/save");
+  REQUIRE(app.export_request);
+  app.export_request->width = 320;
+  app.export_request->height = 200;
+  export_picture(app, robot.size);
+  robot.frames(3);
+  REQUIRE(app.dialog.showing);
+  CHECK_THAT(app.panels->picture.query().message, ContainsSubstring("Not saved"));
+  CHECK(app.panels->picture.query().path == name);
+  robot.type((folder / "short.png").string()); // in the field's place
+  robot.key(key_enter);
+  REQUIRE(app.export_request);
+  CHECK(app.export_request->width == 1280);
+  CHECK(app.export_request->panels);
+}
+
+TEST_CASE("a plot's picture that could not be written is asked for again, and why") {
+  const TemporaryFolder folder;
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  robot.key('C');
+  robot.frames(3);
+  robot.click(robot.widget("plot/response/area").center(), 1);
+  robot.frames(2);
+  robot.click("plot/response/menu/png");
+  robot.frames(2);
+  REQUIRE(app.dialog.showing);
+  robot.click("save_plot/width"); // leaves the field of the path
+  const std::string name = (folder / (std::string(300, 'a') + ".png")).string();
+  app.panels->plot.query().path = name;
+  robot.click("save_plot/save");
+  REQUIRE(app.export_request);
+  const int width = app.export_request->width;
+  export_picture(app, robot.size);
+  robot.frames(3);
+  REQUIRE(app.dialog.showing);
+  CHECK_THAT(app.panels->plot.query().message, ContainsSubstring("Not saved"));
+  CHECK(app.panels->plot.query().path == name);
+  robot.type((folder / "short.png").string());
+  robot.key(key_enter);
+  REQUIRE(app.export_request);
+  CHECK(app.export_request->width == width);
+  export_picture(app, robot.size);
+  CHECK(read_png(folder / "short.png").width == width);
+}
+
 TEST_CASE("a picture is exported with and without the panels") {
   Robot robot;
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "flyball_exported.png";

@@ -4,6 +4,7 @@
 #include "robot.hpp"
 #include "temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/support/scenes.hpp"
 
 #include <imgui_internal.h>
 
@@ -249,5 +250,74 @@ TEST_CASE("a scene that is opened has its drawn pose in view, too") {
       CHECK((at->x() > 0 && at->x() < app.view.size.width));
       CHECK((at->y() > 0 && at->y() < app.view.size.height));
     }
+  }
+}
+
+namespace {
+
+// Whether every body stands in the view as a whole.
+bool all_in_view(Robot& robot) {
+  const ViewSize size = robot.app.view.size;
+  for (const Instance& solid : robot.app.view.scene.scene->solid.instances) {
+    const Bounds box = instance_bounds(solid);
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at(corner & 1 ? box.upper.x() : box.lower.x(), corner & 2 ? box.upper.y() : box.lower.y(),
+                    corner & 4 ? box.upper.z() : box.lower.z());
+      const auto pixel = robot.app.view.camera.project(at, size);
+      if (!pixel || pixel->x() < 0 || pixel->y() < 0 || pixel->x() > size.width || pixel->y() > size.height)
+        return false;
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+TEST_CASE("a window made smaller and larger is fitted anew, until a hand moves the camera") {
+  Robot robot({1280, 800});
+  App& app = robot.app;
+  open_scene(app.session, shipped_file("horizontal_rotor"));
+  robot.frames(3);
+  const ViewCamera before = app.view.camera;
+  REQUIRE(all_in_view(robot));
+  robot.size = {860, 800}; // a narrow view
+  robot.frames(2);
+  CHECK(all_in_view(robot));
+  CHECK(app.view.camera.distance > before.distance);
+  robot.size = {1280, 800};
+  robot.frames(2);
+  CHECK(app.view.camera == before);
+
+  SECTION("with the loads that were taken into it") {
+    open_scene(app.session, shipped_file("governor"));
+    robot.frames(3);
+    const ViewCamera without = app.view.camera;
+    robot.key('A');
+    robot.frames(2);
+    REQUIRE(app.view.camera != without);
+    robot.size = {860, 800};
+    robot.frames(2);
+    CHECK(all_in_view(robot));
+    robot.key('A'); // away again: as fitted, to the view as it is now
+    robot.frames(3);
+    CHECK(all_in_view(robot));
+    robot.size = {1280, 800};
+    robot.frames(2);
+    CHECK((app.view.camera.target - without.target).norm() < 1e-9);
+    CHECK(app.view.camera.distance == Approx(without.distance));
+  }
+  SECTION("by the wheel") {
+    robot.wheel("view", 3);
+    const ViewCamera chosen = app.view.camera;
+    robot.size = {860, 800};
+    robot.frames(2);
+    CHECK(app.view.camera == chosen);
+    robot.size = {1280, 800};
+    robot.frames(2);
+    CHECK(app.view.camera == chosen);
+    robot.key('F');
+    robot.size = {860, 800};
+    robot.frames(2);
+    CHECK(all_in_view(robot));
   }
 }

@@ -2,10 +2,13 @@
 #include "robot.hpp"
 
 #include "app/document/create.hpp"
+#include "app/document/formula_edits.hpp"
+#include "app/session/periodic.hpp"
 #include "app/session/state_words.hpp"
 #include "app/ui/studies/study_panels.hpp"
 #include "app/ui/widgets/widgets.hpp"
 #include "engine/report/messages.hpp"
+#include "slider_crank.hpp"
 #include "tests/catch.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -123,6 +126,37 @@ TEST_CASE("where nothing resists the chip says it as the results do") {
   const WidgetRect& chip = robot.widget("status");
   CHECK(pixels_like(picture, chip, colors_of(app.ui).good) > 3);
   CHECK(pixels_like(picture, chip, colors_of(app.ui).warn) == 0);
+}
+
+TEST_CASE("a limit cycle found in a steady state's place is what the chip and the results begin with") {
+  Robot robot({1280, 900});
+  App& app = robot.app;
+  Mechanism m = Document::empty_mechanism();
+  add_driven_slider_crank(m, 20);
+  const std::string crank = m.joints.front().name;
+  m.joints.front().coordinates.front().drive->torque = 60;
+  set_expression(m, "joints." + crank + ".drive.load", "3 N m s*rate(" + crank + ")");
+  open_document(app.session, Document(m));
+  robot.frames(3);
+  const auto pixels = [&](const char* widget, const ImVec4& color) {
+    return pixels_like(robot.picture(), robot.widget(widget), color);
+  };
+  const ImVec4 good = colors_of(app.ui).good, bad = colors_of(app.ui).bad;
+  REQUIRE(pixels("status", bad) > 3);
+  REQUIRE(pixels("results/verdict", bad) > 3);
+  robot.click("results/cycle");
+  robot.point({1, 1});
+  robot.frames(3);
+  REQUIRE(cycle_instead(app.session));
+  REQUIRE(cycle_instead(app.session)->stable == true);
+  CHECK(pixels("status", good) > 3);
+  CHECK(pixels("status", bad) == 0);
+  CHECK(pixels("results/verdict", good) > 3);
+  CHECK(pixels("results/verdict", bad) == 0);
+  robot.click("results/cycle");
+  robot.frames(3);
+  CHECK_FALSE(cycle_instead(app.session));
+  CHECK(pixels("status", bad) > 3);
 }
 
 TEST_CASE("all types of a joint are in sight in their list") {

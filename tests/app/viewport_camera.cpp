@@ -124,6 +124,21 @@ TEST_CASE("fit shows the whole box, and not from too far") {
   }
 }
 
+TEST_CASE("a shaft seen from its end fits without its near end filling the picture") {
+  Bounds shaft;
+  shaft.add(Vec3(-0.4, -0.01, -0.01));
+  shaft.add(Vec3(0.4, 0.01, 0.01));
+  ViewCamera camera;
+  camera.azimuth = std::numbers::pi / 2;
+  camera.elevation = 0;
+  camera.fit(shaft, view);
+  const auto high = camera.project(Vec3(0.4, 0.01, 0), view), low = camera.project(Vec3(0.4, -0.01, 0), view),
+             middle = camera.project(Vec3(0, 0.01, 0), view), below = camera.project(Vec3(0, -0.01, 0), view);
+  REQUIRE((high && low && middle && below));
+  CHECK(low->y() - high->y() < 2.001 * (below->y() - middle->y()));
+  CHECK(low->y() - high->y() < 0.2 * view.height);
+}
+
 TEST_CASE("fitting nothing, a point and giant boxes gives a usable camera") {
   Bounds point, giant;
   point.add(Vec3(5, 5, 5));

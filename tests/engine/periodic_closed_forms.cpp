@@ -664,3 +664,22 @@ TEST_CASE("a period is common to all drives whose torque depends on where they s
     CHECK_THAT(range.most, WithinAbs(weight, 1e-9));
   }
 }
+
+TEST_CASE("A disc that turns fast about its diameter on a table moves, though what is free hardly does") {
+  Mechanism m;
+  m.bodies = {body("table", 1, {0, 0, 0}, {1e-3, 1e-3, 1e-3}),
+              body("frame", 0.2, {0, 0, 0}, {1e-3, 1e-3, 1e-3}),
+              body("disc", 6, {0, 0, 0}, {0.03, 0.015, 0.015})};
+  m.joints = {driven(revolute("turn", "ground", "table", {0, 0, 0}, {0, 1, 0}), 0.5),
+              sprung(revolute("out", "table", "frame", {0, 0, 0}, {0, 0, 1}), 20),
+              driven(revolute("spin", "frame", "disc", {0, 0, 0}, {0, 0, 1}), 628)};
+  const PeriodicState s = find_periodic_state(m);
+  REQUIRE(s.status == PeriodicStatus::found);
+  CAPTURE(s.message);
+  const PeriodicRange& out = coordinate(s, "out").range;
+  CHECK(out.most - out.least < 1e-6);
+  // The table's drive carries (I_xx - I_yy) times both speeds, at twice the disc's.
+  for (const PeriodicTorque& drive : s.drive_torques)
+    if (drive.joint == "turn") CHECK_THAT(drive.range.most, WithinRel(0.015 * 0.5 * 628, 1e-3));
+  CHECK_THAT(s.message, ContainsSubstring("It moves periodically"));
+}

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace flyball {
 
@@ -29,6 +30,12 @@ void ExportDialog::open(const Session& session, DialogState& dialog, bool loads)
   query_.asked.clear();
   const std::string stem = file_stem(session);
   query_.path = (query_.list.shown / ("flyball-" + stem + ".png")).string();
+}
+
+void ExportDialog::refuse(DialogState& dialog, std::string why) {
+  dialog.wanted = Dialog::export_picture;
+  query_.message = std::move(why);
+  query_.asked.clear();
 }
 
 std::optional<ExportRequest> ExportDialog::draw(Session& session, Ui& ui, DialogState& dialog) {

@@ -5,6 +5,7 @@
 #include "app/ui/widgets/file_query.hpp"
 
 #include <optional>
+#include <string>
 
 namespace flyball {
 
@@ -18,6 +19,8 @@ class ExportDialog {
   void open(const Session& session, DialogState& dialog, bool loads);
   // Returns the picture that is asked for.
   std::optional<ExportRequest> draw(Session& session, Ui& ui, DialogState& dialog);
+  // Again as it was, saying why the picture was not written.
+  void refuse(DialogState& dialog, std::string why);
   FileQuery& query() { return query_; } // may be filled in beforehand
 
   bool loads() const { return loads_; }

@@ -31,8 +31,11 @@ std::string percent_words(double part) {
 void band_rows(const Session& session, Ui& ui, const FrictionBand& band) {
   for (const BandExtent& extent : band.extents) {
     const ShownUnit unit = shown_unit(extent.unit, session.units);
-    row(ui, extent.name, range_words(unit, extent.low, extent.high), unit.text.c_str(),
-        ("Between these friction holds it, wherever it came to rest." +
+    const bool bounded = std::isfinite(extent.low) || std::isfinite(extent.high);
+    const std::string range = range_words(unit, extent.low, extent.high);
+    row(ui, extent.name, (band.at_least && bounded ? "at least " : "") + range, unit.text.c_str(),
+        ("Between these friction holds it, wherever it came to rest" +
+         std::string(band.at_least && bounded ? ", and perhaps beyond." : ".") +
          (extent.error
               ? "\nEach end within " + short_text(unit.shown(*extent.error), 1) + " " + unit.text + "."
               : std::string()))

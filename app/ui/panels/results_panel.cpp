@@ -24,9 +24,13 @@ struct Verdict {
 };
 
 Verdict verdict_of(const PeriodicState& motion, const UiColors& colors) {
-  if (motion.stable == true) return {icon::check, "Moves periodically, stable", colors.good};
-  if (motion.stable == false) return {icon::warning, "Moves periodically, unstable", colors.bad};
-  return {icon::question, "Moves periodically, stability undecided", colors.warn};
+  const bool own = motion.drive_periods == 0; // its period
+  if (motion.stable == true)
+    return {icon::check, own ? "Limit cycle, stable" : "Moves periodically, stable", colors.good};
+  if (motion.stable == false)
+    return {icon::warning, own ? "Limit cycle, unstable" : "Moves periodically, unstable", colors.bad};
+  return {icon::question,
+          own ? "Limit cycle, stability undecided" : "Moves periodically, stability undecided", colors.warn};
 }
 
 Verdict verdict_of(const Solution& solution, const UiColors& colors) {
@@ -56,9 +60,12 @@ std::string without_repetition(const std::string& message, const std::string& he
 void verdict(const Session& session, Ui& ui) {
   const UiColors& colors = colors_of(ui);
   const Solution& solution = session.answer.solution;
-  const PeriodicState* motion = periodic_motion(session);
-  const Verdict verdict = motion ? verdict_of(*motion, colors) : verdict_of(solution, colors);
-  const std::string unheld = unheld_words(solution), headline = unheld.empty() ? verdict.text : unheld;
+  const PeriodicState *motion = periodic_motion(session), *cycle = cycle_instead(session);
+  const Verdict verdict = motion  ? verdict_of(*motion, colors)
+                          : cycle ? verdict_of(*cycle, colors)
+                                  : verdict_of(solution, colors);
+  const std::string unheld = cycle ? "" : unheld_words(solution),
+                    headline = unheld.empty() ? verdict.text : unheld;
   ImGui::PushFont(ui.fonts.strong);
   ImGui::TextColored(verdict.color, "%s", verdict.icon);
   ImGui::SameLine(0, 7 * ui.scale);
@@ -68,7 +75,8 @@ void verdict(const Session& session, Ui& ui) {
   ImGui::PopFont();
   note_widget(ui.widgets, "results/verdict");
   // Why nothing stands is no news where the motion is found.
-  if (motion) help_on_hover(without_repetition(window_message(solution), headline).c_str());
+  if (motion || cycle) help_on_hover(without_repetition(window_message(solution), headline).c_str());
+  if (cycle) return; // told below, with what asks for it
   std::string growth = solution.status == Status::converged ? growth_words(solution) : std::string();
   if (growth.empty() && solution.status == Status::converged) growth = undamped_words(solution);
   if (solution.status == Status::converged && solution.stability_reason)

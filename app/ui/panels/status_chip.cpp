@@ -27,6 +27,13 @@ bool holds_a_band(const Session& session) {
                                          [](const BandExtent& extent) { return extent.high > extent.low; });
 }
 
+StatusLine motion_line(const PeriodicState& motion, const UiColors& colors) {
+  const std::string words = motion.drive_periods == 0 ? "Limit cycle" : "Moves periodically";
+  return motion.stable == true    ? StatusLine{words + ", stable", colors.good, icon::check}
+         : motion.stable == false ? StatusLine{words + ", unstable", colors.warn, icon::warning}
+                                  : StatusLine{words, colors.warn, icon::info};
+}
+
 StatusLine status_line(const Session& session, const Ui& ui) {
   const UiColors& colors = colors_of(ui);
   if (session.mechanism().bodies.empty()) return {};
@@ -41,17 +48,14 @@ StatusLine status_line(const Session& session, const Ui& ui) {
   if (session.answer.error) return {words_for(*session.answer.error), colors.bad, icon::warning};
   if (!session.answer.ticket) return {};
   const Solution& solution = session.answer.solution;
+  if (const PeriodicState* cycle = cycle_instead(session)) return motion_line(*cycle, colors);
   switch (solution.status) {
   case Status::converged: break;
   case Status::not_converged:
     return {solution.unheld.empty() ? "No steady state found" : unheld_words(solution), colors.bad,
             icon::warning};
   case Status::no_steady_state:
-    if (const PeriodicState* motion = periodic_motion(session))
-      return motion->stable == true ? StatusLine{"Moves periodically, stable", colors.good, icon::check}
-             : motion->stable == false
-                 ? StatusLine{"Moves periodically, unstable", colors.warn, icon::warning}
-                 : StatusLine{"Moves periodically", colors.warn, icon::info};
+    if (const PeriodicState* motion = periodic_motion(session)) return motion_line(*motion, colors);
     return {session.study.periodic.search.running() ? "No steady state; looking for a periodic motion…"
                                                     : "There is no steady state",
             colors.bad, icon::warning};

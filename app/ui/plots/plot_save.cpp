@@ -95,6 +95,13 @@ void PlotDialog::open(const Session& session, DialogState& dialog, PlotToSave as
   save_ = std::make_shared<PlotSave>(std::move(save));
 }
 
+void PlotDialog::refuse(DialogState& dialog, const PlotSave& save, std::string why) {
+  dialog.wanted = Dialog::save_plot;
+  save_ = std::make_shared<PlotSave>(save);
+  query_.message = std::move(why);
+  query_.asked.clear();
+}
+
 std::optional<ExportRequest> PlotDialog::draw(Session& session, Ui& ui, DialogState& dialog) {
   if (const auto asked = std::exchange(ui.plot_to_save, {})) open(session, dialog, std::move(*asked));
   std::optional<ExportRequest> picture;

@@ -37,6 +37,8 @@ class PlotDialog {
  public:
   // Opens where a plot is to be saved. Returns the picture that is asked for.
   std::optional<ExportRequest> draw(Session& session, Ui& ui, DialogState& dialog);
+  // Again as it was, saying why the picture of this plot was not written.
+  void refuse(DialogState& dialog, const PlotSave& save, std::string why);
   FileQuery& query() { return query_; } // may be filled in beforehand
 
  private:

@@ -60,6 +60,7 @@ void move_pull(Session& session, ToolState& tool) {
   if (!grab.pull && (next->hand - next->at).norm() == 0) return;
   grab.pull = std::move(next);
   ask_pulled(session, grab, pulled(mechanism_of(grab), *grab.pull), {});
+  session.pulled = session.awaited;
 }
 
 // How far a body is at most from where it was, in radians or parts of the mechanism's size.
@@ -121,6 +122,7 @@ void draw_pull(const Session& session, const Ui& ui, const ToolState& tool, cons
   if (grab.pull) draw_coil(ui, *from, *to);
   draw_dot(ui, *from, 4);
   draw_dot(ui, *to, 6, true);
+  if (session.pulled_too_far) return draw_tag(ui, input, input.cursor, "Nothing stable is near", "");
   const auto force = hand_force(session, tool);
   if (!force) return;
   const ShownUnit unit = shown_unit("N/m", session.units);
@@ -132,7 +134,7 @@ void draw_pull(const Session& session, const Ui& ui, const ToolState& tool, cons
 
 std::optional<double> hand_force(const Session& session, const ToolState& tool) {
   const std::optional<PullGrab>& grab = tool.pull;
-  if (!grab || grab->released || !grab->pull || !converged(session) ||
+  if (!grab || grab->released || !grab->pull || session.pulled_too_far || !converged(session) ||
       session.answer.solution.poses.size() != grab->mechanism->bodies.size())
     return {};
   return pulling_force(*grab->mechanism, session.answer.solution.poses, *grab->pull).norm();

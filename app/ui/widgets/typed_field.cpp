@@ -7,6 +7,8 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include <cctype>
+#include <string_view>
 #include <utility>
 
 namespace flyball {
@@ -15,10 +17,18 @@ namespace {
 
 constexpr int idle_frames = 3; // frames in which a field may be without the keyboard before it counts as left
 
+// "expected another name" as it is read on its own: "Expected another name."
+std::string as_sentence(std::string words) {
+  if (words.empty()) return words;
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  if (std::string_view(".!?").find(words.back()) == std::string_view::npos) words += '.';
+  return words;
+}
+
 void check(Typing& typing, const TextField& field) {
   if (!typing.check || typing.text == typing.checked) return;
   typing.checked = typing.text;
-  typing.mistake = typing.text == typing.original ? "" : typing.check(typing.text);
+  typing.mistake = typing.text == typing.original ? "" : as_sentence(typing.check(typing.text));
   typing.offer = {};
   if (!typing.mistake.empty() && field.offer) typing.offer = field.offer(typing.text);
 }
