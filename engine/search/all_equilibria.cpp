@@ -39,7 +39,7 @@ class Searcher {
     deflate_from(drawn_, 8);
     const std::vector<SearchRange> ranges = report_.ranges;
     SearchStarts starts(p_, ranges, options_.seed);
-    const bool settled = look_in_ranges(starts, 0.5);
+    const bool settled = look_in_ranges(starts, 0.7);
     look_at_all_speeds();
     if (!settled) look_in_ranges(starts, 1);
     combine();
