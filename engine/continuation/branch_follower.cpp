@@ -72,6 +72,14 @@ std::optional<AtStop> stop_ahead(const Problem& problem, const BranchState& stat
   return found;
 }
 
+// The largest of the speeds that are found, scaled.
+double fastest_found(const Problem& problem, const Eigen::VectorXd& q) {
+  double out = 0;
+  for (const Link& link : problem.system.links)
+    if (finds_speed(link)) out = std::max(out, std::abs(q[link.q]) / problem.scaling.column[link.v]);
+  return out;
+}
+
 std::string infinite_rate_text(const InfiniteRate& error) {
   return std::string("a number changes at an infinite rate there: ") + error.what();
 }
@@ -462,6 +470,8 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
   // A shorter step from the same state meets it again.
   std::optional<Crossing> crossing;
   double length = options_.largest_step / 4;
+  // Where the number changed last, and the largest of the speeds that are found there.
+  double changed = state.parameter, fastest = fastest_found(family_.problem(), state.z.q);
   out.end = "the largest number of points";
   while (out.points.size() < static_cast<std::size_t>(options_.max_points)) {
     if (cancelled()) {
@@ -563,6 +573,16 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
     }
     if (out_of_reach(family_.problem(), next.z.q)) {
       out.end = "a coordinate or a speed leaves all bounds";
+      break;
+    }
+    // As towards the load that a torque comes to only at any speed: beyond, the number is rounding.
+    constexpr double without_end = 1000, stands = 1e-8;
+    if (const double now_fastest = fastest_found(family_.problem(), next.z.q);
+        std::abs(next.parameter - changed) > stands * family_.scale()) {
+      changed = next.parameter;
+      fastest = now_fastest;
+    } else if (now_fastest > without_end * (1 + fastest)) {
+      out.end = "a speed grows without end there, while the number stays where it is";
       break;
     }
     state = std::move(next);

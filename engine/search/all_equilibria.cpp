@@ -37,8 +37,12 @@ class Searcher {
     take_answer();
     arrive(drawn_);
     deflate_from(drawn_, 8);
-    look_in_ranges();
+    const std::vector<SearchRange> ranges = report_.ranges;
+    SearchStarts starts(p_, ranges, options_.seed);
+    const bool settled = look_in_ranges(starts, 0.7);
     look_at_all_speeds();
+    if (!settled) look_in_ranges(starts, 1);
+    combine();
     report_.unseen = unseen();
     note_fastest();
     list_.report = std::move(report_);
@@ -108,12 +112,12 @@ class Searcher {
     }
   }
 
-  void look_in_ranges() {
-    SearchStarts starts(p_, report_.ranges, options_.seed);
+  // Until nothing more is to be expected there, or this share of the budget is spent: false.
+  bool look_in_ranges(SearchStarts& starts, double share) {
     Eigen::VectorXd q = drawn_;
-    while (p_.system.nv > 0 && !ended()) {
+    while (p_.system.nv > 0 && spent_ < share * options_.seconds && !ended()) {
       if (settled()) {
-        if (deflated_from_ == list_.states.size()) break;
+        if (deflated_from_ == list_.states.size()) return true;
         deflate_from(Eigen::VectorXd(list_.states[deflated_from_++].q), 8);
         continue;
       }
@@ -126,22 +130,24 @@ class Searcher {
         deflate_from(q, 2);
       }
       if (list_.states.size() > 1 && !ended()) arrive_from_mixture();
+      if (list_.states.size() >= 2 * combined_) combine();
     }
+    return false;
   }
 
   // Laws of torques have states at any speed: far from where they begin, of every order of magnitude, until
   // as many starts as tell what the ranges hold find nothing more, or so many that there is no end of them.
   void look_at_all_speeds() {
     constexpr double times = 1000;
-    const std::size_t most = list_.states.size() + 50;
     const bool none = list_.states.empty();
     if (kept_.size() == p_.system.torques.size()) return;
     if (ended() || !widen_speeds(p_, times, report_.ranges)) return;
+    most_ = list_.states.size() + 50;
     SearchStarts starts(p_, report_.ranges, options_.seed);
     Eigen::VectorXd q = drawn_;
     const int enough = (none ? 10 : 2) * least_arrivals(); // of either way
     std::size_t known = list_.states.size();
-    for (int vain = 0; vain < enough && known < most && !ended(); ++vain) {
+    for (int vain = 0; vain < enough && known < most_ && !ended(); ++vain) {
       starts.next(q);
       spend(closing + static_cast<double>(kept_.size()));
       if (!assemble(p_, q, 0, w_)) continue;
@@ -152,11 +158,16 @@ class Searcher {
       known = list_.states.size();
       vain = 0;
     }
-    while (deflated_from_ < list_.states.size() && list_.states.size() < most && !ended())
+    while (deflated_from_ < list_.states.size() && list_.states.size() < most_ && !ended())
       deflate_from(Eigen::VectorXd(list_.states[deflated_from_++].q), 8);
   }
 
   int least_arrivals() const { return 20 + 10 * p_.system.nv; }
+
+  // What comparing a state with all that are known costs, in iterations.
+  double comparing() const {
+    return 1e-8 * static_cast<double>(list_.states.size()) * (1 + 0.5 * p_.system.nv) / cost_;
+  }
 
   void spend(double iterations) { spent_ += iterations * cost_; }
 
@@ -295,13 +306,20 @@ class Searcher {
     Eigen::VectorXd q = list_.states[any(list_.states.size())].q;
     for (const TreeJoint& joint : p_.system.tree_joints) {
       if (any(2) == 0) continue;
-      for (int l = joint.first_link; l < joint.first_link + joint.link_count; ++l) {
-        const Link& link = p_.system.links[static_cast<std::size_t>(l)];
-        if (link.v < 0) continue;
-        const int entries = link.type == LinkType::spherical ? 4 : 1;
-        q.segment(link.q, entries) = other.segment(link.q, entries);
-      }
+      for (int l = joint.first_link; l < joint.first_link + joint.link_count; ++l)
+        take_link(other, p_.system.links[static_cast<std::size_t>(l)], q);
     }
+    arrive_from_parts(std::move(q));
+  }
+
+  static void take_link(const Eigen::VectorXd& from, const Link& link, Eigen::VectorXd& q) {
+    if (link.v < 0) return;
+    const int entries = link.type == LinkType::spherical ? 4 : 1;
+    q.segment(link.q, entries) = from.segment(link.q, entries);
+  }
+
+  // From what is put together of equilibria.
+  void arrive_from_parts(Eigen::VectorXd q) {
     spend(p_.system.rows > 0 ? closing : 0);
     if (!assemble(p_, q, 0, w_)) return;
     ++report_.starts;
@@ -309,6 +327,84 @@ class Searcher {
     const NewtonOutcome outcome = newton(p_, z, w_, {}, nullptr);
     spend(outcome.iterations);
     if (outcome.converged) keep(std::move(z), outcome);
+  }
+
+  bool is_known(const Eigen::VectorXd& q) {
+    spend(comparing());
+    return std::ranges::any_of(list_.states, [&](const Unknowns& known) {
+      return same_but_for_turns(p_, known.q, q, tolerance::same_state);
+    });
+  }
+
+  // From what is put together of the equilibria known, as long as that finds new ones.
+  void combine() {
+    for (std::size_t known = 0; known < list_.states.size() && list_.states.size() > 1 && !many();) {
+      known = list_.states.size();
+      look_between();
+      exchange_branches();
+    }
+    combined_ = list_.states.size();
+  }
+
+  bool many() const { return list_.states.size() >= most_; }
+
+  // Halfway to the nearest neighbour along each coordinate: of three speeds at which a shaft may run few
+  // starts lead to the one between, at which it runs away.
+  void look_between() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto count = static_cast<std::size_t>(p_.system.nv);
+    for (std::size_t i = 0; i < list_.states.size() && !many() && !ended(); ++i) {
+      std::vector<double> nearest(count, infinity);
+      std::vector<Eigen::VectorXd> way(count);
+      spend(comparing());
+      for (std::size_t j = 0; j < list_.states.size(); ++j) {
+        difference_.take(list_.states[i].q, list_.states[j].q, away_);
+        Eigen::Index most = 0;
+        const double distance = away_.maxCoeff(&most);
+        const auto v = static_cast<std::size_t>(most);
+        if (j == i || !(distance >= -away_.minCoeff()) || !(distance < nearest[v])) continue;
+        nearest[v] = distance;
+        way[v] = away_;
+      }
+      for (std::size_t v = 0; v < count && !ended(); ++v) {
+        if (nearest[v] == infinity) continue;
+        Eigen::VectorXd q = list_.states[i].q;
+        w_.step = 0.5 * way[v].cwiseProduct(p_.scaling.column);
+        retract<double>(p_.system, w_.step, q);
+        spend(p_.system.rows > 0 ? closing : 0);
+        if (!assemble(p_, q, 0, w_)) continue;
+        const std::size_t before = list_.states.size();
+        arrive(q);
+        if (list_.states.size() == before) deflate_from(q, 1);
+      }
+    }
+  }
+
+  // From every two with what a joint carries of one put into the other, until that has found nothing for
+  // long: where what the joints of the ground carry feels nothing of each other all such combinations are
+  // equilibria.
+  void exchange_branches() {
+    int vain = 0;
+    const auto done = [&] { return vain >= least_arrivals() || many() || ended(); };
+    for (std::size_t i = 1; i < list_.states.size() && !done(); ++i)
+      for (std::size_t k = 0; k < 2 * i && !done(); ++k)
+        for (const TreeJoint& joint : p_.system.tree_joints) {
+          const std::size_t a = k % 2 == 0 ? i : k / 2, b = k % 2 == 0 ? k / 2 : i;
+          Eigen::VectorXd q = list_.states[a].q;
+          std::vector<char> carried(p_.system.links.size());
+          for (std::size_t l = static_cast<std::size_t>(joint.first_link); l < carried.size(); ++l) {
+            const Link& link = p_.system.links[l];
+            carried[l] =
+                link.tree_joint == p_.system.links[static_cast<std::size_t>(joint.first_link)].tree_joint ||
+                (link.parent >= 0 && carried[static_cast<std::size_t>(link.parent)] != 0);
+            if (carried[l]) take_link(list_.states[b].q, link, q);
+          }
+          if (is_known(q)) continue;
+          const std::size_t before = list_.states.size();
+          arrive_from_parts(std::move(q));
+          vain = list_.states.size() > before ? 0 : vain + 1;
+          if (done()) return;
+        }
   }
 
   // Deflated runs as long as they find new equilibria, at most `most`.
@@ -346,10 +442,8 @@ class Searcher {
   // Newton-Raphson on the balance times the deflation operator: the same direction, another length (Farrell
   // et al., section 3.2). True where it came near an equilibrium that is not known.
   bool deflated_newton(Unknowns& z) {
-    const double of_deflation =
-        1e-8 * static_cast<double>(list_.states.size()) * (1 + 0.5 * p_.system.nv) / cost_;
     for (int i = 0; i < 60; ++i) {
-      spend(1 + of_deflation);
+      spend(1 + comparing());
       evaluate(p_, z, 0, w_);
       if (!std::isfinite(scaled_residual(p_, w_))) return false;
       factor(p_, z, w_);
@@ -378,9 +472,10 @@ class Searcher {
   const ScaledDifference difference_{p_};
   Eigen::VectorXd away_;
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double spent_ = 0; // s
-  int spread_ = 0;   // starts
-  std::size_t deflated_from_ = 0;
+  double spent_ = 0;                                           // s
+  int spread_ = 0;                                             // starts
+  std::size_t deflated_from_ = 0, combined_ = 1;               // states
+  std::size_t most_ = std::numeric_limits<std::size_t>::max(); // of which there may be no end
   std::mt19937 random_{options_.seed};
   SearchReport report_;
   EquilibriumList list_;

@@ -141,13 +141,15 @@ class Builder {
                         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(place_->model.system.drives.size()));
     try {
       if (input.address.empty()) return motion.effect(-torque_direction(input, motion), none, still);
-      if (std::ranges::any_of(place_->steady.torques, &DriveTorqueElement::implied))
-        throw Refusal{
-            "where loops and gears make something turn at a rate of its own, inputs are torques and "
-            "forces, as torque(joint) and force_x(body)"};
       NumberRates rates;
       const VariedNumbers numbers(mechanism_, addresses_);
       numbers.rates(static_cast<std::size_t>(numbers_[i]), rates);
+      if (std::ranges::any_of(place_->steady.torques, &DriveTorqueElement::implied)) {
+        if (input.force) return motion.effect(of_force(rates, motion), none, still);
+        throw Refusal{
+            "where loops and gears make something turn at a rate of its own, inputs are torques and "
+            "forces, as torque(joint) and force_x(body)"};
+      }
       if (begins_with(rates))
         throw Refusal{"it is the speed with which something left to itself begins, and acts on nothing "
                       "later; a torque(joint) does"};
@@ -168,6 +170,14 @@ class Builder {
     } catch (const Refusal& refusal) {
       throw Refusal{"The input " + input.name + " has no place in a linear model: " + refusal.why + "."};
     }
+  }
+
+  // What a force on a body does to the balance, wherever the rates of what it moves come from.
+  Eigen::VectorXd of_force(const NumberRates& rates, const MotionAt& motion) const {
+    const MotionModel& model = place_->model;
+    BalanceRate balance;
+    balance.evaluate(model.released, mechanism_, rates, model.parameters, motion.at.q, motion.at.lambda);
+    return balance.force().head(model.system.nv);
   }
 
   // The generalised force of a unit torque or force along the input's coordinate (N m or N).

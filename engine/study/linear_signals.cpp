@@ -47,6 +47,7 @@ void take_force(const ResultCall::Argument& of, int axis, Mechanism& m, LinearIn
   }
   input.address = "forces." + force.name + ".vector." + std::to_string(axis);
   input.unit = "N";
+  input.force = true;
   m.forces.push_back(std::move(force));
 }
 

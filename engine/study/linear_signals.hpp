@@ -19,6 +19,7 @@ struct LinearInput : LinearSignal {
   std::string address; // of the number that it adds to, in LinearSignals::mechanism; or
   int joint = -1;      // it is a torque or force along
   int coordinate = 0;  // this coordinate of this joint
+  bool force = false;  // the number is a component of a force on a body
 };
 
 struct LinearSignals {

@@ -448,6 +448,33 @@ TEST_CASE("the wheels of a differential answer torques as its steady states do",
              ContainsSubstring("inputs are torques and forces"));
 }
 
+TEST_CASE("forces are inputs where gears make things move at rates of their own", "[linear-model]") {
+  // A drum hauls a weight up a rope: (J + m r^2) w' = T - c w - m g r + r F.
+  constexpr double j = 0.5, mass = 3, r = 0.2, c = 2;
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("drum", 1, {0, 0, 0}, {j, j, j}), body("weight", mass, {r, -2, 0})};
+  m.joints = {torque_driven(revolute("turn", "ground", "drum", {0, 0, 0}, {0, 0, 1}), 1,
+                            "30 N m - 2 N m s*rate(turn)"),
+              joint(JointType::prismatic, "lift", "ground", "weight", {r, -2, 0}, {0, 1, 0})};
+  Joint rope;
+  rope.name = "rope";
+  rope.type = JointType::gear;
+  rope.joints = {"turn", "lift"};
+  rope.ratio = r;
+  m.joints.push_back(rope);
+  const LinearModel model =
+      linear_model(m, {"torque(turn)", "force_y(weight)"}, {"rate(turn)", "rate(lift)"});
+  for (const Complex s : {Complex(0.3, 0), Complex(0, 5), Complex(-2, 30)}) {
+    const Complex turns = 1. / ((j + mass * r * r) * s + c);
+    const std::array forces{1., r};
+    for (Eigen::Index i = 0; i < 2; ++i) {
+      check_transfer(model, 0, i, s, forces[static_cast<std::size_t>(i)] * turns);
+      check_transfer(model, 1, i, s, r * forces[static_cast<std::size_t>(i)] * turns);
+    }
+  }
+}
+
 TEST_CASE("the common angle of shafts that a spring ties integrates unseen", "[linear-model]") {
   // Both turn faster by what both resist with, and half of the torque goes through the spring.
   for (const bool opposite : {false, true}) {

@@ -65,3 +65,26 @@ TEST_CASE("a slide by a force does not end curves by its speed", "[plane]") {
     CHECK(p.coordinates[0].speed.value() == Approx(5).epsilon(1e-11));
   }
 }
+
+TEST_CASE("a branch ends where the speed grows without end, and rounding makes no folds there", "[torque]") {
+  // The load comes to the most that the motor gives, 5.147 N m, at no speed; a bob hangs from the shaft.
+  Mechanism m;
+  m.gravity = {0, -standard_gravity, 0};
+  m.bodies = {body("hub", 1, {0, 0, 0}, {0.05, 0.4279, 0.05}),
+              body("bob", 1.208, {0.1059, -0.4091, -0.09746}, {0.03743, 0.03315, 0.0346})};
+  Joint hang = joint(JointType::universal, "hang", "hub", "bob", {0, 0, 0}, {1, 0, 0});
+  hang.axis2 = Vec3::UnitZ();
+  hang.coordinates[0].damping = 0.06;
+  hang.coordinates[1].damping = 0.15;
+  m.joints = {torque_driven(revolute("spin", "ground", "hub", {0, 0, 0}, {0, 1, 0}), 12,
+                            "5.147 N m*tanh(1.029 - 0.3 s*rate(spin))", "1"),
+              hang};
+  validate(m);
+  const ResponseDiagram d = follow_branches(m, "joints.spin.drive.load", 0, 9);
+  CHECK(d.special.empty());
+  REQUIRE(d.branches.size() == 1);
+  CHECK(d.branches[0].end == "a speed grows without end there, while the number stays where it is");
+  CHECK(d.branches[0].points.size() < 700);
+  for (const ResponsePoint& p : d.branches[0].points)
+    CHECK(p.parameter < 5.147 + 1e-6);
+}

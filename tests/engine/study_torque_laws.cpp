@@ -79,6 +79,29 @@ TEST_CASE("steady speeds are found orders of magnitude from where the search beg
   CHECK(count < 100);
 }
 
+TEST_CASE("shafts that feel nothing of each other run at every combination of their steady speeds",
+          "[torque]") {
+  // Of the first two speeds lie near each other, of the second far above where the search begins.
+  const std::array<std::array<double, 3>, 3> speeds{
+      {{6.575, 7.1297, 7.3808}, {0.86, 12, 45}, {2.9, 5.4, 9.97}}};
+  Mechanism m;
+  std::size_t expected = 1;
+  for (std::size_t i = 0; i < GENERATE(1u, 2u, 3u); ++i) {
+    const std::string name = "s" + std::to_string(i), w = "(rate(" + name + ")*1 s - ";
+    const auto factor = [&](std::size_t k) { return w + number_text(speeds[i][k]) + ")"; };
+    m.bodies.push_back(body("b" + name, 1, {3. * static_cast<double>(i), 0, 0}, {1, 1, 1}));
+    m.joints.push_back(
+        torque_driven(revolute(name, "ground", "b" + name, {3. * static_cast<double>(i), 0, 0}, {0, 1, 0}),
+                      1.7, "-0.3 N m*" + factor(0) + "*" + factor(1) + "*" + factor(2)));
+    expected *= 3;
+  }
+  validate(m);
+  const AllSolutions all = Analysis(m).solve_all();
+  CHECK(all.equilibria.size() == expected);
+  CHECK(std::ranges::count(all.equilibria, true, [](const Solution& s) { return s.stable == true; }) ==
+        std::lround(std::pow(2, m.joints.size())));
+}
+
 TEST_CASE("torques that no speed balances are refused with the reason", "[torque]") {
   Mechanism m;
   m.bodies = {body("rotor", 1, {0, 0, 0}, {0.1, 2, 0.1})};
