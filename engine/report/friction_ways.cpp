@@ -4,6 +4,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/referred_to.hpp"
+#include "engine/mechanism/text.hpp"
 #include "engine/report/friction_attempt.hpp"
 #include "engine/report/friction_implied.hpp"
 #include "engine/report/turns_in_place.hpp"
