@@ -4,7 +4,7 @@
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_ways.hpp"
 
 #include <algorithm>
 #include <cmath>

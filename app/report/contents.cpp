@@ -11,7 +11,7 @@
 #include "engine/mechanism/text.hpp"
 #include "engine/mechanism/validate.hpp"
 #include "engine/periodic/limit_cycle.hpp"
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_ways.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/resonance_curve.hpp"

@@ -51,8 +51,11 @@ class Attempt {
   // Nothing where there is no such state. `loose`: see attempt_parts().
   std::optional<StateOnFriction> solve(const SolveOptions& options, bool loose) const {
     std::optional<StateOnFriction> first;
-    for (const std::vector<CoordinateReference>& at_rest : may_rest(mechanism_, held())) {
-      auto out = solve_with(at_rest, options, loose);
+    const std::vector<std::vector<CoordinateReference>> sets = may_rest(mechanism_, held());
+    SolveOptions resting = options; // one search for all of them
+    resting.search /= static_cast<double>(sets.size());
+    for (const std::vector<CoordinateReference>& at_rest : sets) {
+      auto out = solve_with(at_rest, at_rest.empty() ? options : resting, loose);
       if (!out) continue;
       if (!any_without_a_part([&](std::size_t i) { return out->margins[i] < 0; })) return out;
       if (!first) first = std::move(out);
@@ -442,12 +445,6 @@ class Attempt {
 };
 
 } // namespace
-
-bool may_slip(const Mechanism& mechanism, CoordinateReference at) {
-  const Joint& joint = joint_of(mechanism, at);
-  const Coordinate& c = coordinate_of(mechanism, at);
-  return !is_rotation_vector(joint.type, at.coordinate) && !c.spring && !c.stop;
-}
 
 std::optional<StateOnFriction> attempt_parts(const Mechanism& mechanism,
                                              const std::vector<CoordinateReference>& frictions,

@@ -1,20 +1,13 @@
-// One attempt at a steady state that rests on dry friction (friction_state.hpp): the friction of each
+// One attempt at a steady state that rests on dry friction (friction_parts.hpp): the friction of each
 // coordinate plays a given part, and the mechanism with what it holds standing and what slips driven is
 // solved.
 #pragma once
 
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/report/standstill.hpp"
 
 namespace flyball {
-
-inline bool is_slipping(FrictionPart part) {
-  return part == FrictionPart::slips_forwards || part == FrictionPart::slips_backwards;
-}
-
-// Whether a coordinate may slip at a constant rate without end: along one axis, without spring or stop.
-bool may_slip(const Mechanism& mechanism, CoordinateReference at);
 
 // Nothing where there is no such state. `frictions`: find_frictions(). `holding`: what holding takes, where
 // all hold and springs and stops of their own help. `implied`: of those that slip the ones whose rate follows

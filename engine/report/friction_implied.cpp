@@ -1,5 +1,6 @@
 #include "engine/report/friction_implied.hpp"
 
+#include "engine/linear/interruption.hpp"
 #include "engine/mechanism/body_groups.hpp"
 #include "engine/report/friction_attempt.hpp"
 
@@ -29,6 +30,30 @@ std::vector<std::vector<bool>> implied_ways(const Mechanism& mechanism,
       implied[may_close[k]] = (set >> k & 1) != 0;
   }
   return out;
+}
+
+std::optional<StateOnFriction> let_slip(const Mechanism& mechanism,
+                                        const std::vector<CoordinateReference>& frictions,
+                                        const FrictionParts& parts, const SolveOptions& options, bool loose,
+                                        int* attempts) {
+  const std::vector<std::vector<bool>> ways = implied_ways(mechanism, frictions, parts);
+  std::optional<StateOnFriction> first;
+  for (const bool newton_only : {true, false}) {
+    if (newton_only && ways.size() == 1) continue;
+    if (!newton_only && options.newton_only && ways.size() > 1) break; // that has been
+    SolveOptions now = options;
+    now.newton_only = newton_only || options.newton_only;
+    if (newton_only) now.search = 0;
+    for (const std::vector<bool>& implied : ways) {
+      if (is_cancelled(options.cancel)) return first;
+      auto state = attempt_parts(mechanism, frictions, parts, now, nullptr, implied, loose);
+      if (attempts) ++*attempts;
+      if (state && (state->goes || !first)) first = std::move(state);
+      if (first && first->goes) return first;
+    }
+    if (first) return first;
+  }
+  return std::nullopt;
 }
 
 } // namespace flyball

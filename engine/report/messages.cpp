@@ -3,7 +3,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/report/friction_attempt.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/report/turning_part.hpp"
 #include "engine/search/most_turned.hpp"
 #include "engine/solve/singular_loops.hpp"

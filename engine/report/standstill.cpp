@@ -10,6 +10,7 @@
 #include "engine/mechanism/gear_train.hpp"
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/turns_in_place.hpp"
 #include "engine/system/elastic_force.hpp"
 
 #include <algorithm>
@@ -273,11 +274,12 @@ Standstill stand_still(const Mechanism& mechanism, std::span<const Standing> hel
 
 std::vector<std::vector<CoordinateReference>> may_rest(const Mechanism& mechanism,
                                                        std::span<const CoordinateReference> held) {
+  const bool in_place = turns_in_place(mechanism);
   std::vector<CoordinateReference> drives;
   for (std::size_t j = 0; j < mechanism.joints.size(); ++j)
     for (std::size_t i = 0; i < mechanism.joints[j].coordinates.size(); ++i) {
       const CoordinateReference at{static_cast<int>(j), static_cast<int>(i)};
-      if (!has_torque(mechanism, at)) continue;
+      if (!has_torque(mechanism, at) || (in_place && !is_tied(mechanism, held, at))) continue;
       const std::vector<GearedCoordinate> train = gear_train(mechanism, at);
       if (std::ranges::none_of(
               train, [&](const GearedCoordinate& x) { return std::ranges::find(held, x.at) != held.end(); }))

@@ -46,7 +46,8 @@ Standstill stand_still(const Mechanism& mechanism, std::span<const Standing> hel
                        std::span<const Standing> others, std::span<const CoordinateReference> at_rest);
 
 // Sets of drives by torque that gears do not tie to held coordinates, the empty one first: which of them may
-// have come to rest. With more than three drives none and all.
+// have come to rest. With more than three drives none and all. Of what turns in place only those that held
+// coordinates tie to what stands.
 std::vector<std::vector<CoordinateReference>> may_rest(const Mechanism& mechanism,
                                                        std::span<const CoordinateReference> held);
 

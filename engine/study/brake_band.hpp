@@ -3,7 +3,7 @@
 // same.
 #pragma once
 
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/study/friction_band.hpp"
 
 namespace flyball {

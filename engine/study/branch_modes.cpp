@@ -3,6 +3,7 @@
 #include "engine/continuation/branch_follower.hpp"
 #include "engine/linear/interruption.hpp"
 #include "engine/mechanism/error.hpp"
+#include "engine/report/solve_with_parts.hpp"
 #include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The modes of the states along a branch of a response, and between its points.
 #pragma once
 
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/study/campbell.hpp"
 #include "engine/study/drive_speed.hpp"
 

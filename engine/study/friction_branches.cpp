@@ -5,7 +5,8 @@
 #include "engine/linear/root_bracket.hpp"
 #include "engine/mechanism/error.hpp"
 #include "engine/mechanism/frictions.hpp"
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_ways.hpp"
+#include "engine/report/solve_with_parts.hpp"
 #include "engine/solve/solution_difference.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "engine/mechanism/address.hpp"
 #include "engine/mechanism/formulas.hpp"
 #include "engine/mechanism/frictions.hpp"
-#include "engine/report/friction_attempt.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/study/brake_band.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // which speeds of its drives the state does.
 #pragma once
 
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_parts.hpp"
 #include "engine/report/holding.hpp"
 #include "engine/study/friction_band.hpp"
 

@@ -5,7 +5,7 @@
 #include "engine/mechanism/frictions.hpp"
 #include "engine/mechanism/inside_ranges.hpp"
 #include "engine/mechanism/text.hpp"
-#include "engine/report/friction_attempt.hpp"
+#include "engine/report/friction_state.hpp"
 #include "engine/report/messages.hpp"
 #include "engine/stability/stability.hpp"
 #include "engine/study/input_effect.hpp"

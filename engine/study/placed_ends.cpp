@@ -18,22 +18,30 @@ bool is_unbounded(PlacedWays::End end) {
 }
 
 void PlacedEnds::explore(const std::vector<bool>& is_joint) {
-  std::size_t explored = 0;
-  for (; explored < std::min(starts_.size(), most_ends) && ways_.last_place() < most_places; ++explored)
+  all_ = all_within(most_places, most_ends, PlacedWays::Care::whole, is_joint);
+  if (all_ || lost_) return;
+  all_within(2 * most_places, 2 * most_ends, PlacedWays::Care::rough, is_joint);
+  lost_ = false; // beside what is known
+}
+
+bool PlacedEnds::all_within(std::size_t places, std::size_t ends, PlacedWays::Care care,
+                            const std::vector<bool>& is_joint) {
+  const std::size_t before = ways_.last_place();
+  for (; explored_ < std::min(starts_.size(), ends) && ways_.last_place() - before < places; ++explored_)
     for (Index i = 0; i < ways_.objectives(); ++i)
       if (i >= count() || is_joint[static_cast<std::size_t>(i)])
         for (const std::size_t side : {0u, 1u}) {
-          climb(i, side, starts_[explored]);
-          if (lost_) return;
+          climb(i, side, starts_[explored_], care);
+          if (lost_) return false;
         }
-  all_ = explored == starts_.size();
+  return explored_ == starts_.size();
 }
 
 void PlacedEnds::finish() {
   for (Index i = 0; i < count(); ++i)
     for (const std::size_t side : {0u, 1u}) {
       if (lost_) return;
-      climb(i, side, ways_.best_place(i, side == 0 ? -1 : 1));
+      climb(i, side, ways_.best_place(i, side == 0 ? -1 : 1), PlacedWays::Care::whole);
     }
 }
 
@@ -41,10 +49,10 @@ bool PlacedEnds::is_left(Index output) const {
   return std::ranges::count((*this)[output], PlacedWays::End::left) > 0;
 }
 
-void PlacedEnds::climb(Index output, std::size_t side, std::size_t from) {
+void PlacedEnds::climb(Index output, std::size_t side, std::size_t from, PlacedWays::Care care) {
   if (!ways_.has_rates(output)) return;
   if (output < count() && is_unbounded((*this)[output][side])) return;
-  const PlacedWays::End end = ways_.climb(output, side == 0 ? -1 : 1, from);
+  const PlacedWays::End end = ways_.climb(output, side == 0 ? -1 : 1, from, care);
   lost_ = end == PlacedWays::End::lost;
   if (output < count()) ends_[static_cast<std::size_t>(output)][side] = end;
   for (const std::size_t start : starts_) {

@@ -14,7 +14,7 @@ class PlacedEnds {
   PlacedEnds(PlacedWays& ways, std::size_t outputs) : ways_(ways), ends_(outputs) {}
 
   // The ends of each joint's way, also from each end of the others', and where each is about to slip: what is
-  // an extremum from one side may be passed from another.
+  // an extremum from one side may be passed from another. Where these are too many, more of them roughly.
   void explore(const std::vector<bool>& is_joint);
   // Of each output from the best place that is known.
   void finish();
@@ -26,12 +26,15 @@ class PlacedEnds {
 
  private:
   Eigen::Index count() const { return static_cast<Eigen::Index>(ends_.size()); }
-  void climb(Eigen::Index output, std::size_t side, std::size_t from);
+  bool all_within(std::size_t places, std::size_t ends, PlacedWays::Care care,
+                  const std::vector<bool>& is_joint);
+  void climb(Eigen::Index output, std::size_t side, std::size_t from, PlacedWays::Care care);
   void take_turn(std::size_t other);
 
   PlacedWays& ways_;
   std::vector<Ends> ends_;
   std::vector<std::size_t> starts_{0};
+  std::size_t explored_ = 0; // of these
   bool all_ = true;
   bool lost_ = false; // the last climb
 };

@@ -20,13 +20,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double longest_place_step = 0.2; // rad, reaches or shares
-constexpr double shortest_place_step = 1e-7;
-constexpr int most_place_steps = 2000;
-constexpr double same_answer = 1e-3; // rad or reaches
+constexpr double same_answer = 1e-3;       // rad or reaches
 constexpr int most_restorations = 8;
-constexpr double within_limit = 1e-9;    // of the limit: what still counts as held
-constexpr double most_bulge = 1e-2;      // of the limit, between two places at one: the way is curved
-constexpr double no_placed_gain = 1e-13; // of an output's size, in a step
+constexpr double within_limit = 1e-9; // of the limit: what still counts as held
+constexpr double most_bulge = 1e-2;   // of the limit, between two places at one: the way is curved
+// Where a climb ends.
+struct ClimbEnd {
+  double gain, step; // of an output's size in a step; rad, reaches or shares
+  int steps;
+};
+constexpr ClimbEnd whole_climb{1e-13, 1e-7, 2000}, rough_climb{1e-5, 1e-3, 300};
 constexpr double on_mark = 1e-9, same_after_turn = 1e-6; // rad; scaled
 constexpr double another_after_turn = 1e-4;              // of a value: by far more than places differ
 constexpr int most_turns = 8;
@@ -112,13 +115,14 @@ bool PlacedWays::changes_to_last(std::size_t other, Index output) const {
   return !(std::abs(b - a) <= another_after_turn * (1 + std::abs(a)));
 }
 
-PlacedWays::End PlacedWays::climb(Index output, double sense, std::size_t from) {
+PlacedWays::End PlacedWays::climb(Index output, double sense, std::size_t from, Care care) {
+  const ClimbEnd& end = care == Care::whole ? whole_climb : rough_climb;
   Place at = places_[from];
   const Place begin = at;
   double step = longest_place_step, mark = sense * at.state.values[output];
   std::optional<Place> before; // at the last mark
   const bool turns = unit(output) == "rad";
-  for (int i = 0; i < most_place_steps; ++i) {
+  for (int i = 0; i < end.steps; ++i) {
     interruption_point();
     const double now = sense * at.state.values[output];
     if (turns && std::abs(now - mark) <= on_mark) {
@@ -132,8 +136,7 @@ PlacedWays::End PlacedWays::climb(Index output, double sense, std::size_t from) 
     if (!gradient.allFinite()) return End::left; // a measure has no value there
     const VectorXd d = best_step(at, gradient, step, turns ? mark - now : infinite);
     const double gain = gradient.dot(d);
-    if (gain <= no_placed_gain * (std::abs(now) + gradient.cwiseProduct(radius_).lpNorm<1>()))
-      return End::extremum;
+    if (gain <= end.gain * (std::abs(now) + gradient.cwiseProduct(radius_).lpNorm<1>())) return End::extremum;
     std::optional<Place> to = go(at, at.state.p + d, output, sense, turns ? mark : infinite);
     if (to && sense * to->state.values[output] > now) {
       at = std::move(*to);
@@ -142,7 +145,7 @@ PlacedWays::End PlacedWays::climb(Index output, double sense, std::size_t from) 
       continue;
     }
     step /= 4;
-    if (step < shortest_place_step) return lost_ ? End::lost : End::extremum;
+    if (step < end.step) return lost_ ? End::lost : End::extremum;
   }
   return End::left;
 }

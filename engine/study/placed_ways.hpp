@@ -49,8 +49,10 @@ class PlacedWays {
   // Whether an output is another at the last place than at this one.
   bool changes_to_last(std::size_t other, Eigen::Index output) const;
 
-  // From a place up to where the output, times `sense`, grows no more.
-  End climb(Eigen::Index output, double sense, std::size_t from);
+  // From a place up to where the output, times `sense`, grows no more: to the last digits, or about, which
+  // takes a tenth of the steps but may miss that something comes round.
+  enum class Care { whole, rough };
+  End climb(Eigen::Index output, double sense, std::size_t from, Care care = Care::whole);
 
  private:
   struct Place {

@@ -1,7 +1,6 @@
 #include "engine/study/standing_joints.hpp"
 
 #include "engine/mechanism/address.hpp"
-#include "engine/mechanism/drive_law.hpp"
 #include "engine/mechanism/expression.hpp"
 #include "engine/mechanism/force_law.hpp"
 #include "engine/mechanism/formulas.hpp"
@@ -10,6 +9,7 @@
 #include "engine/mechanism/referred_to.hpp"
 #include "engine/mechanism/result_functions.hpp"
 #include "engine/mechanism/text.hpp"
+#include "engine/report/turns_in_place.hpp"
 
 #include <algorithm>
 #include <array>
@@ -95,17 +95,6 @@ StandingJoint pull(Mechanism& mechanism, CoordinateReference at, std::size_t i, 
           measure,
           coordinate_name(joint, at.coordinate),
           share_address(mechanism, at)};
-}
-
-// Whether the torque or load of a drive is one of where anything stands.
-bool asks_for_place(const Mechanism& mechanism, const Joint& joint, int i) {
-  return std::ranges::any_of(std::array<std::string_view, 2>{"torque", "load"}, [&](std::string_view which) {
-    const Formula* law = drive_law(mechanism, joint, i, which);
-    if (!law) return false;
-    const Expression read = read_drive_law(mechanism, law->text);
-    return std::ranges::any_of(read.results(),
-                               [](const ResultCall& call) { return call.result != Result::rate; });
-  });
 }
 
 } // namespace

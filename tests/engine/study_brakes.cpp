@@ -7,7 +7,9 @@
 #include "engine/mechanism/scene.hpp"
 #include "engine/mechanism/text.hpp"
 #include "engine/report/analysis.hpp"
-#include "engine/report/friction_state.hpp"
+#include "engine/report/friction_ways.hpp"
+#include "engine/report/standstill.hpp"
+#include "engine/report/turns_in_place.hpp"
 #include "engine/study/friction_branches.hpp"
 #include "engine/study/friction_report.hpp"
 #include "tests/catch.hpp"
@@ -15,6 +17,7 @@
 #include "tests/support/solutions.hpp"
 
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <numbers>
 
@@ -184,6 +187,75 @@ TEST_CASE("four joints with friction of which clutches close loops: as enumerate
   CHECK(slipped > 6);
   CHECK(stuck > 3);
   CHECK(balanced > 6);
+}
+
+namespace {
+
+// A motor that gives `law` and shafts that two clutches of 0.5 and 0.6 N m turn, each against 0.1 N m s.
+Mechanism two_clutches(const std::string& law, const std::string& more = "") {
+  const auto clutch = [](const std::string& name, const std::string& other, double limit) {
+    return R"(, {"name": ")" + name + R"(", "type": "revolute", "bodies": ["a", ")" + other +
+           R"("], "at": [0, 0, 0], "axis": [0, 1, 0], )" + friction(limit) + "}";
+  };
+  return scene(body_at("a", 0) + ", " + body_at("b", 0) + ", " + body_at("c", 0),
+               bearing_at("pa", "a", 0, torque(law)) + ", " + bearing_at("pb", "b", 0, R"("damping": 0.1)") +
+                   ", " + bearing_at("pc", "c", 0, R"("damping": 0.1)" + more) + clutch("kb", "b", 0.5) +
+                   clutch("kc", "c", 0.6));
+}
+
+} // namespace
+
+TEST_CASE("two clutches on a motor that runs away are refused soon: searches share their time") {
+  const Mechanism m = two_clutches("9 N m");
+  SolveOptions options;
+  options.search = 0.03; // else some seconds
+  const std::clock_t begin = std::clock();
+  const Solution s = Analysis(m).solve(options);
+  CHECK(s.status != Status::converged);
+  CHECK_THAT(s.message, ContainsSubstring("it runs away"));
+  CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 3);
+}
+
+TEST_CASE("what turns in place rests nowhere but where friction holds it") {
+  const Mechanism m = two_clutches("5 N m - 1 N m s*rate(pa)");
+  CHECK(turns_in_place(m));
+  const std::vector<FrictionParts> parts = first_parts(m, nullptr);
+  CHECK(parts.size() == 9); // each clutch holds, or slips forwards or backwards
+  for (const FrictionParts& each : parts)
+    CHECK(std::ranges::count(each, FrictionPart::none) == 0);
+  CHECK(may_rest(m, {}).size() == 1);
+  // A spring, gravity on a mass beside the axis or a torque of a place may hold it anywhere.
+  Mechanism sprung = two_clutches("5 N m - 1 N m s*rate(pa)", R"(, "spring": {"stiffness": 10})");
+  CHECK_FALSE(turns_in_place(sprung));
+  CHECK(first_parts(sprung, nullptr).size() == 15);
+  CHECK(may_rest(sprung, {}).size() == 2);
+  Mechanism beside = m;
+  beside.bodies[1].position.x() = 0.1;
+  CHECK_FALSE(turns_in_place(beside));
+  CHECK_FALSE(turns_in_place(two_clutches("5 N m - 1 N m*coordinate(pb)")));
+}
+
+TEST_CASE("a shaft whose speed is the other way round than its search begins is found beside two clutches") {
+  // -1.27 N m + 1.92 N m tanh((w - 2.7 rad/s)/1.5 rad/s) - 0.19 N m s w leaves the clutch's 1.27 N m at
+  // -10.15 rad/s; beyond it all stands.
+  const std::string law = "-1.2677484928891865 N m + 1.9213120027523747 N m*tanh((rate(p0) - "
+                          "2.6840747996489895 rad/s)/(1.4859234931402692 rad/s)) - 0.18875684199987264 N m "
+                          "s*rate(p0)";
+  const auto clutch = [](const std::string& name, const std::string& a, const std::string& b, double limit) {
+    return R"(, {"name": ")" + name + R"(", "type": "revolute", "bodies": [")" + a + R"(", ")" + b +
+           R"("], "at": [0, 0, 0], "axis": [0, 1, 0], )" + friction(limit) + "}";
+  };
+  const Mechanism m = scene(
+      body_at("b0", 0) + ", " + body_at("b1", 0) + ", " + body_at("b2", 0),
+      bearing_at("p0", "b0", 0, torque(law, 8.586408324925854)) + ", " +
+          bearing_at("p1", "b1", 0, R"("damping": 0.24)") + ", " +
+          bearing_at("p2", "b2", 0, R"("damping": 0.14, )" + friction(1.5293438612798749)) +
+          clutch("k01", "b0", "b1", 1.2738810123605713) + clutch("k12", "b1", "b2", 2.4354755257336227));
+  const Solution s = Analysis(m).solve();
+  INFO(s.message);
+  REQUIRE(s.status == Status::converged);
+  CHECK_THAT(speed(s, "p0"), WithinRel(-10.146277832644543, 1e-9));
+  CHECK(s.frictions.size() == 3);
 }
 
 TEST_CASE("a brake on a countershaft slips: it loads the shaft by the ratio") {

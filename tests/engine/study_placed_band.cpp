@@ -286,6 +286,33 @@ TEST_CASE("no band along a curve falls short of what places tell", "[placed-band
   CHECK_THAT(k->high - k->value, WithinAbs(expected.high[1], 3 * step));
 }
 
+TEST_CASE("of three hinges on a shaft the first goes over to the other side, too", "[placed-band]") {
+  // Alike to both sides, which a neck joins: flooded by 0.05 rad it reaches from -2.11 to 2.09 rad. Only one
+  // side was found, down to -0.47 rad.
+  const auto at = [](double y) { return "[0, " + number_text(y) + ", 0]"; };
+  const auto hinge = [&](const char* name, const char* a, const char* b, double y, const std::string& more) {
+    return R"(, {"name": ")" + std::string(name) + R"(", "type": "revolute", "bodies": [")" + a + R"(", ")" +
+           b + R"("], "axis": [0, 0, 1], "at": )" + at(y) + more + "}";
+  };
+  const FrictionBand band = band_of(read_scene(
+      R"({"flyball": 2, "name": "Three hinges", "gravity": [0, -10, 0],
+      "bodies": [{"name": "shaft", "mass": 1, "position": [0, 0, 0], "inertia": [1, 1, 1]},
+        {"name": "a", "mass": 1.06, "position": )" +
+      at(-0.529) + R"(}, {"name": "b", "mass": 0.54, "position": )" + at(-1.016) +
+      R"(}, {"name": "c", "mass": 0.84, "position": )" + at(-1.597) +
+      R"(}], "joints": [{"name": "spin", "type": "revolute", "bodies": ["ground", "shaft"], "at": [0, 0, 0],
+          "axis": [0, 1, 0], "drive": {"speed": 5.07}})" +
+      hinge("h", "shaft", "a", 0, rubs(27.3)) + hinge("k", "a", "b", -0.529, sprung(5.81, 0) + rubs(3.8)) +
+      hinge("l", "b", "c", -1.016, rubs(3.46)) + "]}"));
+  INFO(band.message);
+  CHECK(band.at_least);
+  for (const auto& [name, most] : {std::pair("h", 2.1434), std::pair("k", 1.1668), std::pair("l", 1.8040)}) {
+    CAPTURE(name);
+    CHECK_THAT(extent_in(band, name).low, WithinAbs(-most, 1e-4));
+    CHECK_THAT(extent_in(band, name).high, WithinAbs(most, 1e-4));
+  }
+}
+
 TEST_CASE("of a measure that jumps within a band no extent is told", "[placed-band]") {
   const double limit = GENERATE(3., 12.);
   const auto upwards = [](const char* name, const char* factor) {
