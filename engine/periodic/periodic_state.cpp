@@ -464,15 +464,14 @@ class Search {
 
   // Where little moves, as of a disc that turns fast about its diameter, what drives give may swing all the
   // same.
-  static bool torques_stand(const PeriodicState& out) {
+  bool torques_stand(const PeriodicState& out) const {
     constexpr double noise = 1e-3; // of the largest that a joint bears
-    double largest[2] = {0, 0};    // N, N m
-    for (const PeriodicReaction& r : out.reactions) {
-      largest[0] = std::max(largest[0], r.force.size.most);
-      largest[1] = std::max(largest[1], r.torque.size.most);
-    }
+    const double reach = flow_.model().parameters.length;
+    double largest = 0; // N
+    for (const PeriodicReaction& r : out.reactions)
+      largest = std::max({largest, r.force.size.most, r.torque.size.most / reach});
     return std::ranges::all_of(out.drive_torques, [&](const PeriodicTorque& drive) {
-      return !(drive.range.most - drive.range.least > noise * largest[drive.angle ? 1 : 0]);
+      return !(drive.range.most - drive.range.least > noise * largest * (drive.angle ? reach : 1));
     });
   }
 

@@ -34,7 +34,8 @@ END
   exit 77
 fi
 
-for package in nlohmann fmt sundials cvode arkode nvector sunmatrix sunlinsol sunnonlinsol Spectra nlopt.h Random123; do
+for package in nlohmann fmt sundials cvode arkode nvector sunmatrix sunlinsol sunnonlinsol sunadaptcontroller \
+  sunmemory Spectra nlopt.h Random123; do
   ln -sfn "/usr/include/$package" "headers/$package"
 done
 for part in Eigen unsupported; do
