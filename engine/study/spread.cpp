@@ -4,6 +4,8 @@
 #include "engine/study/spread_sampler.hpp"
 #include "engine/study/spread_tally.hpp"
 
+// Products of 64 bits in plain C, the same bits, where nothing faster is known, as to WebAssembly.
+#define R123_USE_MULHILO64_C99 1
 #include <Random123/philox.h>
 
 #include <chrono>
