@@ -1,12 +1,12 @@
 #include "app/session/quantity.hpp"
 
 #include "app/session/units.hpp"
+#include "engine/mechanism/decimal.hpp"
 #include "engine/mechanism/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -196,25 +196,11 @@ class Parser {
   }
 
   double number() {
-    std::size_t end = 0;
-    const auto digits = [&] {
-      while (end < text_.size() && is_digit(text_[end]))
-        ++end;
-    };
-    digits();
-    if (end < text_.size() && text_[end] == '.') ++end;
-    digits();
-    if (end == 1 && text_[0] == '.') throw unexpected();
-    if (end < text_.size() && (text_[end] == 'e' || text_[end] == 'E')) {
-      std::size_t exponent = end + 1;
-      if (exponent < text_.size() && (text_[exponent] == '+' || text_[exponent] == '-')) ++exponent;
-      if (exponent < text_.size() && is_digit(text_[exponent])) {
-        end = exponent;
-        digits();
-      }
-    }
-    const double value = std::strtod(std::string(text_.substr(0, end)).c_str(), nullptr);
-    advance(end);
+    double value = 0;
+    const auto [end, error] = read_decimal(text_.data(), text_.data() + text_.size(), value);
+    if (error == std::errc::invalid_argument) throw unexpected();
+    if (error != std::errc()) throw Mistake{"That is no finite number, or smaller than 1e-307."};
+    advance(static_cast<std::size_t>(end - text_.data()));
     return value;
   }
 

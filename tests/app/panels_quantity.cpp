@@ -185,6 +185,7 @@ TEST_CASE("what cannot be understood is refused with the reason") {
       Refused{"1/0", "m", "no finite number"},
       Refused{"0/0", "m", "no finite number"},
       Refused{"1e999", "m", "no finite number"},
+      Refused{"1e-400 mm", "m", "smaller than 1e-307"},
       Refused{"sqrt(-1)", "m", "no finite number"},
       Refused{"2 m + 3 kg", "m", "A sum of a length and a mass"},
       Refused{"2 + 3 mm", "kg", "A sum of a plain number and a length"},
