@@ -173,6 +173,17 @@ TEST_CASE("every shipped scene's list can be shown, in both themes and in a narr
   }
 }
 
+TEST_CASE("the studies' tabs leave the button beside them in sight in a narrow window") {
+  StatesRobot robot("conical_pendulum");
+  const float wide_tab = robot.widget("study/compare").to.x - robot.widget("study/compare").from.x;
+  robot.size = {512, 600};
+  robot.frames(3);
+  const WidgetRect last = robot.widget("study/compare"), close = robot.widget("study/close");
+  CHECK(last.to.x <= close.from.x);
+  CHECK(last.to.x - last.from.x < wide_tab);
+  CHECK(close.to.x <= 512);
+}
+
 TEST_CASE("a long name leaves its column's numbers in sight") {
   Robot robot(wide);
   Mechanism m = shipped("conical_pendulum");

@@ -35,26 +35,34 @@ constexpr std::array tabs{
     Tab{StudyKind::compare, "study/compare", "Compare", "Error against run time: direct solution and motion"},
 };
 
+// What is left and right of the tabs' words, which is less where all of it is more than their room.
+float tab_padding(const Ui& ui, float room) {
+  float words = 0;
+  for (const Tab& each : tabs)
+    words += ImGui::CalcTextSize(each.title).x;
+  return std::clamp((room - words) / (2 * static_cast<float>(tabs.size())), 3 * ui.scale, 8 * ui.scale);
+}
+
 // A word with a line below it where it is the one that shows.
-bool tab(const Session& session, Ui& ui, const Tab& wanted) {
+bool tab(const Session& session, Ui& ui, const Tab& wanted, float padding) {
   const UiColors& colors = colors_of(ui);
   const bool on = session.study.open == wanted.study;
   const float s = ui.scale;
   const ImVec2 text = ImGui::CalcTextSize(wanted.title), from = ImGui::GetCursorScreenPos();
-  const ImVec2 size(text.x + 16 * s, text.y + 10 * s);
+  const ImVec2 size(text.x + 2 * padding, text.y + 10 * s);
   const bool pressed = ImGui::InvisibleButton(wanted.name, size);
   note_widget(ui.widgets, wanted.name, KeyUse::tab);
   if (on) mark_chosen(ui.widgets);
   help_above(wanted.help);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddText({from.x + 8 * s, from.y + 4 * s},
+  list.AddText({from.x + padding, from.y + 4 * s},
                packed(on                       ? colors.text
                       : ImGui::IsItemHovered() ? colors.accent
                                                : colors.dim),
                wanted.title);
   if (on)
-    list.AddRectFilled({from.x + 8 * s, from.y + size.y - 3 * s},
-                       {from.x + size.x - 8 * s, from.y + size.y - s}, packed(colors.accent));
+    list.AddRectFilled({from.x + padding, from.y + size.y - 3 * s},
+                       {from.x + size.x - padding, from.y + size.y - s}, packed(colors.accent));
   ImGui::SameLine(0, 0);
   return pressed;
 }
@@ -70,9 +78,10 @@ void StudyPanel::draw(Session& session, Ui& ui, const CommandRunner& commands, c
                                       packed(colors_of(ui).border), std::max(1.f, std::round(s)));
   StudyKind wanted = StudyKind::none;
   const float top = ImGui::GetCursorPosY();
-  for (const Tab& each : tabs)
-    if (tab(session, ui, each) && each.study != session.study.open) wanted = each.study;
   const float side = ImGui::GetFrameHeight() + 2 * s;
+  const float padding = tab_padding(ui, rect.width - side - 16 * s);
+  for (const Tab& each : tabs)
+    if (tab(session, ui, each, padding) && each.study != session.study.open) wanted = each.study;
   bool transport_below = false; // where the tabs leave too little room
   if (session.study.open == StudyKind::motion && session.motion.on) {
     const float from = std::max(314 * s, ImGui::GetCursorPosX() + 12 * s);
