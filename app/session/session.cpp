@@ -94,9 +94,10 @@ void take_document(Session& session, bool another, bool warm, StartValues start 
 // Whether a hand has pulled so far that nothing near stands any more: the answer is none, or unstable where
 // what was shown is not.
 bool runs_away(const Session& session, const LiveAnswer& answer) {
-  if (answer.ticket > session.pulled || !converged(session) || session.answer.solution.stable == false)
+  if (answer.error || answer.ticket > session.pulled || !converged(session) ||
+      session.answer.solution.stable == false)
     return false;
-  return answer.error || answer.solution.status != Status::converged || answer.solution.stable == false;
+  return answer.solution.status != Status::converged || answer.solution.stable == false;
 }
 
 void take_answer(Session& session) {

@@ -16,12 +16,14 @@
 namespace flyball {
 
 Image view_picture(App& app, PixelSize size) {
+  const ViewState former_view = app.view; // which another size may fit anew
   update(app, 0, {static_cast<double>(size.width), static_cast<double>(size.height)});
   ViewRenderer renderer;
   Framebuffer target(size.width, size.height, app.view.samples);
   ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   frame.hovered = {};
   renderer.draw(frame, target);
+  app.view = former_view;
   return target.read();
 }
 

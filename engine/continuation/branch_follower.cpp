@@ -582,7 +582,7 @@ void BranchFollower::follow(BranchState state, bool tell_progress, FollowedBranc
       changed = next.parameter;
       fastest = now_fastest;
     } else if (now_fastest > without_end * (1 + fastest)) {
-      out.end = "a speed grows without end there, while the number stays where it is";
+      out.end = "a speed grows more than a thousandfold there, while the number stays where it is";
       break;
     }
     state = std::move(next);

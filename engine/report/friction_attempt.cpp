@@ -52,7 +52,7 @@ class Attempt {
   std::optional<StateOnFriction> solve(const SolveOptions& options, bool loose) const {
     std::optional<StateOnFriction> first;
     const std::vector<std::vector<CoordinateReference>> sets = may_rest(mechanism_, held());
-    SolveOptions resting = options; // one search for all of them
+    SolveOptions resting = options; // those of drives at rest share one
     resting.search /= static_cast<double>(sets.size());
     for (const std::vector<CoordinateReference>& at_rest : sets) {
       auto out = solve_with(at_rest, at_rest.empty() ? options : resting, loose);

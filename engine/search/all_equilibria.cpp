@@ -336,24 +336,30 @@ class Searcher {
     });
   }
 
-  // From what is put together of the equilibria known, as long as that finds new ones.
+  // From what is put together of the equilibria known, each once, as long as that finds new ones: for at most
+  // half of what the rest of the search has taken.
   void combine() {
-    for (std::size_t known = 0; known < list_.states.size() && list_.states.size() > 1 && !many();) {
+    const double begin = spent_;
+    combine_until_ = begin + std::max(0., 0.5 * (begin - combining_) - combining_);
+    for (std::size_t known = 0; known < list_.states.size() && list_.states.size() > 1 && combines();) {
       known = list_.states.size();
       look_between();
       exchange_branches();
     }
     combined_ = list_.states.size();
+    combining_ += spent_ - begin;
   }
 
   bool many() const { return list_.states.size() >= most_; }
+  bool combines() const { return spent_ < combine_until_ && !many(); }
 
   // Halfway to the nearest neighbour along each coordinate: of three speeds at which a shaft may run few
   // starts lead to the one between, at which it runs away.
   void look_between() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto count = static_cast<std::size_t>(p_.system.nv);
-    for (std::size_t i = 0; i < list_.states.size() && !many() && !ended(); ++i) {
+    for (; between_ < list_.states.size() && combines() && !ended(); ++between_) {
+      const std::size_t i = between_;
       std::vector<double> nearest(count, infinity);
       std::vector<Eigen::VectorXd> way(count);
       spend(comparing());
@@ -385,26 +391,31 @@ class Searcher {
   // equilibria.
   void exchange_branches() {
     int vain = 0;
-    const auto done = [&] { return vain >= least_arrivals() || many() || ended(); };
-    for (std::size_t i = 1; i < list_.states.size() && !done(); ++i)
-      for (std::size_t k = 0; k < 2 * i && !done(); ++k)
+    const auto done = [&] { return vain >= least_arrivals() || !combines() || ended(); };
+    for (; exchanged_ < list_.states.size() && !done(); ++exchanged_)
+      for (std::size_t k = 0; k < 2 * exchanged_ && !done(); ++k)
         for (const TreeJoint& joint : p_.system.tree_joints) {
-          const std::size_t a = k % 2 == 0 ? i : k / 2, b = k % 2 == 0 ? k / 2 : i;
-          Eigen::VectorXd q = list_.states[a].q;
-          std::vector<char> carried(p_.system.links.size());
-          for (std::size_t l = static_cast<std::size_t>(joint.first_link); l < carried.size(); ++l) {
-            const Link& link = p_.system.links[l];
-            carried[l] =
-                link.tree_joint == p_.system.links[static_cast<std::size_t>(joint.first_link)].tree_joint ||
-                (link.parent >= 0 && carried[static_cast<std::size_t>(link.parent)] != 0);
-            if (carried[l]) take_link(list_.states[b].q, link, q);
-          }
+          const std::size_t other = k / 2, into = k % 2 == 0 ? exchanged_ : other;
+          Eigen::VectorXd q = list_.states[into].q;
+          take_branch(list_.states[into == other ? exchanged_ : other].q, joint, q);
           if (is_known(q)) continue;
           const std::size_t before = list_.states.size();
           arrive_from_parts(std::move(q));
           vain = list_.states.size() > before ? 0 : vain + 1;
           if (done()) return;
         }
+  }
+
+  // Of a joint and what it carries.
+  void take_branch(const Eigen::VectorXd& from, const TreeJoint& joint, Eigen::VectorXd& q) const {
+    const auto first = static_cast<std::size_t>(joint.first_link);
+    std::vector<char> carried(p_.system.links.size());
+    for (std::size_t l = first; l < carried.size(); ++l) {
+      const Link& link = p_.system.links[l];
+      carried[l] = link.tree_joint == p_.system.links[first].tree_joint ||
+                   (link.parent >= 0 && carried[static_cast<std::size_t>(link.parent)] != 0);
+      if (carried[l]) take_link(from, link, q);
+    }
   }
 
   // Deflated runs as long as they find new equilibria, at most `most`.
@@ -474,7 +485,9 @@ class Searcher {
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double spent_ = 0;                                           // s
   int spread_ = 0;                                             // starts
+  double combining_ = 0, combine_until_ = 0;                   // s, of what is spent
   std::size_t deflated_from_ = 0, combined_ = 1;               // states
+  std::size_t between_ = 0, exchanged_ = 1;                    // states that combine() is done with
   std::size_t most_ = std::numeric_limits<std::size_t>::max(); // of which there may be no end
   std::mt19937 random_{options_.seed};
   SearchReport report_;

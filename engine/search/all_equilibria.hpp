@@ -1,8 +1,9 @@
 // Every equilibrium that a bounded search finds: Newton-Raphson from starts spread over the coordinates'
-// ranges, from mixtures of the equilibria known, and deflated so that it cannot find those again (Farrell,
-// Birkisson and Funke, Deflation techniques for finding distinct solutions of nonlinear PDEs, 2015). It goes
-// on until what the spread starts found, and how often, says that nothing more is to be expected, or its
-// budget is spent. No search of this kind can promise completeness.
+// ranges, from what is put together of the equilibria known (mixtures, halfway between neighbours, branches
+// of the tree exchanged), and deflated so that it cannot find those again (Farrell, Birkisson and Funke,
+// Deflation techniques for finding distinct solutions of nonlinear PDEs, 2015). It goes on until what the
+// spread starts found, and how often, says that nothing more is to be expected, or its budget is spent. No
+// search of this kind can promise completeness.
 #pragma once
 
 #include "engine/kkt/configuration_difference.hpp"
@@ -47,9 +48,9 @@ struct EquilibriumList {
   SearchReport report;
 };
 
-// From `drawn` and all over the ranges; then speeds that torques give up to a thousand times as fast, and
-// where nothing was found either way. The same options give the same list, whatever the computer does
-// besides, unless it ends by time.
+// From `drawn` and all over the ranges, for seven tenths of the budget; then speeds that torques give up to a
+// thousand times as fast, and where nothing was found either way; the rest goes to the ranges again. The same
+// options give the same list, whatever the computer does besides, unless it ends by time.
 EquilibriumList find_all_equilibria(const Problem& problem, const Eigen::VectorXd& drawn,
                                     const SearchOptions& options, Workspace& w);
 
