@@ -12,8 +12,8 @@ std::vector<StateOnFriction> find_states_with(const Mechanism& mechanism, const 
                                               const SolveOptions& options);
 
 // Of all that searches find with these parts, and that go with them, one that is not unstable, else the
-// first. Short searches come first; the others share five times SolveOptions::search, of which none takes more
-// than one.
+// first. Short searches come first; the others share five times SolveOptions::search, of which none takes
+// more than one.
 std::optional<StateOnFriction> search_state(const Mechanism& mechanism, const std::vector<FrictionParts>& all,
                                             const SolveOptions& options);
 
