@@ -19,7 +19,7 @@ Image changed_governor(const Change& change) {
   App app(steady_options());
   app.view.samples = 1;
   open_scene(app.session, FLYBALL_ASSETS "/scenes/governor.json");
-  view_picture(app, view_size); // places the camera
+  update(app, 0, {view_size.width, view_size.height}); // places the camera
   ViewFrame frame = view_frame(app.session, app.ui, app.tool, app.view);
   Mechanism mechanism = *frame.mechanism;
   std::vector<Pose> poses(frame.poses.begin(), frame.poses.end()),
